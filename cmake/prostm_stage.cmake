@@ -1,0 +1,25 @@
+# One static library per folder of src/. Which folder may include which is held by tools/check_layers.py.
+function(prostm_stage name)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  if(sources)
+    add_library(prostm_${name} STATIC ${sources})
+    target_include_directories(prostm_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+    target_link_libraries(prostm_${name} ${ARGN})
+  else()
+    add_library(prostm_${name} INTERFACE)
+    target_include_directories(prostm_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
+    list(TRANSFORM ARGN REPLACE "^(PUBLIC|PRIVATE)$" "INTERFACE")
+    target_link_libraries(prostm_${name} ${ARGN})
+  endif()
+endfunction()
+
+# One test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry.
+function(prostm_test name)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
+  if(sources)
+    add_executable(test_${name} ${sources})
+    target_link_libraries(test_${name} PRIVATE ${ARGN} prostm_test_support GTest::gmock)
+    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+                         PROPERTIES TIMEOUT 900 LABELS "${name}")
+  endif()
+endfunction()

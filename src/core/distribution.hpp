@@ -1,0 +1,31 @@
+#pragma once
+/// Mean, spread and quantiles of a series of measurements, with storage sized once.
+
+#include <cstddef>
+#include <vector>
+
+namespace prostm {
+
+struct Summary {
+  std::size_t n = 0;
+  double mean = 0.0, deviation = 0.0;       ///< standard deviation of the population
+  double p50 = 0.0, p99 = 0.0, max = 0.0;   ///< quantiles by the nearest-rank rule
+};
+
+/// Collects values; add() never allocates. When more values come than there is room for, every second one kept so far
+/// is dropped and from then on every second one is kept (and so on): quantiles stay those of an even sample in time,
+/// n, mean, deviation and max stay exact.
+class Distribution {
+ public:
+  explicit Distribution(std::size_t capacity = 1 << 16);
+  void add(double value) noexcept;
+  Summary summary() const;                  ///< all zeros when empty
+  std::size_t count() const { return count_; }
+
+ private:
+  std::vector<double> kept_;
+  std::size_t capacity_, stride_ = 1, count_ = 0;
+  double mean_ = 0.0, squares_ = 0.0, max_ = 0.0;
+};
+
+}  // namespace prostm

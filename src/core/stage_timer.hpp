@@ -1,0 +1,28 @@
+#pragma once
+/// The only clock of the stages: how long a piece of work took.
+
+#include <chrono>
+
+namespace prostm {
+
+/// Runs from construction or restart(). Monotonic.
+class StageTimer {
+ public:
+  void restart() { start_ = std::chrono::steady_clock::now(); }
+  /// Seconds since the start.
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  /// Seconds since the start, and starts again.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double t = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return t;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace prostm

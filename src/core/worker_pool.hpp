@@ -1,0 +1,56 @@
+#pragma once
+/// A small pool for few, short parallel regions, with bounded spinning.
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace prostm {
+
+/// `run(n, f)` calls f(0) … f(n−1), each once, on the caller and `threads − 1` workers, and returns when all are done.
+/// Which thread runs which index is not fixed, so f must write to places that depend on the index alone; then results
+/// do not depend on the number of threads. One region at a time, from one thread; regions do not nest.
+///
+/// A worker spins for a bounded time after a region (the next one usually follows at once), then sleeps: a machine
+/// with more runnable threads than cores never waits for a spinning one longer than that bound.
+class WorkerPool {
+ public:
+  /// @param threads in all, the caller included; 1 runs everything on the caller. @throws std::invalid_argument if < 1.
+  explicit WorkerPool(int threads);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  int threads() const { return static_cast<int>(workers_.size()) + 1; }
+
+  /// @pre n < 2^20; f does not throw. Allocates nothing.
+  template <class F>
+  void run(int n, F&& f) {
+    using Function = std::remove_reference_t<F>;
+    run_erased(n, [](void* context, int i) { (*static_cast<Function*>(context))(i); },
+               const_cast<void*>(static_cast<const void*>(&f)));
+  }
+
+ private:
+  using Call = void (*)(void*, int);
+  void run_erased(int n, Call call, void* context);
+  void work(std::stop_token stop);
+  void drain(std::uint64_t region);
+
+  // A region's indices are handed out from one word: region number (24 bits), size (20), next index (20). A worker that
+  // wakes late compares the whole word, so it can never take an index of another region.
+  std::atomic<std::uint64_t> ticket_{0};
+  std::atomic<int> pending_{0};          // indices of this region not yet finished
+  std::atomic<Call> call_{nullptr};
+  std::atomic<void*> context_{nullptr};
+  std::atomic<std::uint64_t> region_{0};
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::vector<std::jthread> workers_;
+};
+
+}  // namespace prostm

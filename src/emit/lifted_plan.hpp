@@ -1,0 +1,36 @@
+#pragma once
+/// A plan on the skin: paths in 3-D, ready to be followed.
+
+#include <boost/container/static_vector.hpp>
+#include <cstdint>
+
+#include "core/geometry.hpp"
+#include "plan/plan.hpp"
+#include "target/target_field.hpp"
+
+namespace prostm {
+
+inline constexpr int kLiftedPointsPerSegment = 5;
+inline constexpr int kMaxLiftedPoints = kMaxPathPoints * kLiftedPointsPerSegment;
+
+/// A closed 3-D polygon with arc length. Point i is at arc length s[i]; the closing edge ends at `length`.
+struct LiftedPath {
+  boost::container::static_vector<Vec3, kMaxLiftedPoints> p_D;          ///< [m]
+  boost::container::static_vector<double, kMaxLiftedPoints> pressure;   ///< rendered, unit of the target
+  boost::container::static_vector<double, kMaxLiftedPoints> s;          ///< [m], s[0] = 0
+  double length = 0.0;                                                  ///< on the skin [m]
+  double speed = 0.0;                                                   ///< [m/s]
+};
+
+struct LiftedPlan {
+  boost::container::static_vector<LiftedPath, kMaxPaths> paths;
+  std::int64_t id = 0;               ///< counts plans from 1
+  double hand_time = 0.0;            ///< of the hand frame that it was planned from [s]
+};
+
+/// Undoes the projection of section IV-A: each segment is cut in kLiftedPointsPerSegment, each point gets the height
+/// of the skin there (height_at), and the focal point is to move at the path's speed along the 3-D curve. A path of
+/// fewer than two distinct points is a point at rest.
+void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
+
+}  // namespace prostm

@@ -1,0 +1,17 @@
+#pragma once
+/// Whole files, read with a limit and written so that nothing is ever half there.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace prostm {
+
+/// The bytes of a file. @throws InputError: it does not exist, cannot be read, is a folder, is empty, exceeds `limit` bytes.
+std::string read_file(const std::string& path, std::size_t limit = std::size_t{1} << 30);
+
+/// Writes to a temporary file beside `path`, flushes, renames. "-" writes to standard output.
+/// @throws InputError: the folder is missing or not writable, the disk is full. Nothing is left behind then.
+void write_file(const std::string& path, std::string_view bytes);
+
+}  // namespace prostm

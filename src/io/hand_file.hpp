@@ -1,0 +1,20 @@
+#pragma once
+/// Hand recordings: the neutral JSON Lines format, and Leap Motion recordings as the tracker sent them.
+
+#include <string>
+#include <string_view>
+
+#include "track/hand_source.hpp"
+
+namespace prostm {
+
+/// Reads `.hands.jsonl` (hand-frames/1) or a Leap JSON v6 recording, told apart by their content. Frames without hands are kept.
+/// @throws InputError with a sentence that names file, line or frame, and what would be right: wrong joint count,
+/// non-finite numbers, time that does not increase, radii or bone lengths that no hand has, no frames.
+HandRecording read_hand_recording(const std::string& path);
+
+/// The two parsers; `name` stands for the file in messages. @throws InputError.
+HandRecording hands_from_jsonl(std::string_view text, const std::string& name);
+HandRecording hands_from_leap_json(std::string_view text, const std::string& name);
+
+}  // namespace prostm

@@ -1,0 +1,32 @@
+#pragma once
+/// Plans in files: prostm-plan/1.
+
+#include <string>
+#include <string_view>
+
+#include "plan/planner.hpp"
+#include "score/score.hpp"
+
+namespace prostm {
+
+/// What a plan file says besides the paths.
+struct PlanFileExtras {
+  std::string method = "pro-stm";
+  const PlanStats* stats = nullptr;              ///< writes "stage_us" and the counts, when given
+  const Metrics* metrics = nullptr;              ///< writes "metrics", when given
+  const std::vector<Control>* controls = nullptr;
+};
+
+/// @param target the field that was planned: its plane and heights are repeated in the file.
+/// @param settings_json the settings of every stage, an object as text, or empty.
+std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanSettings& settings,
+                         const PlanFileExtras& extras, const std::string& settings_json);
+
+struct PlanFile {
+  Plan plan;
+  TargetField raster;     ///< plane and heights (pressure 0 where the file repeats none)
+};
+/// @throws InputError with a sentence.
+PlanFile plan_from_json(std::string_view text, const std::string& name);
+
+}  // namespace prostm

@@ -1,0 +1,49 @@
+#pragma once
+/// HDF5 recordings: target fields, hands, plans and run statistics, for Python, MATLAB and Julia.
+
+#include <memory>
+#include <string>
+
+#include "plan/planner.hpp"
+#include "target/target_field.hpp"
+#include "track/hand_frame.hpp"
+
+namespace prostm {
+
+/// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed every second of data, so
+/// that a killed run leaves a file that opens. Earliest HDF5 file format. The layout, units and attributes are in docs/recordings.md.
+class Recorder {
+ public:
+  /// @param settings_json kept as an attribute. @throws InputError: the folder is missing or not writable.
+  Recorder(const std::string& path, const std::string& settings_json);
+  ~Recorder();   ///< closes like close(), but keeps quiet about errors
+
+  /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when there is one (its points
+  /// and pressures, padded with NaN to kMaxPathPoints). @throws InputError when the disk is full.
+  void append(const TargetFrame& frame, const HandFrame& hands, const Plan* plan, const PlanStats* stats);
+  /// Writes an attribute of the whole recording, e.g. the run's summary.
+  void set_attribute(const std::string& name, const std::string& value);
+  void close();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads the target fields of a recording.
+class RecordingReader {
+ public:
+  /// @throws InputError: not a recording, truncated, of another version.
+  explicit RecordingReader(const std::string& path);
+  ~RecordingReader();
+  int frames() const;
+  std::string scene() const;       ///< of the attribute "scene", empty when absent
+  /// @throws InputError for a frame that is not there.
+  TargetFrame frame(int i) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace prostm

@@ -1,0 +1,93 @@
+#pragma once
+/// PRO-STM: from a target pressure field to a few closed focal-point paths (the paper's section IV).
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/settings.hpp"
+#include "plan/plan.hpp"
+#include "target/target_field.hpp"
+
+namespace prostm {
+
+/// `paper`: the paper, exact; its violations of length and crossing are reported. `paper-valid`: the same, then made valid.
+enum class Preset : std::uint8_t { Paper, PaperValid };
+
+/// @throws std::invalid_argument with a sentence for a name that is unknown or not built yet.
+Preset preset_from_name(const std::string& name);
+std::string to_string(Preset preset);
+
+/// Defaults are the paper's, and docs/design.md section "Planner" where the paper is silent.
+struct PlanSettings {
+  std::string preset = "paper-valid";
+  int paths = 4;                    ///< at most, 1..8
+  int clusters = 50;                ///< k of the weighted k-means, 1..50
+  int samples = 20;                 ///< N of a path, 8..64
+  double max_length = 0.140;        ///< L [m]
+  double speed = 7.0;               ///< v of the focal points [m/s]
+  double sigma = 8.6e-3;            ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
+  double gain = 1.4;                ///< γ: rendered pressure over effective pressure
+  double weight_pressure = 3.0;     ///< of Eq. (2), p* over the frame's maximum
+  double weight_length = 3.0;       ///< of Eq. (3), lengths in mm
+  double weight_intersection = 1.0; ///< of Eq. (4), lengths in mm
+  double weight_bending = 0.3;      ///< of Eq. (5), angles in rad
+  double weak_pressure = 0.01;      ///< points below this share of the frame's maximum are not clustered
+  int lloyd_iterations = 100;       ///< at most
+  int refine_iterations = 200;      ///< gradient steps at most
+  int seed = 1;                     ///< of the clustering
+
+  void visit(SettingsVisitor& v);
+};
+
+enum class PlanStatus : std::uint8_t {
+  Planned,       ///< `plan` holds 1..paths paths
+  EmptyTarget,   ///< no skin, or no pressure on it: `plan` holds no path
+  InvalidTarget  ///< a value is not finite or negative, or the raster exceeds the capacity: `plan` holds no path
+};
+
+/// What a call did and how long each stage of Table I took.
+struct PlanStats {
+  double init = 0, kmeans = 0, tour = 0, split = 0, resample = 0, refine = 0, total = 0;  ///< [s]
+  int clusters = 0, lloyd_iterations = 0, refine_iterations = 0, cost_evaluations = 0;
+  int leaves = 0;              ///< paths after splitting, before the heaviest are kept
+  double cost = 0;             ///< of Eqs. (2)–(5) after refinement
+  int long_paths = 0;          ///< paths longer than L + 0.5 mm
+  int crossings = 0;           ///< pairs of segments that cross, within and between paths
+};
+
+/// The intermediate results of the paper's Fig. 2, for figures.
+struct PlanTrace {
+  std::vector<Vec2> clusters;                  ///< (b) centroids [m]
+  std::vector<double> cluster_mass;            ///< Σ p* of each
+  std::vector<int> tour;                       ///< (c) the closed tour, indices of clusters
+  std::vector<std::vector<int>> split;         ///< (d) the kept tours, indices of clusters
+};
+
+/// Plans the paths of one target. Deterministic: the same settings and target give the same plan to the bit.
+class Planner {
+ public:
+  /// @param max_cells the largest raster that plan() will be given.
+  /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
+  Planner(const PlanSettings& settings, std::size_t max_cells);
+  ~Planner();
+  Planner(Planner&&) noexcept;
+  Planner& operator=(Planner&&) noexcept;
+
+  const PlanSettings& settings() const;
+
+  /// Paths for one patch; they are appended to nothing: `plan` is overwritten. Allocates and throws nothing (with a
+  /// trace it does allocate). Leaves `plan` valid in every case.
+  PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats, PlanTrace* trace = nullptr) noexcept;
+
+  /// Paths for every patch of a frame: settings.paths are shared out in proportion to Σ p*, at least one to each patch that
+  /// has pressure, and no path spans two patches. Stage times and counts are summed over patches.
+  PlanStatus plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept;
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace prostm

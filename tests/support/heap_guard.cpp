@@ -1,0 +1,32 @@
+#include "support/heap_guard.hpp"
+
+#include <cstdlib>
+#include <new>
+
+namespace {
+thread_local std::size_t allocation_count = 0;
+}
+
+// operator new[] and the nothrow forms call this one by default; the aligned forms are counted too
+void* operator new(std::size_t size) {
+  ++allocation_count;
+  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t align) {
+  ++allocation_count;
+  const auto a = static_cast<std::size_t>(align);
+  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace prostm::test {
+
+HeapGuard::HeapGuard() : start_(allocation_count) {}
+std::size_t HeapGuard::allocations() const { return allocation_count - start_; }
+
+}  // namespace prostm::test
