@@ -1,0 +1,60 @@
+#pragma once
+/// Runs a pipeline for a while, in steps or on threads, and tells how it went.
+
+#include <cstdint>
+#include <stop_token>
+
+#include "core/distribution.hpp"
+#include "pipeline/pipeline.hpp"
+
+namespace prostm {
+
+enum class RunMode : std::uint8_t {
+  RealTime,  ///< fluid, planner and device on threads, paced by the clock; what cannot be kept up
+             ///< with is skipped and counted
+  AsFastAsPossible,  ///< fluid and planner on threads without a clock; nothing is dropped
+  Stepped  ///< Pipeline::step on the caller's thread; the same plans as AsFastAsPossible, to the
+           ///< bit
+};
+
+struct RunOptions {
+  double seconds = 60.0;  ///< of run time
+  RunMode mode = RunMode::RealTime;
+};
+
+/// Sees every plan update on the thread that called run(). Slow observers delay nothing in real
+/// time: what they miss is counted in RunSummary::unobserved.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  /// @return false to stop the run.
+  virtual bool on_plan(const ContactFrame& contact, const PlanFrame& plan) = 0;
+  /// Now and then, with the run time so far [s]. @return false to stop the run.
+  virtual bool on_progress(double time) = 0;
+};
+
+/// The numbers of a run; times in seconds, lengths in metres.
+struct RunSummary {
+  double seconds = 0;    ///< of run time, shorter than asked when stopped
+  bool stopped = false;  ///< by the observer
+  std::int64_t fluid_steps = 0, skipped_fluid_steps = 0, plans = 0, empty_updates = 0,
+               skipped_updates = 0;
+  std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
+  std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
+  std::int64_t joints_outside = 0;             ///< joint-updates outside the fluid's box
+  DeviceStats device;
+  EmitStats emit;
+  double max_path_length = 0, max_skin_length = 0;
+  double mean_divergence = 0;  ///< FluidStats::divergence_rms over the steps
+  std::int64_t fluid_resets = 0;
+  double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
+  Summary latency, redraw;
+  Summary track, hand, fluid, contact, plan, lift;  ///< of the stages
+};
+
+/// Runs `pipeline` from its beginning. @pre not run or stepped before;
+/// settings.simulated_array.realtime as the mode asks.
+RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
+               RunObserver& observer);
+
+}  // namespace prostm

@@ -1,0 +1,27 @@
+#include "pipeline/settings.hpp"
+
+namespace prostm {
+
+void PipelineSettings::visit(SettingsVisitor& v) {
+  v.field("scene", scene);
+  v.field("tracker", tracker);
+  v.field("fluid_rate", fluid_rate);
+  v.field("fluid_steps_per_plan", fluid_steps_per_plan);
+  v.field("side_view", side_view);
+  v.field("threads", threads);
+}
+
+std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(
+    PipelineSettings& settings) {
+  const auto group = [](auto& stage) { return [&stage](SettingsVisitor& v) { stage.visit(v); }; };
+  return {{"pipeline", group(settings)},
+          {"track", group(settings.track)},
+          {"scripted_hand", group(settings.scripted_hand)},
+          {"fluid", group(settings.fluid)},
+          {"contact", group(settings.contact)},
+          {"plan", group(settings.plan)},
+          {"emit", group(settings.emit)},
+          {"simulated_array", group(settings.simulated_array)}};
+}
+
+}  // namespace prostm

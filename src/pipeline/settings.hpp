@@ -1,0 +1,43 @@
+#pragma once
+/// The settings of every stage, in one place.
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "contact/skin_contact.hpp"
+#include "core/settings.hpp"
+#include "device/simulated_array.hpp"
+#include "emit/path_emitter.hpp"
+#include "fluid/fluid.hpp"
+#include "plan/planner.hpp"
+#include "track/hand_source.hpp"
+
+namespace prostm {
+
+struct PipelineSettings {
+  std::string scene = "one-plume";  ///< see scene_from_name
+  std::string tracker = "centre";   ///< pose of the tracker: "centre", or "ultraleap-kit"
+  double fluid_rate = 50.0;         ///< fluid steps a second [Hz]
+  int fluid_steps_per_plan = 2;     ///< a plan every so many fluid steps: 25 Hz
+  bool side_view = false;  ///< keep a picture of the box from the side with every plan update
+  int threads = 2;         ///< of the fluid, the stepping thread included
+
+  TrackSettings track;
+  ScriptedHandSettings scripted_hand;
+  FluidSettings fluid;
+  ContactSettings contact;
+  PlanSettings plan;
+  EmitSettings emit;
+  SimulatedArraySettings simulated_array;
+
+  /// The fields of this struct that belong to no stage.
+  void visit(SettingsVisitor& v);
+};
+
+/// Every stage's settings under its name in files: "pipeline", "track", "scripted_hand", "fluid", …
+std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(
+    PipelineSettings& settings);
+
+}  // namespace prostm
