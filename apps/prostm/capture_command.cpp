@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include "common.hpp"
+#include "core/input_error.hpp"
+#include "io/recorder.hpp"
+#include "pipeline/runner.hpp"
+
+namespace prostm::app {
+namespace {
+
+/// Records updates that have pressure until there are enough.
+class Capture final : public RunObserver {
+ public:
+  Capture(Recorder& recorder, int frames) : recorder_(recorder), frames_(frames) {}
+
+  bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
+    if (plan.status == PlanStatus::Planned && taken_ < frames_) {
+      recorder_.append(contact.target, contact.hands, &plan.plan, &plan.stats);
+      ++taken_;
+    }
+    return taken_ < frames_ && !interrupt_.requested();
+  }
+  bool on_progress(double) override {
+    progress_.show(taken_, frames_, "frames");
+    return taken_ < frames_ && !interrupt_.requested();
+  }
+  int taken() const { return taken_; }
+  bool interrupted() const { return interrupt_.requested(); }
+
+ private:
+  Recorder& recorder_;
+  int frames_, taken_ = 0;
+  Interrupt interrupt_;
+  Progress progress_{"capturing"};
+};
+
+}  // namespace
+
+int capture_command(const CaptureOptionsGiven& given) {
+  if (given.frames < 1 || given.frames > 1'000'000) {
+    throw InputError(fmt::format("--frames {} must be between 1 and 1000000", given.frames));
+  }
+  PipelineSettings settings = make_settings(given.common, given.scene);
+  settings.simulated_array.realtime = false;
+  double duration = 0.0;
+  Pipeline pipeline(settings, make_hands(given.hand, settings, duration));
+  Recorder recorder(given.out, settings_json(settings));
+  recorder.set_attribute("scene", settings.scene);
+  recorder.set_attribute("hand", given.hand);
+
+  // a hand is away for part of its time; one that never meets the smoke must not capture for ever
+  RunOptions options;
+  options.mode = RunMode::AsFastAsPossible;
+  options.seconds =
+      120.0 + 10.0 * given.frames * settings.fluid_steps_per_plan / settings.fluid_rate;
+  Capture capture(recorder, given.frames);
+  run(pipeline, settings, options, capture);
+  recorder.close();
+  fmt::print(prose(given.common.json), "{}: {} fields of {}\n", given.out, capture.taken(),
+             settings.scene);
+  write_json(given.common.json,
+             {{"file", given.out}, {"scene", settings.scene}, {"frames", capture.taken()}});
+  if (capture.interrupted()) return kInterrupted;
+  if (capture.taken() < given.frames) {
+    throw InputError(
+        fmt::format("only {} of {} fields had pressure in {:.0f} s of {}; is the hand in the box?",
+                    capture.taken(), given.frames, options.seconds, given.hand));
+  }
+  return 0;
+}
+
+}  // namespace prostm::app

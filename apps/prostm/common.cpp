@@ -1,0 +1,112 @@
+#include "common.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+
+#include "core/input_error.hpp"
+#include "io/file.hpp"
+#include "io/hand_file.hpp"
+
+namespace prostm::app {
+namespace {
+
+std::atomic<int> interrupts{0};  // set by the signal handler alone
+
+void on_signal(int) {
+  if (interrupts.fetch_add(1) > 0) _exit(kInterrupted);
+}
+
+std::vector<SettingsGroup> groups_of(PipelineSettings& settings) {
+  std::vector<SettingsGroup> groups;
+  for (auto& [name, visit] : settings_groups(settings)) groups.push_back({name, visit});
+  return groups;
+}
+
+}  // namespace
+
+PipelineSettings make_settings(const CommonOptions& options,
+                               const std::optional<std::string>& scene) {
+  PipelineSettings settings;
+  if (!options.settings_file.empty()) read_settings(options.settings_file, groups_of(settings));
+  if (scene) settings.scene = *scene;
+  if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
+  if (options.preset) settings.plan.preset = *options.preset;
+  if (options.paths) settings.plan.paths = settings.emit.foci = *options.paths;
+  if (options.grid) settings.fluid.cells = *options.grid;
+  return settings;
+}
+
+std::string settings_json(PipelineSettings settings) {
+  return settings_to_json(groups_of(settings));
+}
+
+std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
+                                       double& duration) {
+  if (name == "scripted") {
+    duration = std::numeric_limits<double>::infinity();
+    return make_scripted_hand(settings.scripted_hand, settings.track);
+  }
+  if (name == "openxr" || name.rfind("leap://", 0) == 0) {
+    throw InputError("--hand " + name +
+                     " is not built yet in this version; give a recording or scripted");
+  }
+  auto hands = make_recorded_hand(read_hand_recording(name), settings.track, true,
+                                  1.0 / settings.fluid_rate);
+  duration = hands->duration();
+  return hands;
+}
+
+Interrupt::Interrupt() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+bool Interrupt::requested() const {
+  return interrupts.load() > 0;
+}
+
+void Progress::show(double done, double all, const char* unit) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  const double t =
+      std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  if (t - last_ < 0.2) return;
+  last_ = t;
+  shown_ = true;
+  fmt::print(stderr, "\r{}  {:.0f} of {:.0f} {} ", what_, done, all, unit);
+  std::fflush(stderr);
+}
+
+Progress::~Progress() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+}
+
+std::FILE* prose(const std::string& json_option) {
+  return json_option == "-" ? stderr : stdout;
+}
+
+void write_json(const std::string& json_option, const nlohmann::ordered_json& value) {
+  if (!json_option.empty()) write_file(json_option, value.dump(1) + "\n");
+}
+
+nlohmann::ordered_json to_json(const Summary& s, double unit) {
+  if (s.n == 0)
+    return {{"n", 0}, {"mean", nullptr}, {"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
+  return {{"n", s.n},
+          {"mean", s.mean * unit},
+          {"p50", s.p50 * unit},
+          {"p99", s.p99 * unit},
+          {"max", s.max * unit}};
+}
+
+nlohmann::ordered_json to_json(const Metrics& m) {
+  return {{"rmse", m.rmse},       {"correlation", m.correlation}, {"coverage", m.coverage},
+          {"skill_0", m.skill_0}, {"skill_8", m.skill_8},         {"overlap", m.overlap},
+          {"spill", m.spill}};
+}
+
+}  // namespace prostm::app

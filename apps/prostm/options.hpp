@@ -1,0 +1,61 @@
+#pragma once
+/// What the command line asks for, one struct per command.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace prostm::app {
+
+/// Options of every command that runs a stage. An unset optional leaves what the settings file or
+/// the default says.
+struct CommonOptions {
+  std::string settings_file;
+  std::string json;  ///< file, "-" for standard output, empty for none
+  std::string figure;
+  std::optional<int> seed;
+  std::optional<std::string> preset;
+  std::optional<int> paths;
+  std::optional<int> grid;
+};
+
+struct RunOptionsGiven {
+  CommonOptions common;
+  std::optional<std::string> scene;
+  std::string hand = "scripted";
+  std::optional<double> seconds;
+  bool as_fast_as_possible = false, stepped = false;
+  std::string record;
+};
+
+struct PlanOptionsGiven {
+  CommonOptions common;
+  std::string field;
+  std::optional<double> cell_mm;
+  int frame = 0;
+  std::string beside;  ///< digitised figure to draw beside the panels
+};
+
+struct CaptureOptionsGiven {
+  CommonOptions common;
+  std::optional<std::string> scene;
+  std::string hand = "scripted";
+  int frames = 500;
+  std::string out;
+};
+
+struct BenchOptionsGiven {
+  CommonOptions common;
+  std::vector<std::string> files;
+  int repeats = 3;
+};
+
+/// Each returns the exit status of the program; bad input is thrown as InputError or
+/// std::invalid_argument.
+int run_command(const RunOptionsGiven& options);
+int plan_command(const PlanOptionsGiven& options);
+int capture_command(const CaptureOptionsGiven& options);
+int bench_command(const BenchOptionsGiven& options);
+int devices_command(const std::string& json);
+
+}  // namespace prostm::app

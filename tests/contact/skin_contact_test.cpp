@@ -1,0 +1,263 @@
+#include "contact/skin_contact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "support/heap_guard.hpp"
+#include "track/hand_source.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kStep = 0.02;
+
+/// A scripted hand in smoke, with everything that a target needs.
+struct Bench {
+  explicit Bench(const ScriptedHandSettings& hand, const std::string& scene = "one-plume",
+                 bool filter_on = true)
+      : filter(filter_settings(filter_on)),
+        source(make_scripted_hand(hand, TrackSettings{})),
+        fluid(FluidSettings{}, scene_from_name(scene), pool),
+        rasteriser(fluid.grid()),
+        contact(ContactSettings{}, fluid.grid()) {}
+
+  static TrackSettings filter_settings(bool on) {
+    TrackSettings s;
+    if (!on) s.filter_position = s.filter_velocity = 1.0;
+    return s;
+  }
+  void step() {
+    time += kStep;
+    source->sample(time, hands);
+    to_device(default_tracker_pose(), hands);
+    filter.apply(kStep, hands);
+    rasteriser.rasterise(hands, pool);
+    fluid.step(kStep, rasteriser.raster());
+  }
+  ContactStats extract() {
+    return contact.extract(fluid, rasteriser.raster(), hands, kStep, target);
+  }
+
+  WorkerPool pool{2};
+  HandFilter filter;
+  std::unique_ptr<HandSource> source;
+  Fluid fluid;
+  HandRasteriser rasteriser;
+  SkinContact contact;
+  HandFrame hands;
+  TargetFrame target;
+  double time = 0.0;
+};
+
+ScriptedHandSettings still_hand() {
+  ScriptedHandSettings hand;
+  hand.still = true;
+  return hand;
+}
+
+TEST(SkinContact, PointsLieOnTheSkinAndFaceTheArray) {
+  Bench bench(still_hand());
+  for (int i = 0; i < 20; ++i) bench.step();
+  const ContactStats stats = bench.extract();
+  ASSERT_EQ(bench.target.patches.size(), 1u);
+  const TargetField& patch = bench.target.patches[0];
+  validate(patch);
+  EXPECT_GT(stats.skin_cells, 200);
+  EXPECT_EQ(stats.joints_outside, 0);
+
+  const HandShape shape(bench.hands.hands[0]);
+  const double h = patch.cell;
+  int on_skin = 0;
+  for (int row = 0; row < patch.rows; ++row) {
+    for (int col = 0; col < patch.cols; ++col) {
+      const std::size_t c = patch.index(row, col);
+      if (patch.skin[c] == 0) continue;
+      const Vec2 x = patch.position(row, col);
+      const SurfacePoint skin = shape.query(patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]));
+      EXPECT_LT(std::abs(skin.distance), 0.5 * h);
+      on_skin += skin.normal.z() < 0.5 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(on_skin, 0.95 * stats.skin_cells);  // what the array sees is the underside
+}
+
+TEST(SkinContact, PlaneAxesFollowTheDevice) {
+  ScriptedHandSettings moving;
+  Bench bench(moving);
+  int patches = 0;
+  for (int i = 0; i < 1000; ++i) {
+    bench.step();
+    if (i % 10 != 0) continue;
+    bench.extract();
+    for (const TargetField& patch : bench.target.patches) {
+      const Eigen::Matrix3d R = patch.X_DP.linear();
+      EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+      EXPECT_GE(R(2, 2), 0.25);  // the normal points out of the array
+      EXPECT_NEAR(R(1, 0), -R(0, 2) * R(1, 2) / std::sqrt(1.0 - R(0, 2) * R(0, 2)),
+                  1e-12);  // x is D's x, projected
+      const Vec3 to_origin = patch.X_DP.translation() - bench.fluid.grid().p_DF;
+      EXPECT_LT(to_origin.cross(R.col(2)).norm(), 1e-9);  // the foot of F's origin
+      ++patches;
+    }
+  }
+  EXPECT_GT(patches, 50);
+}
+
+TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
+  Bench bench(still_hand());
+  for (int i = 0; i < 150; ++i) bench.step();
+  bench.extract();
+  const TargetField& patch = bench.target.patches.at(0);
+  const GridShape& grid = bench.fluid.grid();
+  const auto pressure = bench.fluid.pressure();
+  const auto free = bench.fluid.fluid_cells();
+  EXPECT_GT(max_pressure(patch), 0.0);
+  for (int row = 0; row < patch.rows; ++row) {
+    for (int col = 0; col < patch.cols; ++col) {
+      const std::size_t c = patch.index(row, col);
+      if (patch.skin[c] == 0) {
+        EXPECT_EQ(patch.pressure[c], 0.0);
+        continue;
+      }
+      // a clamped weighted mean of the eight cells around the reading point lies between their
+      // extremes
+      const Vec2 x = patch.position(row, col);
+      const Vec3 p = patch.X_DP * Vec3(x.x(), x.y(), patch.height[c] - grid.cell);
+      const Vec3 q = (p - grid.p_DF) / grid.cell - Vec3::Constant(0.5);
+      double low = 1e9, high = -1e9;
+      for (int corner = 0; corner < 8; ++corner) {
+        const int i = static_cast<int>(std::floor(q.x())) + (corner & 1),
+                  j = static_cast<int>(std::floor(q.y())) + (corner >> 1 & 1),
+                  k = static_cast<int>(std::floor(q.z())) + (corner >> 2);
+        const std::size_t cell = grid.cell_index(i, j, k);
+        if (free[cell] == 0) continue;
+        low = std::min(low, static_cast<double>(pressure[cell]));
+        high = std::max(high, static_cast<double>(pressure[cell]));
+      }
+      if (high < low) continue;
+      EXPECT_GE(patch.pressure[c], std::max(low, 0.0) - 1e-9);
+      EXPECT_LE(patch.pressure[c], std::max(high, 0.0) + 1e-9);
+    }
+  }
+}
+
+TEST(SkinContact, TwoHandsAreTwoPatches) {
+  Bench bench(still_hand());
+  bench.source->sample(kStep, bench.hands);
+  to_device(default_tracker_pose(), bench.hands);
+  Hand left = bench.hands.hands[0], right = left;
+  left.id = 1;
+  right.id = 2;
+  for (int j = 0; j < kJointCount; ++j) {
+    left.position[static_cast<std::size_t>(j)] += Vec3(-0.07, 0, 0);
+    right.position[static_cast<std::size_t>(j)] += Vec3(0.07, 0, 0.02);
+  }
+  bench.hands.hands.clear();
+  bench.hands.hands.push_back(left);
+  bench.hands.hands.push_back(right);
+  bench.rasteriser.rasterise(bench.hands, bench.pool);
+  bench.fluid.step(kStep, bench.rasteriser.raster());
+  bench.extract();
+  ASSERT_EQ(bench.target.patches.size(), 2u);
+  const HandShape shapes[2] = {HandShape(left), HandShape(right)};
+  for (int hand = 0; hand < 2; ++hand) {
+    const TargetField& patch = bench.target.patches[static_cast<std::size_t>(hand)];
+    for (int row = 0; row < patch.rows; ++row) {
+      for (int col = 0; col < patch.cols; ++col) {
+        const std::size_t c = patch.index(row, col);
+        if (patch.skin[c] == 0) continue;
+        const Vec2 x = patch.position(row, col);
+        const Vec3 p = patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]);
+        EXPECT_LE(shapes[hand].distance(p), shapes[1 - hand].distance(p) + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(SkinContact, AHandOutsideTheBoxHasNoTargetAndIsCounted) {
+  Bench bench(still_hand());
+  bench.source->sample(kStep, bench.hands);
+  to_device(default_tracker_pose(), bench.hands);
+  for (Vec3& p : bench.hands.hands[0].position) p += Vec3(0.6, 0, 0);
+  bench.rasteriser.rasterise(bench.hands, bench.pool);
+  bench.fluid.step(kStep, bench.rasteriser.raster());
+  const ContactStats stats = bench.extract();
+  EXPECT_TRUE(bench.target.patches.empty());
+  EXPECT_EQ(stats.joints_outside, static_cast<int>(kJointCount));
+}
+
+TEST(SkinContact, NoHandNoPatch) {
+  Bench bench(still_hand());
+  bench.hands.hands.clear();
+  bench.rasteriser.rasterise(bench.hands, bench.pool);
+  bench.fluid.step(kStep, bench.rasteriser.raster());
+  EXPECT_EQ(bench.extract().skin_cells, 0);
+  EXPECT_TRUE(bench.target.patches.empty());
+}
+
+/// rms change of the target from one 25 Hz update to the next, over its rms, for a hand that is
+/// held still.
+double flicker(double jitter, bool filter_on) {
+  ScriptedHandSettings hand = still_hand();
+  hand.jitter = jitter;
+  Bench bench(hand, "one-plume", filter_on);
+  std::vector<double> last;
+  double change = 0.0, power = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    bench.step();
+    if (i < 150 || i % 2 != 0) continue;
+    bench.extract();
+    const TargetField& patch = bench.target.patches.at(0);
+    // compare on the columns of the device, which do not move with the plane
+    std::vector<double> now(64 * 64, 0.0);
+    for (int row = 0; row < patch.rows; ++row) {
+      for (int col = 0; col < patch.cols; ++col) {
+        const std::size_t c = patch.index(row, col);
+        const Vec2 x = patch.position(row, col);
+        const Vec3 q =
+            (patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]) - bench.fluid.grid().p_DF) /
+            bench.fluid.grid().cell;
+        if (patch.skin[c] == 0 || q.x() < 0 || q.y() < 0 || q.x() >= 64 || q.y() >= 64) continue;
+        now[static_cast<std::size_t>(q.y()) * 64 + static_cast<std::size_t>(q.x())] =
+            patch.pressure[c];
+      }
+    }
+    if (!last.empty()) {
+      for (std::size_t c = 0; c < now.size(); ++c) {
+        change += (now[c] - last[c]) * (now[c] - last[c]);
+        power += now[c] * now[c];
+      }
+    }
+    last = now;
+  }
+  return std::sqrt(change / power);
+}
+
+TEST(SkinContact, TrackerNoiseDoesNotShakeTheTarget) {
+  const double filtered = flicker(0.3e-3, true), unfiltered = flicker(0.3e-3, false),
+               quiet = flicker(0.0, true);
+  RecordProperty("filtered_percent", static_cast<int>(100 * filtered));
+  RecordProperty("unfiltered_percent", static_cast<int>(100 * unfiltered));
+  RecordProperty("no_noise_percent", static_cast<int>(100 * quiet));
+  std::printf(
+      "frame-to-frame change of the target, a still hand with 0.3 mm of noise: %.0f %% filtered, "
+      "%.0f %% unfiltered, %.0f %% without noise\n",
+      100 * filtered, 100 * unfiltered, 100 * quiet);
+  EXPECT_LE(filtered, 0.30);
+  EXPECT_GT(unfiltered, 2.0 * filtered);  // the filter is what does it
+}
+
+TEST(SkinContact, RejectsBadSettings) {
+  const GridShape grid{32, 32, 32, 0.01, Vec3::Zero()};
+  ContactSettings s;
+  s.offset_cells = 0.0;
+  EXPECT_THROW(SkinContact(s, grid), std::invalid_argument);
+  s = {};
+  s.time_constant = -1.0;
+  EXPECT_THROW(SkinContact(s, grid), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace prostm

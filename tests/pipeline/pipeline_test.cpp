@@ -1,0 +1,196 @@
+#include "pipeline/pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "pipeline/runner.hpp"
+
+namespace prostm {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr double kSeconds = 2.0;
+#else
+constexpr double kSeconds = 8.0;
+#endif
+
+PipelineSettings small_settings(bool realtime) {
+  PipelineSettings s;
+  s.fluid.cells = 32;
+  s.scripted_hand.period = 6.0;
+  s.simulated_array.realtime = realtime;
+  s.simulated_array.history = 10.0;
+  return s;
+}
+
+std::unique_ptr<HandSource> scripted(const PipelineSettings& s) {
+  return make_scripted_hand(s.scripted_hand, s.track);
+}
+
+/// A source that never has a hand.
+class NoHand final : public HandSource {
+ public:
+  void sample(double time, HandFrame& out) override {
+    out.time = time;
+    out.hands.clear();
+  }
+  double duration() const override { return std::numeric_limits<double>::infinity(); }
+};
+
+/// Keeps every plan that it sees.
+class Keeper final : public RunObserver {
+ public:
+  explicit Keeper(int stop_after = 1 << 30) : stop_after_(stop_after) {}
+  bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
+    steps.push_back(contact.step);
+    plans.push_back(plan.plan);
+    return static_cast<int>(plans.size()) < stop_after_;
+  }
+  bool on_progress(double) override { return static_cast<int>(plans.size()) < stop_after_; }
+  std::vector<std::int64_t> steps;
+  std::vector<Plan> plans;
+
+ private:
+  int stop_after_;
+};
+
+void expect_same(const Plan& a, const Plan& b) {
+  ASSERT_EQ(a.paths.size(), b.paths.size());
+  for (std::size_t i = 0; i < a.paths.size(); ++i) {
+    ASSERT_EQ(a.paths[i].points.size(), b.paths[i].points.size());
+    for (std::size_t k = 0; k < a.paths[i].points.size(); ++k) {
+      ASSERT_EQ(a.paths[i].points[k], b.paths[i].points[k]);
+      ASSERT_EQ(a.paths[i].pressure[k], b.paths[i].pressure[k]);
+    }
+  }
+}
+
+Keeper run_keeping(RunMode mode, RunSummary& summary, std::vector<FocusSample>& played) {
+  const PipelineSettings settings = small_settings(false);
+  Pipeline pipeline(settings, scripted(settings));
+  Keeper keeper;
+  summary = run(pipeline, settings, {kSeconds, mode}, keeper);
+  const std::int64_t n = pipeline.device().samples();
+  played = pipeline.device().read_back(0, n);
+  return keeper;
+}
+
+TEST(Pipeline, ThreadedRunEqualsSteppedRunToTheBit) {
+  RunSummary stepped, threaded;
+  std::vector<FocusSample> a, b;
+  const Keeper first = run_keeping(RunMode::Stepped, stepped, a);
+  const Keeper second = run_keeping(RunMode::AsFastAsPossible, threaded, b);
+  ASSERT_EQ(first.plans.size(), second.plans.size());
+  EXPECT_EQ(first.steps, second.steps);
+  for (std::size_t k = 0; k < first.steps.size(); ++k)
+    EXPECT_EQ(first.steps[k], 2 * static_cast<std::int64_t>(k + 1));
+  for (std::size_t k = 0; k < first.plans.size(); ++k) expect_same(first.plans[k], second.plans[k]);
+  EXPECT_GT(stepped.plans, 10);
+  EXPECT_EQ(stepped.device.blocks, threaded.device.blocks);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].p_D, b[i].p_D);
+    ASSERT_EQ(a[i].intensity, b[i].intensity);
+  }
+}
+
+TEST(Pipeline, TwoInOneProcessDoNotDisturbEachOther) {
+  const PipelineSettings settings = small_settings(false);
+  Pipeline alone(settings, scripted(settings)), first(settings, scripted(settings)),
+      second(settings, scripted(settings));
+  for (int i = 0; i < 120; ++i) {
+    alone.step(0.02);
+  }
+  for (int i = 0; i < 120; ++i) {
+    first.step(0.02);
+    second.step(0.02);
+  }
+  expect_same(alone.plan().plan, first.plan().plan);
+  expect_same(first.plan().plan, second.plan().plan);
+}
+
+TEST(Pipeline, WithoutAHandNothingIsPlayed) {
+  const PipelineSettings settings = small_settings(false);
+  Pipeline pipeline(settings, std::make_unique<NoHand>());
+  for (int i = 0; i < 100; ++i) pipeline.step(0.02);
+  EXPECT_EQ(pipeline.plan().status, PlanStatus::EmptyTarget);
+  EXPECT_EQ(pipeline.device().stats().blocks, 2000);
+  for (const FocusSample& s : pipeline.device().read_back(0, pipeline.device().samples()))
+    EXPECT_EQ(s.intensity, 0.0F);
+}
+
+TEST(Pipeline, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
+  const PipelineSettings settings = small_settings(false);
+  Pipeline pipeline(settings, scripted(settings));
+  bool sounded = false, left = false;
+  double silent_since = 0.0;
+  std::int64_t seen = 0;
+  while (pipeline.time() < 7.0) {
+    pipeline.step(0.02);
+    const bool hand = !pipeline.contact().hands.hands.empty();
+    const std::int64_t n = pipeline.device().samples();
+    float loudest = 0.0F;
+    for (const FocusSample& s : pipeline.device().read_back(seen, n - seen)) {
+      loudest = std::max(loudest, s.intensity);
+      if (s.intensity <= 0.01F || !hand) continue;
+      // on or near the hand: within two cells of its bounds
+      const HandShape shape(pipeline.contact().hands.hands[0]);
+      const Vec3 p = s.p_D.cast<double>();
+      const double margin = 2.0 * pipeline.smoke().fluid().grid().cell + 0.02;
+      EXPECT_TRUE((p.array() > shape.lower().array() - margin).all() &&
+                  (p.array() < shape.upper().array() + margin).all());
+    }
+    seen = n;
+    sounded = sounded || loudest > 0.1F;
+    silent_since = hand ? 0.0 : silent_since + 0.02;
+    if (silent_since > 0.12) {  // one plan update, then at most 50 ms of fade
+      left = left || sounded;
+      EXPECT_EQ(loudest, 0.0F);
+    }
+  }
+  EXPECT_TRUE(sounded);
+  EXPECT_TRUE(left);
+}
+
+TEST(Pipeline, StopsWhenTheObserverSaysSo) {
+  for (const RunMode mode : {RunMode::Stepped, RunMode::AsFastAsPossible}) {
+    const PipelineSettings settings = small_settings(false);
+    Pipeline pipeline(settings, scripted(settings));
+    Keeper keeper(5);
+    const RunSummary summary = run(pipeline, settings, {60.0, mode}, keeper);
+    EXPECT_TRUE(summary.stopped);
+    EXPECT_LT(summary.seconds, 20.0);
+  }
+}
+
+TEST(Pipeline, RealTimeRunAccountsForEveryStep) {
+  const PipelineSettings settings = small_settings(true);
+  Pipeline pipeline(settings, scripted(settings));
+  Keeper keeper;
+  const RunSummary s = run(pipeline, settings, {1.0, RunMode::RealTime}, keeper);
+  EXPECT_EQ(s.fluid_steps + s.skipped_fluid_steps, 50);
+  EXPECT_EQ(s.plans + s.empty_updates + s.skipped_updates, s.fluid_steps / 2);
+  EXPECT_GE(s.device.blocks + s.device.missed_blocks, 900);
+  EXPECT_LE(s.device.queue_blocks, 10);
+  EXPECT_FALSE(s.stopped);
+}
+
+TEST(Pipeline, RejectsBadSettings) {
+  PipelineSettings s = small_settings(false);
+  s.scene = "five-plumes";
+  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
+  s = small_settings(false);
+  s.tracker = "ceiling";
+  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
+  s = small_settings(false);
+  s.fluid_rate = 0.0;
+  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
+  s = small_settings(false);
+  s.fluid_steps_per_plan = 0;
+  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace prostm
