@@ -8,18 +8,18 @@ namespace prostm {
 
 struct Summary {
   std::size_t n = 0;
-  double mean = 0.0, deviation = 0.0;       ///< standard deviation of the population
-  double p50 = 0.0, p99 = 0.0, max = 0.0;   ///< quantiles by the nearest-rank rule
+  double mean = 0.0, deviation = 0.0;      ///< standard deviation of the population
+  double p50 = 0.0, p99 = 0.0, max = 0.0;  ///< quantiles by the nearest-rank rule
 };
 
-/// Collects values; add() never allocates. When more values come than there is room for, every second one kept so far
-/// is dropped and from then on every second one is kept (and so on): quantiles stay those of an even sample in time,
-/// n, mean, deviation and max stay exact.
+/// Collects values; add() never allocates. When more values come than there is room for, every
+/// second one kept so far is dropped and from then on every second one is kept (and so on):
+/// quantiles stay those of an even sample in time, n, mean, deviation and max stay exact.
 class Distribution {
  public:
   explicit Distribution(std::size_t capacity = 1 << 16);
   void add(double value) noexcept;
-  Summary summary() const;                  ///< all zeros when empty
+  Summary summary() const;  ///< all zeros when empty
   std::size_t count() const { return count_; }
 
  private:

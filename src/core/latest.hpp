@@ -1,5 +1,6 @@
 #pragma once
-/// Latest<T>: one writer, one reader, the newest value wins. Wait-free on both sides, never allocates after construction.
+/// Latest<T>: one writer, one reader, the newest value wins. Wait-free on both sides, never
+/// allocates after construction.
 
 #include <array>
 #include <atomic>
@@ -7,8 +8,9 @@
 
 namespace prostm {
 
-/// Three slots rotate: the writer owns one, the reader owns one, and the third waits in `middle_` with a flag that
-/// says whether it is newer than the reader's. A value skipped by the reader is simply overwritten.
+/// Three slots rotate: the writer owns one, the reader owns one, and the third waits in `middle_`
+/// with a flag that says whether it is newer than the reader's. A value skipped by the reader is
+/// simply overwritten.
 template <class T>
 class Latest {
  public:
@@ -17,11 +19,13 @@ class Latest {
   Latest(const Latest&) = delete;
   Latest& operator=(const Latest&) = delete;
 
-  /// Writer's slot: fill it, then publish(). Keeps whatever an earlier round left in it. Writer's thread only.
+  /// Writer's slot: fill it, then publish(). Keeps whatever an earlier round left in it. Writer's
+  /// thread only.
   T& draft() { return slots_[writer_]; }
   /// Makes the draft the newest value. Writer's thread only.
   void publish() {
-    const std::uint8_t old = middle_.exchange(static_cast<std::uint8_t>(writer_ | kFresh), std::memory_order_acq_rel);
+    const std::uint8_t old =
+        middle_.exchange(static_cast<std::uint8_t>(writer_ | kFresh), std::memory_order_acq_rel);
     writer_ = old & kIndex;
   }
   /// Takes the newest value if one came since the last call; true if so. Reader's thread only.

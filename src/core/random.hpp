@@ -1,5 +1,6 @@
 #pragma once
-/// Seeded random numbers that are the same on every platform (the distributions of <random> are not).
+/// Seeded random numbers that are the same on every platform (the distributions of <random> are
+/// not).
 
 #include <cmath>
 #include <cstdint>

@@ -1,8 +1,9 @@
 #pragma once
 /// How a stage's settings are listed once, and read, written and documented from that one list.
 ///
-/// Each `XxxSettings` has `void visit(SettingsVisitor&)`, which names its fields in order. Names in files are the
-/// names in C++, values are SI as in C++. `io` reads TOML and writes JSON through this interface alone.
+/// Each `XxxSettings` has `void visit(SettingsVisitor&)`, which names its fields in order. Names in
+/// files are the names in C++, values are SI as in C++. `io` reads TOML and writes JSON through
+/// this interface alone.
 
 #include <string>
 

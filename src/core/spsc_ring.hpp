@@ -1,5 +1,6 @@
 #pragma once
-/// SpscRing<T>: a bounded queue for one writer and one reader. Wait-free, never allocates after construction.
+/// SpscRing<T>: a bounded queue for one writer and one reader. Wait-free, never allocates after
+/// construction.
 
 #include <atomic>
 #include <cstddef>
@@ -13,7 +14,8 @@ class SpscRing {
  public:
   /// @param capacity values that fit, >= 1. @throws std::invalid_argument.
   explicit SpscRing(std::size_t capacity) : slots_(capacity + 1) {
-    if (capacity == 0) throw std::invalid_argument("the capacity of a ring is 0; it must be at least 1");
+    if (capacity == 0)
+      throw std::invalid_argument("the capacity of a ring is 0; it must be at least 1");
   }
   SpscRing(const SpscRing&) = delete;
   SpscRing& operator=(const SpscRing&) = delete;
@@ -28,13 +30,17 @@ class SpscRing {
     commit();
     return true;
   }
-  /// The slot that commit() would make visible, to be filled in place; nullptr when full. Writer's thread only.
+  /// The slot that commit() would make visible, to be filled in place; nullptr when full. Writer's
+  /// thread only.
   T* back() {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     return next(head) == tail_.load(std::memory_order_acquire) ? nullptr : &slots_[head];
   }
-  /// Makes the slot of back() visible to the reader. @pre back() was not nullptr. Writer's thread only.
-  void commit() { head_.store(next(head_.load(std::memory_order_relaxed)), std::memory_order_release); }
+  /// Makes the slot of back() visible to the reader. @pre back() was not nullptr. Writer's thread
+  /// only.
+  void commit() {
+    head_.store(next(head_.load(std::memory_order_relaxed)), std::memory_order_release);
+  }
 
   /// The oldest value, nullptr when empty. Reader's thread only.
   T* front() {
@@ -42,7 +48,9 @@ class SpscRing {
     return tail == head_.load(std::memory_order_acquire) ? nullptr : &slots_[tail];
   }
   /// Drops the oldest value. @pre front() was not nullptr. Reader's thread only.
-  void pop() { tail_.store(next(tail_.load(std::memory_order_relaxed)), std::memory_order_release); }
+  void pop() {
+    tail_.store(next(tail_.load(std::memory_order_relaxed)), std::memory_order_release);
+  }
   /// Copies the oldest value out and drops it; false when empty. Reader's thread only.
   bool pop(T& out) {
     T* slot = front();

@@ -49,7 +49,8 @@ void WorkerPool::run_erased(int n, Call call, void* context) {
   call_.store(call, std::memory_order_relaxed);
   context_.store(context, std::memory_order_relaxed);
   pending_.store(n, std::memory_order_relaxed);
-  ticket_.store(region << kRegionShift | static_cast<std::uint64_t>(n) << kSizeShift, std::memory_order_release);
+  ticket_.store(region << kRegionShift | static_cast<std::uint64_t>(n) << kSizeShift,
+                std::memory_order_release);
   {
     const std::lock_guard lock(mutex_);
     region_.store(region, std::memory_order_release);
@@ -59,9 +60,10 @@ void WorkerPool::run_erased(int n, Call call, void* context) {
   drain(region);
 
   // wait for what the workers took; they are running, so this is short unless one lost its core
-  for (int spins = 0; pending_.load(std::memory_order_acquire) != 0; ++spins) {
+  for (int spins = 0; pending_.load(std::memory_order_acquire) != 0;) {
     if (spins < kSpins) {
       relax();
+      ++spins;
     } else {
       std::this_thread::yield();
     }
@@ -85,7 +87,8 @@ void WorkerPool::drain(std::uint64_t region) {
 void WorkerPool::work(std::stop_token stop) {
   std::uint64_t seen = 0;
   while (!stop.stop_requested()) {
-    for (int spins = 0; spins < kSpins && region_.load(std::memory_order_acquire) == seen; ++spins) relax();
+    for (int spins = 0; spins < kSpins && region_.load(std::memory_order_acquire) == seen; ++spins)
+      relax();
     if (region_.load(std::memory_order_acquire) == seen) {
       std::unique_lock lock(mutex_);
       wake_.wait(lock, stop, [&] { return region_.load(std::memory_order_acquire) != seen; });

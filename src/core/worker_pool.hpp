@@ -11,15 +11,18 @@
 
 namespace prostm {
 
-/// `run(n, f)` calls f(0) … f(n−1), each once, on the caller and `threads − 1` workers, and returns when all are done.
-/// Which thread runs which index is not fixed, so f must write to places that depend on the index alone; then results
-/// do not depend on the number of threads. One region at a time, from one thread; regions do not nest.
+/// `run(n, f)` calls f(0) … f(n−1), each once, on the caller and `threads − 1` workers, and returns
+/// when all are done. Which thread runs which index is not fixed, so f must write to places that
+/// depend on the index alone; then results do not depend on the number of threads. One region at a
+/// time, from one thread; regions do not nest.
 ///
-/// A worker spins for a bounded time after a region (the next one usually follows at once), then sleeps: a machine
-/// with more runnable threads than cores never waits for a spinning one longer than that bound.
+/// A worker spins for a bounded time after a region (the next one usually follows at once), then
+/// sleeps: a machine with more runnable threads than cores never waits for a spinning one longer
+/// than that bound.
 class WorkerPool {
  public:
-  /// @param threads in all, the caller included; 1 runs everything on the caller. @throws std::invalid_argument if < 1.
+  /// @param threads in all, the caller included; 1 runs everything on the caller. @throws
+  /// std::invalid_argument if < 1.
   explicit WorkerPool(int threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -31,8 +34,9 @@ class WorkerPool {
   template <class F>
   void run(int n, F&& f) {
     using Function = std::remove_reference_t<F>;
-    run_erased(n, [](void* context, int i) { (*static_cast<Function*>(context))(i); },
-               const_cast<void*>(static_cast<const void*>(&f)));
+    run_erased(
+        n, [](void* context, int i) { (*static_cast<Function*>(context))(i); },
+        const_cast<void*>(static_cast<const void*>(&f)));
   }
 
  private:
@@ -41,10 +45,11 @@ class WorkerPool {
   void work(std::stop_token stop);
   void drain(std::uint64_t region);
 
-  // A region's indices are handed out from one word: region number (24 bits), size (20), next index (20). A worker that
-  // wakes late compares the whole word, so it can never take an index of another region.
+  // A region's indices are handed out from one word: region number (24 bits), size (20), next index
+  // (20). A worker that wakes late compares the whole word, so it can never take an index of
+  // another region.
   std::atomic<std::uint64_t> ticket_{0};
-  std::atomic<int> pending_{0};          // indices of this region not yet finished
+  std::atomic<int> pending_{0};  // indices of this region not yet finished
   std::atomic<Call> call_{nullptr};
   std::atomic<void*> context_{nullptr};
   std::atomic<std::uint64_t> region_{0};

@@ -1,0 +1,59 @@
+"""What every test of the command line uses: the program, a way to run it, and markers."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def pytest_configure(config):
+    config.addinivalue_line(
+        "markers", "realtime: needs the speed of a release build; left out under sanitizers")
+
+
+@pytest.fixture(scope="session")
+def program():
+    """The path of the program under test, from the environment variable PROSTM."""
+    path = Path(os.environ.get("PROSTM", ROOT / "build" / "release" / "prostm"))
+    assert path.is_file(), f"PROSTM names no program: {path}"
+    return path
+
+
+@pytest.fixture
+def prostm(program, tmp_path):
+    """Runs `prostm ARGUMENTS…` in an empty folder; gives its exit status, stdout and stderr as text."""
+
+    def run(*arguments, status=0, timeout=300):
+        result = subprocess.run([str(program), *map(str, arguments)], cwd=tmp_path, text=True,
+                                stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout)
+        assert result.returncode == status, f"exit {result.returncode}\n{result.stdout}\n{result.stderr}"
+        return result
+
+    return run
+
+
+@pytest.fixture
+def refuses(prostm):
+    """Checks that `prostm ARGUMENTS…` exits 2 with one sentence on stderr that holds every one of `words`."""
+
+    def check(*arguments, words=()):
+        result = prostm(*arguments, status=2)
+        assert result.stdout == ""
+        lines = result.stderr.splitlines()
+        assert len(lines) == 1, result.stderr
+        for word in words:
+            assert word in lines[0]
+        return lines[0]
+
+    return check
+
+
+def shared_file(name):
+    """A file of ../shared, which is not part of the project; skips the test when it is absent."""
+    path = ROOT.parent / "shared" / name
+    if not path.exists():
+        pytest.skip(f"needs {name} in ../shared, which is not part of the project")
+    return path

@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Holds the code to the layers of the design: reads the #include lines and a few forbidden words.
+
+usage: check_layers.py [ROOT]     ROOT is the repository (default: the folder above this file)
+
+Prints one line for each violation, FILE:LINE: what is wrong and what would be right, and exits 1 if there is any.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+# Which folders of src/ a folder may include directly; core is open to all. The list is exhaustive.
+LAYERS = {
+    "core": [],
+    "target": [],
+    "plan": ["target"],
+    "am": ["target", "plan"],
+    "track": [],
+    "hand": ["track"],
+    "fluid": ["hand", "track"],  # track: HandFrame, which the hand's interface takes
+    "contact": ["target", "fluid", "hand", "track"],
+    "acoustics": [],
+    "emit": ["plan", "target"],
+    "device": ["emit", "acoustics"],
+    "score": ["target", "plan", "am", "emit", "acoustics"],
+    "figure": ["target", "plan", "score"],
+    # the stages whose types io reads and writes
+    "io": ["track", "hand", "fluid", "contact", "target", "plan", "emit", "device",
+           "acoustics", "score"],
+    "pipeline": ["track", "hand", "fluid", "contact", "target", "plan", "am", "emit", "device", "acoustics",
+                 "score"],
+    "study": ["pipeline", "acoustics", "score", "io"],
+    "viewer": ["pipeline"],
+}
+
+# Threads, mutexes and clocks live here only.
+MAY_USE_THREADS = ("src/core/worker_pool.", "src/track/live/", "src/device/", "src/pipeline/", "src/viewer/")
+MAY_USE_CLOCKS = ("src/core/stage_timer.",) + MAY_USE_THREADS[1:]
+THREAD_HEADERS = {"thread", "mutex", "condition_variable", "shared_mutex", "stop_token", "semaphore", "barrier",
+                  "latch", "future"}
+CLOCK_HEADERS = {"chrono", "ctime", "time.h", "sys/time.h"}
+PRINTING_HEADERS = {"iostream", "print", "syncstream"}
+LANGUAGE_HEADERS = {"format", "expected", "source_location", "generator", "coroutine"}
+
+# Words that need no header of their own: (pattern, where it is allowed, what is wrong).
+WORDS = [
+    (re.compile(r"\bstd::(this_thread|j?thread|mutex|\w+_mutex|condition_variable\w*|async|call_once)\b"),
+     MAY_USE_THREADS, "threads and mutexes live in core/worker_pool, track/live, device, pipeline and viewer"),
+    (re.compile(r"\b(std::chrono|clock_gettime|gettimeofday|std::time|std::clock)\b"),
+     MAY_USE_CLOCKS, "clocks live in core/stage_timer, track/live, device, pipeline and viewer"),
+    (re.compile(r"\b(std::(cout|cerr|clog|printf|puts|print|println)|f?printf|puts|fmt::print(ln)?)\b"),
+     (), "nothing in src/ prints: return it, or throw"),
+    (re.compile(r"\bstd::(views|ranges::views)::|\|\s*views::"),
+     (), "std::views is not accepted by clang 14: write the loop"),
+    (re.compile(r"\bco_(await|yield|return)\b"), (), "coroutines are not used"),
+]
+
+# Words of the language rule hold everywhere, the others in src/ only.
+EVERYWHERE = WORDS[3:]
+
+OLD_NAMES = re.compile(r"(_old\b|_old[_.]|[-_.]old\.|\.bak$|\.orig$|~$|_v[0-9]+(\.[0-9]+)*\.|_copy\.|_backup\b)")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+TEXT_OR_COMMENT = re.compile(
+    r'//[^\n]*|/\*.*?\*/|R"([^(\s]*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\'', re.S)
+
+
+def without_text(source):
+    """The source with comments and string literals blanked out, lines kept."""
+    return TEXT_OR_COMMENT.sub(lambda m: "\n" * m.group(0).count("\n") or " ", source)
+
+
+def check_include(path, folder, quoted, name, layers):
+    """What is wrong with one #include line, or None. `folder` is the stage, None outside src/."""
+    if name in LANGUAGE_HEADERS and not quoted:
+        return f"<{name}> is not accepted by both compilers"
+    if folder is None:
+        return None
+    if not quoted:
+        if name in THREAD_HEADERS and not path.startswith(MAY_USE_THREADS):
+            return f"<{name}>: " + WORDS[0][2]
+        if name in CLOCK_HEADERS and not path.startswith(MAY_USE_CLOCKS):
+            return f"<{name}>: " + WORDS[1][2]
+        if name in PRINTING_HEADERS:
+            return f"<{name}>: " + WORDS[2][2]
+        if name.split("/")[0] in layers and "/" in name:
+            return f"<{name}> is one of our own headers: include it with quotes"
+        return None
+    if name.startswith("."):
+        return f'"{name}" is relative: include from src/, as "stage/file.hpp"'
+    layer = name.split("/")[0]
+    if layer not in layers or "/" not in name:
+        return f'"{name}" is no header of a stage: stages include "stage/file.hpp"'
+    allowed = [folder, "core"] + layers[folder]
+    if layer not in allowed:
+        return f"{folder} must not include {layer}: it may include {', '.join(sorted(set(allowed)))}"
+    return None
+
+
+def check_file(root, file, layers):
+    """Violations of one C++ file, as (line, sentence)."""
+    path = file.relative_to(root).as_posix()
+    parts = path.split("/")
+    folder = parts[1] if parts[0] == "src" else None
+    if folder is not None and (folder not in layers or len(parts) < 3):
+        return [(1, f"src/{folder} is in no layer: add it to the list in tools/check_layers.py")]
+    source = file.read_text(encoding="utf-8")
+    found = []
+    for number, line in enumerate(source.split("\n"), 1):
+        include = INCLUDE.match(line)
+        if include:
+            wrong = check_include(path, folder, include.group(1) == '"', include.group(2), layers)
+            if wrong:
+                found.append((number, wrong))
+    for number, line in enumerate(without_text(source).split("\n"), 1):
+        for pattern, allowed, wrong in WORDS if folder else EVERYWHERE:
+            match = None if INCLUDE.match(line) else pattern.search(line)
+            if match and not path.startswith(allowed or ("\0",)):
+                found.append((number, f"'{match.group(0)}': {wrong}"))
+    return found
+
+
+def check_tree(root, layers=None):
+    """All violations below root, as 'file:line: sentence', sorted by file."""
+    layers = LAYERS if layers is None else layers
+    root = Path(root)
+    lines = []
+    for top in ("src", "apps", "bench", "fuzz", "tests", "tools", "docs", "cmake"):
+        for file in sorted((root / top).rglob("*")):
+            if not file.is_file() or "__pycache__" in file.parts:
+                continue
+            path = file.relative_to(root).as_posix()
+            if OLD_NAMES.search(file.name):
+                lines.append(f"{path}:1: the name of an old copy: git is the archive")
+            if file.suffix in (".hpp", ".cpp", ".h", ".cc"):
+                lines += [f"{path}:{number}: {wrong}" for number, wrong in check_file(root, file, layers)]
+    return lines
+
+
+def main():
+    if len(sys.argv) > 2 or sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__.strip())
+        return 0 if len(sys.argv) == 2 else 2
+    root = Path(sys.argv[1]) if len(sys.argv) == 2 else Path(__file__).resolve().parent.parent
+    if not (root / "src").is_dir():
+        print(f"check_layers: {root} has no folder src", file=sys.stderr)
+        return 2
+    lines = check_tree(root)
+    for line in lines:
+        print(line)
+    if not lines:
+        print("layers: every #include is in the list")
+    return 1 if lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
