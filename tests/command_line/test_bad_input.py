@@ -1,0 +1,222 @@
+"""Bad input gets one clear sentence and exit status 2; nothing crashes, nothing is left half-written."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+
+GOOD = {
+    "format": "prostm-field/1",
+    "cell_mm": 5,
+    "origin_mm": [0, 0],
+    "rows": 2,
+    "cols": 3,
+    "pressure": [[1, 2, 3], [3, 2, 1]],
+}
+
+
+def changed(**changes):
+    field = dict(GOOD, **changes)
+    return json.dumps({k: v for k, v in field.items() if v is not None})
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("", ["empty"]),
+        (changed()[:60], []),
+        ("[" * 100000, []),
+        (changed(format="prostm-plan/1"), ["prostm-field/1"]),
+        (changed(cell_mm=0), ["cell"]),
+        (changed(cell_mm=-5), ["cell"]),
+        (changed(cell_mm="five"), ["cell"]),
+        (changed(pressure=[[1, 2, 3], [3, -2, 1]]), ["-2"]),
+        (changed(pressure=[[1, 2, 3], [3, 2]]), ["row"]),
+        (changed(pressure=[[1, 2, 3]]), ["row"]),
+        (changed(pressure=[[1, 2, 3], [3, "two", 1]]), []),
+        (changed().replace("[3, 2, 1]", "[3, 1e999, 1]"), []),
+        (changed(pressure=None), ["pressure"]),
+        (changed(rows=20000, cols=20000, pressure=[[0] * 10]), ["20000"]),
+        (changed(height_mm=[[0, 0, 0]]), ["height"]),
+        (changed(plane={"origin_mm": [0, 0, 200], "x": [1, 0, 0], "y": [1, 0, 0]}), ["plane"]),
+    ],
+)
+def test_bad_field_json(refuses, tmp_path, text, words):
+    path, out = tmp_path / "bad.json", tmp_path / "out.json"
+    path.write_text(text)
+    refuses("plan", path, "--json", out, words=["bad.json", *words])
+    assert not out.exists() and os.listdir(tmp_path) == ["bad.json"]
+
+
+def test_missing_file_folder_and_unknown_ending(refuses, tmp_path):
+    refuses("plan", tmp_path / "none.json", words=["none.json"])
+    (tmp_path / "folder.json").mkdir()
+    refuses("plan", tmp_path / "folder.json", words=["folder.json"])
+    (tmp_path / "field.txt").write_text("1 2 3")
+    refuses("plan", tmp_path / "field.txt", words=["field.txt", ".json"])
+
+
+def test_bad_npy_and_png(refuses, tmp_path):
+    path = tmp_path / "f.npy"
+    np.save(path, np.ones((4, 5)))
+    refuses("plan", path, words=["--cell-mm"])
+    refuses("plan", path, "--cell-mm", "0", words=["0"])
+    refuses("plan", path, "--cell-mm", "nan")
+    np.save(path, np.ones(5))
+    refuses("plan", path, "--cell-mm", "5", words=["f.npy"])
+    np.save(path, -np.ones((4, 5)))
+    refuses("plan", path, "--cell-mm", "5", words=["-1"])
+    path.write_bytes(b"\x93NUMPY\x01\x00")
+    refuses("plan", path, "--cell-mm", "5", words=["f.npy"])
+    png = tmp_path / "f.png"
+    png.write_bytes(b"\x89PNG\r\n\x1a\n" + b"\0" * 30)
+    refuses("plan", png, "--cell-mm", "5", words=["f.png"])
+    h5 = tmp_path / "f.h5"
+    h5.write_bytes(b"not a recording")
+    refuses("plan", h5, words=["f.h5"])
+    refuses("bench", h5, words=["f.h5"])
+
+
+def hand_lines():
+    joints = ["joint"] * 26
+    header = {"format": "hand-frames", "version": 1, "units": "m", "joint_order": "OpenXR", "joints": joints}
+    position = [c for j in range(26) for c in (0.02 * (j % 5), 0.15 + 0.01 * (j // 5), 0.03 * (j // 5))]
+    hand = {"id": 1, "side": "R", "conf": 1, "inferred": 0, "p": position, "q": [0, 0, 0, 1] * 26, "r": [0.01] * 26}
+    return header, [{"t": 0.01 * i, "hands": [dict(hand)]} for i in range(5)]
+
+
+@pytest.mark.parametrize("fault", ["joints", "nan", "infinite", "backwards", "empty", "truncated", "no frames"])
+def test_bad_recordings(refuses, tmp_path, fault):
+    header, frames = hand_lines()
+    if fault == "joints":
+        frames[2]["hands"][0]["p"] = frames[2]["hands"][0]["p"][:75]
+    if fault == "nan":
+        frames[2]["hands"][0]["p"][4] = None
+    if fault == "backwards":
+        frames[3]["t"] = 0.001
+    if fault == "no frames":
+        frames = []
+    text = "\n".join(json.dumps(line) for line in [header] + frames) + "\n"
+    if fault == "infinite":
+        text = text.replace("0.03", "1e999", 1)
+    if fault == "empty":
+        text = ""
+    if fault == "truncated":
+        text = text[:-40]
+    path = tmp_path / "bad.hands.jsonl"
+    path.write_text(text)
+    refuses("run", "--hand", path, "--grid", "32", words=["bad.hands.jsonl"])
+
+
+@pytest.mark.parametrize(
+    "args, words",
+    [
+        (["run", "--scene", "five-plumes"], ["five-plumes", "one-plume", "four-plumes"]),
+        (["run", "--device", "toaster"], ["toaster"]),
+        (["run", "--device", "autd3"], ["not built yet"]),
+        (["run", "--method", "am"], ["not built yet"]),
+        (["run", "--view"], ["not built yet"]),
+        (["run", "--hand", "openxr"], ["not built yet"]),
+        (["run", "--hand", "/nowhere/hand.jsonl"], ["/nowhere/hand.jsonl"]),
+        (["run", "--seconds", "-1"], ["seconds"]),
+        (["run", "--grid", "63"], ["63"]),
+        (["run", "--paths", "9"], ["9"]),
+        (["run", "--preset", "best"], ["not built yet"]),
+        (["run", "--preset", "worst"], ["worst"]),
+        (["run", "--seconds", "ten"], ["ten"]),
+        (["run", "--realtime", "--stepped"], []),
+        (["run", "--hend", "x"], ["--hend"]),
+        (["capture", "--frames", "0", "--out", "x.h5"], ["frames"]),
+        (["field", "plan.json"], ["not built yet"]),
+        (["report", "--out", "x"], ["not built yet"]),
+        (["dance"], []),
+        ([], []),
+    ],
+)
+def test_bad_options(refuses, args, words):
+    refuses(*args, words=[*words])
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("[plan]\npathz = 3\n", ["pathz", "paths"]),
+        ("[plam]\npaths = 3\n", ["plam", "plan"]),
+        ('[plan]\npaths = "three"\n', ["paths"]),
+        ("[plan]\npaths = 99\n", ["99"]),
+        ("[plan]\nsigma = nan\n", ["sigma"]),
+        ("[plan\n", ["s.toml"]),
+    ],
+)
+def test_bad_settings(refuses, tmp_path, text, words):
+    (tmp_path / "s.toml").write_text(text)
+    field = tmp_path / "field.json"
+    field.write_text(changed())
+    refuses("plan", field, "--settings", tmp_path / "s.toml", words=[*words])
+
+
+def test_unwritable_output(refuses, tmp_path):
+    field = tmp_path / "field.json"
+    field.write_text(changed())
+    gone = tmp_path / "no" / "such" / "folder"
+    refuses("plan", field, "--json", gone / "plan.json", words=["folder"])
+    refuses("plan", field, "--figure", gone / "plan.png", words=["folder"])
+    refuses("run", "--grid", "32", "--seconds", "1", "--record", gone / "run.h5", words=["folder"])
+    refuses("capture", "--grid", "32", "--out", gone / "run.h5", words=["folder"])
+    refuses("plan", field, "--figure", tmp_path / "plan.gif", words=[".png"])
+
+
+def test_full_disk(program, tmp_path):
+    """A file size limit stands in for a full disk: both make a write fail part of the way."""
+    field = tmp_path / "field.json"
+    field.write_text(json.dumps(dict(GOOD, rows=40, cols=40, pressure=np.random.default_rng(1).random((40, 40)).tolist())))
+
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+    for out in (["plan", field, "--json", tmp_path / "o.json"], ["plan", field, "--figure", tmp_path / "o.png"],
+                ["capture", "--grid", "32", "--frames", "30", "--out", tmp_path / "o.h5"]):
+        done = subprocess.run([str(program), *map(str, out)], capture_output=True, text=True, preexec_fn=limit,
+                              restore_signals=False, timeout=120)
+        assert done.returncode == 2, done.stderr
+        lines = done.stderr.splitlines()
+        assert len(lines) == 1 and lines[0].startswith("prostm: ") and out[-1].name in lines[0]
+        assert not (tmp_path / out[-1].name).exists()
+
+
+def test_ctrl_c_leaves_valid_files(program, tmp_path):
+    recording, summary = tmp_path / "run.h5", tmp_path / "run.json"
+    running = subprocess.Popen(
+        [str(program), "run", "--grid", "32", "--seconds", "600", "--realtime", "--record", str(recording),
+         "--json", str(summary)], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    time.sleep(4.0)
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=30)
+    assert running.returncode == 130
+    result = json.loads(summary.read_text())
+    assert result["stopped"] and 1.0 < result["seconds"] < 60.0
+    with h5py.File(recording) as h5:
+        assert len(h5.keys()) > 0
+    assert not list(tmp_path.glob("*.part*"))
+
+
+def test_a_killed_recording_still_opens(program, tmp_path):
+    recording = tmp_path / "run.h5"
+    running = subprocess.Popen(
+        [str(program), "run", "--grid", "32", "--seconds", "600", "--record", str(recording)],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    time.sleep(5.0)
+    running.kill()
+    running.wait(timeout=30)
+    assert not recording.exists()
+    part = list(tmp_path.glob("*.part.h5"))
+    assert len(part) == 1
+    with h5py.File(part[0]) as h5:
+        assert len(h5.keys()) > 0

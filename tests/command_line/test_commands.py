@@ -1,0 +1,197 @@
+"""What each command does with good input: files that open, numbers that agree, the same result twice."""
+
+import json
+import math
+import struct
+import zlib
+
+import h5py
+import numpy as np
+import pytest
+
+
+def blob_field(rows=24, cols=30, cell=5.0):
+    y, x = np.mgrid[0:rows, 0:cols] * cell
+    p = np.exp(-((x - 60) ** 2 + (y - 60) ** 2) / (2 * 22.0**2)) + 0.7 * np.exp(
+        -((x - 100) ** 2 + (y - 40) ** 2) / (2 * 12.0**2)
+    )
+    return {
+        "format": "prostm-field/1",
+        "cell_mm": cell,
+        "origin_mm": [0, 0],
+        "rows": rows,
+        "cols": cols,
+        "pressure": p.tolist(),
+    }
+
+
+@pytest.fixture
+def field(tmp_path):
+    path = tmp_path / "blob.json"
+    path.write_text(json.dumps(blob_field()))
+    return path
+
+
+def plan_of(prostm, *args):
+    done = prostm("plan", *args, "--json", "-")
+    return json.loads(done.stdout)
+
+
+def without_times(plan):
+    return {k: v for k, v in plan.items() if k != "stage_us"}
+
+
+def test_help_has_an_example(prostm):
+    for command in ["run", "plan", "capture", "bench", "devices"]:
+        done = prostm(command, "--help")
+        assert "Example:" in done.stdout
+
+
+def test_plan_file_says_what_the_design_says(prostm, field):
+    plan = plan_of(prostm, field)
+    assert plan["format"] == "prostm-plan/1" and plan["preset"] == "paper-valid" and plan["method"] == "pro-stm"
+    assert 1 <= len(plan["paths"]) <= 4
+    for path in plan["paths"]:
+        points = np.array(path["points_mm"])
+        length = np.linalg.norm(points - np.roll(points, -1, axis=0), axis=1).sum()
+        assert length == pytest.approx(path["length_mm"], abs=1e-9) and length <= 140.5
+        assert path["period_ms"] == pytest.approx(path["length_mm"] / path["speed_m_s"], rel=1e-12)
+        assert len(path["pressure"]) == len(points) and min(path["pressure"]) >= 0
+    assert set(plan["stage_us"]) == {"init", "kmeans", "tour", "split", "resample", "refine", "total"}
+    assert set(plan["metrics"]) == {"rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill"}
+    assert plan["plane"]["origin_mm"] == [0, 0, 200]
+    assert plan["settings"]["plan"]["max_length"] == 0.14
+
+
+def test_the_same_field_twice_gives_the_same_plan(prostm, field):
+    assert without_times(plan_of(prostm, field)) == without_times(plan_of(prostm, field))
+    assert without_times(plan_of(prostm, field, "--seed", "5")) == without_times(plan_of(prostm, field, "--seed", "5"))
+
+
+def test_a_stronger_field_gives_the_same_paths(prostm, field, tmp_path):
+    strong = blob_field()
+    strong["pressure"] = (1024 * np.array(strong["pressure"])).tolist()
+    other = tmp_path / "strong.json"
+    other.write_text(json.dumps(strong))
+    a, b = plan_of(prostm, field), plan_of(prostm, other)
+    for weak_path, strong_path in zip(a["paths"], b["paths"], strict=True):
+        assert weak_path["points_mm"] == strong_path["points_mm"]
+        assert [1024 * p for p in weak_path["pressure"]] == strong_path["pressure"]
+
+
+def test_every_field_format_gives_the_same_plan(prostm, field, tmp_path):
+    pressure = np.array(blob_field()["pressure"])
+    np.save(tmp_path / "blob.npy", pressure)
+    from_json = plan_of(prostm, field)
+    from_npy = plan_of(prostm, tmp_path / "blob.npy", "--cell-mm", "5")
+    assert from_json["paths"] == from_npy["paths"]
+
+    # a PNG has 8 bits: the same field rounded to them, row 0 at the largest y
+    grey = np.round(255 * pressure / pressure.max()).astype(np.uint8)
+    write_grey_png(tmp_path / "blob.png", grey[::-1])
+    np.save(tmp_path / "grey.npy", grey.astype(float))
+    from_png = plan_of(prostm, tmp_path / "blob.png", "--cell-mm", "5")
+    from_grey = plan_of(prostm, tmp_path / "grey.npy", "--cell-mm", "5")
+    for a, b in zip(from_png["paths"], from_grey["paths"], strict=True):
+        np.testing.assert_allclose(a["points_mm"], b["points_mm"], atol=1e-6)
+
+
+def write_grey_png(path, grey):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    rows = b"".join(b"\0" + row.tobytes() for row in grey)
+    header = struct.pack(">IIBBBBB", grey.shape[1], grey.shape[0], 8, 0, 0, 0, 0)
+    path.write_bytes(
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    )
+
+
+def test_a_field_without_pressure_gives_no_path(prostm, tmp_path):
+    empty = blob_field()
+    empty["pressure"] = np.zeros((empty["rows"], empty["cols"])).tolist()
+    path = tmp_path / "empty.json"
+    path.write_text(json.dumps(empty))
+    assert plan_of(prostm, path)["paths"] == []
+
+
+@pytest.mark.parametrize("ending", ["png", "svg"])
+def test_plan_figure(prostm, field, tmp_path, ending):
+    figure = tmp_path / f"panels.{ending}"
+    prostm("plan", field, "--figure", figure)
+    head = figure.read_bytes()[:100]
+    assert head.startswith(b"\x89PNG") if ending == "png" else b"<svg" in head or b"<?xml" in head
+
+
+def run_summary(prostm, *args):
+    done = prostm("run", "--grid", "32", "--seconds", "8", *args, "--json", "-")
+    return json.loads(done.stdout)
+
+
+def finite_or_null(value):
+    if isinstance(value, dict):
+        return all(finite_or_null(v) for v in value.values())
+    if isinstance(value, list):
+        return all(finite_or_null(v) for v in value)
+    return not isinstance(value, float) or math.isfinite(value)
+
+
+def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
+    recording, figure = tmp_path / "run.h5", tmp_path / "run.png"
+    summary = run_summary(prostm, "--as-fast-as-possible", "--record", recording, "--figure", figure)
+    assert summary["format"] == "prostm-run/1" and finite_or_null(summary)
+    assert summary["fluid_steps"] == 400 and summary["plans"] + summary["empty_updates"] == 200
+    assert summary["blocks"] == 8000 and summary["missed_blocks"] == 0
+    assert summary["plans"] > 50
+    assert summary["max_focus_step_mm"] <= 0.2 + 1e-6 and summary["max_path_length_mm"] <= 140.5
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert not list(tmp_path.glob("*.part*"))
+    with h5py.File(recording) as h5:
+        assert json.loads(h5.attrs["summary"])["plans"] == summary["plans"]
+        assert h5.attrs["scene"] == "one-plume"
+
+
+def test_threaded_and_stepped_runs_record_the_same(prostm, tmp_path):
+    files = [tmp_path / "threaded.h5", tmp_path / "stepped.h5"]
+    run_summary(prostm, "--as-fast-as-possible", "--record", files[0])
+    run_summary(prostm, "--stepped", "--record", files[1])
+
+    def everything(path):
+        found = {}
+        with h5py.File(path) as h5:
+            h5.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+        return found
+
+    threaded, stepped = everything(files[0]), everything(files[1])
+    assert threaded.keys() == stepped.keys() and threaded
+    for name in threaded:
+        if "stage" in name:
+            continue  # times
+        np.testing.assert_array_equal(threaded[name], stepped[name], err_msg=name)
+
+
+def test_capture_then_bench_then_plan_a_frame(prostm, tmp_path):
+    recording = tmp_path / "fields.h5"
+    done = prostm("capture", "--grid", "32", "--frames", "20", "--out", recording)
+    done = prostm("bench", recording, "--repeats", "1", "--json", "-")
+    rows = json.loads(done.stdout)
+    assert rows and finite_or_null(rows)
+    for row in rows:
+        assert {"name", "unit", "n", "p50", "p99", "max", "baseline", "baseline_p50", "ratio"} <= set(row)
+    plan = plan_of(prostm, recording, "--frame", "7")
+    assert plan["paths"]
+
+
+def test_devices_says_what_was_not_tried(prostm):
+    done = prostm("devices", "--json", "-")
+    kinds = {row["kind"]: row for row in json.loads(done.stdout)}
+    assert kinds["sim"]["available"] and not kinds["autd3"]["available"] and not kinds["ultraleap"]["available"]
+    assert "never tried" in kinds["ultraleap"]["detail"]
+
+
+def test_settings_file_reaches_every_stage(prostm, field, tmp_path):
+    toml = tmp_path / "s.toml"
+    toml.write_text('[plan]\npreset = "paper"\npaths = 2\nmax_length = 0.1\n')
+    plan = plan_of(prostm, field, "--settings", toml)
+    assert plan["preset"] == "paper" and len(plan["paths"]) <= 2
+    assert plan["settings"]["plan"]["max_length"] == 0.1
