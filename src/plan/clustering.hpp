@@ -1,0 +1,50 @@
+#pragma once
+/// Weighted k-means: the downsampled pressure points D of the paper's section IV-A.
+
+#include <array>
+#include <boost/container/static_vector.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry.hpp"
+
+namespace prostm::planning {
+
+inline constexpr int kMaxClusters = 50;  ///< the paper's bound, set by the cost of 2-opt
+
+struct Clusters {
+  boost::container::static_vector<Vec2, kMaxClusters> centre;  ///< weighted means [mm]
+  boost::container::static_vector<double, kMaxClusters> mass;  ///< Σ weight, > 0
+};
+
+/// Minimises Σ w ‖x − centre(x)‖² (P1) by k-means++ seeding and Lloyd's iteration. Sized once;
+/// run() allocates nothing.
+class WeightedKMeans {
+ public:
+  explicit WeightedKMeans(std::size_t max_points);
+
+  void clear();
+  /// Adds a point [mm] of positive weight. @pre points are distinct, no more than max_points.
+  void add(const Vec2& point, double weight);
+  std::size_t size() const { return x_.size(); }
+
+  /// Clusters the points into min(k, size()). @return Lloyd iterations done, at most
+  /// `max_iterations`.
+  int run(int k, int max_iterations, std::uint64_t seed, Clusters& clusters);
+
+ private:
+  void seed_centres(std::uint64_t seed);
+  void sort_neighbours();
+  bool assign();
+  void move_centres();
+
+  int k_ = 0;
+  std::vector<double> x_, y_, weight_, distance2_;
+  std::vector<std::uint8_t> label_;
+  std::array<double, kMaxClusters> cx_{}, cy_{}, mass_{};
+  /// For each centre the others by distance: neighbour_[c][0] is c itself.
+  std::array<std::array<std::uint8_t, kMaxClusters>, kMaxClusters> neighbour_{};
+  std::array<std::array<double, kMaxClusters>, kMaxClusters> separation2_{};
+};
+
+}  // namespace prostm::planning

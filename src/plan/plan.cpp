@@ -1,0 +1,12 @@
+#include "plan/plan.hpp"
+
+namespace prostm {
+
+double closed_length(const FocalPath& path) {
+  double length = 0.0;
+  const std::size_t n = path.points.size();
+  for (std::size_t i = 0; i < n; ++i) length += (path.points[(i + 1) % n] - path.points[i]).norm();
+  return length;
+}
+
+}  // namespace prostm

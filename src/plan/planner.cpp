@@ -1,0 +1,257 @@
+#include "plan/planner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/stage_timer.hpp"
+#include "plan/clustering.hpp"
+#include "plan/refine.hpp"
+#include "plan/settings_check.hpp"
+#include "plan/tours.hpp"
+#include "plan/validity.hpp"
+
+namespace prostm {
+
+using namespace planning;
+
+namespace {
+
+constexpr double kLengthTolerance = 0.5e-3;  // [m], of "longer than L" in the statistics
+constexpr double kSmallestCell = 1e-6, kLargestCell = 1.0;  // [m]
+constexpr double kLargestPressure = 1e300;                  // sums and γ p* stay finite
+
+/// Largest pressure on skin, or −1 when the target cannot be planned.
+double checked_maximum(const TargetField& target, std::size_t max_cells) {
+  const std::size_t n = target.pressure.size();
+  if (target.rows < 1 || target.cols < 1 || n > max_cells || target.skin.size() != n ||
+      static_cast<std::size_t>(target.rows) * static_cast<std::size_t>(target.cols) != n) {
+    return -1.0;
+  }
+  if (!std::isfinite(target.cell) || target.cell < kSmallestCell || target.cell > kLargestCell ||
+      !target.origin.allFinite()) {
+    return -1.0;
+  }
+  double maximum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double p = target.pressure[i];
+    if (!std::isfinite(p) || p < 0.0 || p > kLargestPressure) return -1.0;
+    if (target.skin[i] != 0) maximum = std::max(maximum, p);
+  }
+  return maximum;
+}
+
+double total_pressure(const TargetField& target) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < target.size(); ++i)
+    sum += target.skin[i] != 0 ? target.pressure[i] : 0.0;
+  return sum;
+}
+
+using PatchPressures = std::array<double, kMaxPatches>;
+
+/// Shares out paths one by one: first one to each patch that has pressure, the strongest first,
+/// then to the patch with the highest pressure per path if it got one more (d'Hondt's rule).
+std::array<int, kMaxPatches> share_paths(const PatchPressures& pressure, int paths) {
+  std::array<int, kMaxPatches> share{};
+  const auto need = [&](std::size_t i) {
+    return std::pair(share[i] == 0, pressure[i] / (share[i] + 1));
+  };
+  for (int path = 0; path < paths; ++path) {
+    std::size_t neediest = kMaxPatches;
+    for (std::size_t i = 0; i < pressure.size(); ++i) {
+      if (pressure[i] > 0.0 && (neediest == kMaxPatches || need(i) > need(neediest))) neediest = i;
+    }
+    if (neediest == kMaxPatches) break;
+    ++share[neediest];
+  }
+  return share;
+}
+
+}  // namespace
+
+struct Planner::Scratch {
+  Scratch(const PlanSettings& s, std::size_t cells)
+      : settings(s),
+        preset(preset_from_name(s.preset)),
+        max_cells(cells),
+        raster(cells),
+        kmeans(cells),
+        refiner(CostSettings(s), s.paths, s.samples, s.refine_iterations) {
+    x.reserve(static_cast<std::size_t>(s.paths) * static_cast<std::size_t>(s.samples));
+  }
+
+  /// Appends at most `paths` paths for one patch to `plan` and adds to `stats` (all but the total).
+  PlanStatus plan_patch(const TargetField& target, int patch, int paths, Plan& plan,
+                        PlanStats& stats, PlanTrace* trace);
+  void collect_points(const TargetField& target, double maximum);
+  void initial_paths(int paths, PlanStats& stats, StageTimer& timer, const Vec2& origin,
+                     PlanTrace* trace);
+  void append(const TargetField& target, int patch, double maximum, Plan& plan,
+              PlanStats& stats) const;
+
+  PlanSettings settings;
+  Preset preset;
+  std::size_t max_cells;
+  PressureRaster raster;
+  WeightedKMeans kmeans;
+  Clusters clusters;
+  DistanceTable distance;
+  Refiner refiner;
+  std::vector<Vec2>
+      x;  // samples of the paths, one path after the other, heaviest first [mm from the origin]
+};
+
+void Planner::Scratch::collect_points(const TargetField& target, double maximum) {
+  raster.set(target, maximum);
+  kmeans.clear();
+  const double cell = kMmPerMetre * target.cell;
+  for (int row = 0; row < target.rows; ++row) {
+    for (int col = 0; col < target.cols; ++col) {
+      const std::size_t i = target.index(row, col);
+      const double p = target.skin[i] != 0 ? target.pressure[i] / maximum : 0.0;
+      if (p >= settings.weak_pressure) kmeans.add(cell * Vec2(col, row), p);
+    }
+  }
+}
+
+/// Tour, split and resampling: fills `x`.
+void Planner::Scratch::initial_paths(int paths, PlanStats& stats, StageTimer& timer,
+                                     const Vec2& origin, PlanTrace* trace) {
+  // one tour through all clusters
+  distance.set(std::span<const Vec2>(clusters.centre.data(), clusters.centre.size()));
+  Tour whole(clusters.centre.size());
+  for (std::size_t c = 0; c < whole.size(); ++c) whole[c] = static_cast<std::uint8_t>(c);
+  const auto seed = static_cast<std::uint64_t>(settings.seed);
+  shortest_tour(distance, std::span<std::uint8_t>(whole.data(), whole.size()), seed);
+  stats.tour += timer.lap();
+
+  // split it, and keep the heaviest
+  const auto leaves =
+      split_tours(clusters, distance, whole, kMmPerMetre * settings.max_length, seed);
+  const std::size_t kept = std::min(leaves.size(), static_cast<std::size_t>(paths));
+  stats.leaves += static_cast<int>(leaves.size());
+  stats.split += timer.lap();
+
+  // N samples each
+  const auto n = static_cast<std::size_t>(settings.samples);
+  x.resize(kept * n);
+  for (std::size_t k = 0; k < kept; ++k) {
+    resample_tour(clusters,
+                  std::span<const std::uint8_t>(leaves[k].tour.data(), leaves[k].tour.size()),
+                  std::span<Vec2>(x).subspan(k * n, n));
+  }
+  stats.resample += timer.lap();
+
+  if (trace != nullptr) {
+    *trace = {};
+    for (const Vec2& c : clusters.centre) trace->clusters.push_back(origin + c / kMmPerMetre);
+    trace->cluster_mass.assign(clusters.mass.begin(), clusters.mass.end());
+    trace->tour.assign(whole.begin(), whole.end());
+    for (std::size_t k = 0; k < kept; ++k) {
+      trace->split.emplace_back(leaves[k].tour.begin(), leaves[k].tour.end());
+    }
+    timer.restart();
+  }
+}
+
+void Planner::Scratch::append(const TargetField& target, int patch, double maximum, Plan& plan,
+                              PlanStats& stats) const {
+  const auto n = static_cast<std::size_t>(settings.samples);
+  const std::span<const Vec2> all(x);
+  for (std::size_t begin = 0; begin < all.size(); begin += n) {
+    FocalPath path;
+    path.patch = patch;
+    const std::span<const Vec2> loop = all.subspan(begin, n);
+    for (const Vec2& sample : loop) {
+      path.points.push_back(target.origin + sample / kMmPerMetre);
+      // a Catmull-Rom spline undershoots beside steep edges; pressure cannot be negative
+      path.pressure.push_back(settings.gain * std::max(raster.sample(sample).value, 0.0) * maximum);
+    }
+    path.length = closed_length(path);
+    path.speed = settings.speed;
+    path.period = path.length / path.speed;
+
+    // violations, in themselves and against the paths before
+    if (path.length > settings.max_length + kLengthTolerance) ++stats.long_paths;
+    stats.crossings += count_self_crossings(loop);
+    for (std::size_t other = 0; other < begin; other += n) {
+      stats.crossings += count_crossings(all.subspan(other, n), loop);
+    }
+    plan.paths.push_back(path);
+  }
+}
+
+PlanStatus Planner::Scratch::plan_patch(const TargetField& target, int patch, int paths, Plan& plan,
+                                        PlanStats& stats, PlanTrace* trace) {
+  StageTimer timer;
+  const double maximum = checked_maximum(target, max_cells);
+  if (maximum < 0.0) return PlanStatus::InvalidTarget;
+  if (maximum == 0.0) return PlanStatus::EmptyTarget;
+  collect_points(target, maximum);
+  stats.init += timer.lap();
+
+  stats.lloyd_iterations += kmeans.run(settings.clusters, settings.lloyd_iterations,
+                                       static_cast<std::uint64_t>(settings.seed), clusters);
+  stats.clusters += static_cast<int>(clusters.centre.size());
+  stats.kmeans += timer.lap();
+
+  initial_paths(paths, stats, timer, target.origin, trace);
+
+  const RefineResult refined = refiner.run(raster, x);
+  stats.cost += refined.cost;
+  stats.refine_iterations += refined.iterations;
+  stats.cost_evaluations += refined.evaluations;
+  if (preset == Preset::PaperValid) {
+    const int kept = make_valid(x, settings.samples, kMmPerMetre * settings.max_length);
+    x.resize(static_cast<std::size_t>(kept) * static_cast<std::size_t>(settings.samples));
+  }
+  append(target, patch, maximum, plan, stats);
+  stats.refine += timer.lap();
+  return PlanStatus::Planned;
+}
+
+Planner::Planner(const PlanSettings& settings, std::size_t max_cells) {
+  check_settings(settings);
+  scratch_ = std::make_unique<Scratch>(settings, max_cells);
+}
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+const PlanSettings& Planner::settings() const {
+  return scratch_->settings;
+}
+
+PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats,
+                         PlanTrace* trace) noexcept {
+  StageTimer timer;
+  plan.paths.clear();
+  stats = {};
+  const PlanStatus status =
+      scratch_->plan_patch(target, 0, scratch_->settings.paths, plan, stats, trace);
+  stats.total = timer.seconds();
+  return status;
+}
+
+PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept {
+  StageTimer timer;
+  plan.paths.clear();
+  stats = {};
+  // what each patch has to show
+  PatchPressures pressure{};
+  for (std::size_t i = 0; i < frame.patches.size(); ++i) {
+    if (checked_maximum(frame.patches[i], scratch_->max_cells) < 0.0)
+      return PlanStatus::InvalidTarget;
+    pressure[i] = total_pressure(frame.patches[i]);
+  }
+  const std::array<int, kMaxPatches> share = share_paths(pressure, scratch_->settings.paths);
+  for (std::size_t i = 0; i < frame.patches.size(); ++i) {
+    if (share[i] == 0) continue;
+    scratch_->plan_patch(frame.patches[i], static_cast<int>(i), share[i], plan, stats, nullptr);
+  }
+  stats.total = timer.seconds();
+  return plan.paths.empty() ? PlanStatus::EmptyTarget : PlanStatus::Planned;
+}
+
+}  // namespace prostm
