@@ -1,0 +1,79 @@
+#include "textbook/kernel.hpp"
+
+#include <algorithm>
+
+#include "core/random.hpp"
+#include "core/stage_timer.hpp"
+#include "textbook/descent.hpp"
+#include "textbook/initial_paths.hpp"
+
+namespace prostm::textbook {
+namespace {
+
+double maximum_on_skin(const Field& field) {
+  double maximum = 0.0;
+  const auto cells = static_cast<std::size_t>(field.rows) * static_cast<std::size_t>(field.cols);
+  for (std::size_t i = 0; i < cells; ++i) {
+    if (field.skin[i] != 0) maximum = std::max(maximum, field.pressure[i]);
+  }
+  return maximum;
+}
+
+Points strong_points(const Field& field, double maximum, double weak) {
+  Points points;
+  for (int j = 0; j < field.rows; ++j) {
+    for (int i = 0; i < field.cols; ++i) {
+      const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(field.cols) + static_cast<std::size_t>(i);
+      if (field.skin[at] == 0 || field.pressure[at] / maximum < weak) continue;
+      points.x.push_back(field.cell * i);
+      points.y.push_back(field.cell * j);
+      points.weight.push_back(field.pressure[at] / maximum);
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+Result run(const Field& field, const Settings& s) {
+  StageTimer total, timer;
+  Result result;
+  const double maximum = maximum_on_skin(field);
+  if (!(maximum > 0.0)) return result;
+  Random random(s.seed);
+  const Points points = strong_points(field, maximum, s.weak_pressure);
+  const Bicubic raster(field, maximum);
+  result.init = timer.lap();
+
+  const Points clusters = lloyd(points, s.clusters, s.lloyd_iterations, random, result.lloyd_iterations);
+  result.clusters = static_cast<int>(clusters.size());
+  result.kmeans = timer.lap();
+
+  Tour whole(clusters.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) whole[i] = static_cast<int>(i);
+  two_opt(clusters, whole, random);
+  result.tour = timer.lap();
+
+  const std::vector<Tour> leaves = split(clusters, whole, s.max_length, random);
+  result.leaves = static_cast<int>(leaves.size());
+  result.split = timer.lap();
+
+  std::vector<double> x, y;
+  const std::size_t kept = std::min(leaves.size(), static_cast<std::size_t>(s.paths));
+  for (std::size_t k = 0; k < kept; ++k) resample(clusters, leaves[k], s.samples, x, y);
+  result.resample = timer.lap();
+
+  Descent(raster, s).run(x, y, result);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i % static_cast<std::size_t>(s.samples) == 0) result.paths.emplace_back();
+    Path& path = result.paths.back();
+    path.x.push_back(x[i]);
+    path.y.push_back(y[i]);
+    path.pressure.push_back(s.gain * std::max(raster.value(x[i], y[i]), 0.0) * maximum);
+  }
+  result.refine = timer.lap();
+  result.total = total.seconds();
+  return result;
+}
+
+}  // namespace prostm::textbook
