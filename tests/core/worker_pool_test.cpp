@@ -64,19 +64,24 @@ TEST(WorkerPool, TakesTheLargestRegion) {
   EXPECT_EQ(wrong, 0u);
 }
 
-// Each region writes its number into the same cells without atomics. Had a worker that wakes late
-// run an index of another region, a cell would hold another number (and the thread sanitizer would
-// see two writers); a lost wake-up or a lost index would hang. More threads than cores, so that
-// workers do wake late.
+// Regions alternate between two functions, each of which writes the region's number into cells of
+// its own, without atomics. Had a worker that wakes late run an index of another region, or with
+// the function of another one, a cell would hold another number (and the thread sanitizer would see
+// two writers); a lost wake-up or a lost index would hang. More threads than cores, so that workers
+// do lose their core inside a region.
 TEST(WorkerPool, LateWorkersNeverTouchAnotherRegion) {
   WorkerPool pool(4);
-  std::vector<std::uint64_t> cells(7, 0);
-  std::uint64_t wrong = 0;
-  const std::uint64_t regions = test::reduced(100000);
-  for (std::uint64_t region = 1; region <= regions; ++region) {
-    const int n = 2 + static_cast<int>(region % 6);
-    pool.run(n, [&, region](int i) { cells[static_cast<std::size_t>(i)] = region; });
-    for (int i = 0; i < n; ++i) wrong += cells[static_cast<std::size_t>(i)] != region;
+  std::uint64_t region = 1, wrong = 0;
+  std::vector<std::uint64_t> even(3, 0), odd(3, 0);
+  const auto write_even = [&](int i) { even[static_cast<std::size_t>(i)] = region; };
+  const auto write_odd = [&](int i) { odd[static_cast<std::size_t>(i)] = region; };
+  for (const std::uint64_t regions = test::reduced(100000); region <= regions; ++region) {
+    if (region % 2 == 0) {
+      pool.run(3, write_even);
+    } else {
+      pool.run(3, write_odd);
+    }
+    for (std::uint64_t cell : region % 2 == 0 ? even : odd) wrong += cell != region;
   }
   EXPECT_EQ(wrong, 0u);
 }
