@@ -7,11 +7,16 @@
 
 namespace prostm {
 
-/// The bytes of a file. @throws InputError: it does not exist, cannot be read, is a folder, is empty, exceeds `limit` bytes.
+/// The bytes of a file. @throws InputError: it does not exist, cannot be read, is a folder, is
+/// empty, exceeds `limit` bytes.
 std::string read_file(const std::string& path, std::size_t limit = std::size_t{1} << 30);
 
+/// @throws InputError: it does not exist, cannot be read, is a folder.
+void check_readable(const std::string& path);
+
 /// Writes to a temporary file beside `path`, flushes, renames. "-" writes to standard output.
-/// @throws InputError: the folder is missing or not writable, the disk is full. Nothing is left behind then.
+/// @throws InputError: the folder is missing or not writable, the disk is full. Nothing is left
+/// behind then.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace prostm

@@ -12,8 +12,8 @@ namespace prostm {
 /// What a plan file says besides the paths.
 struct PlanFileExtras {
   std::string method = "pro-stm";
-  const PlanStats* stats = nullptr;              ///< writes "stage_us" and the counts, when given
-  const Metrics* metrics = nullptr;              ///< writes "metrics", when given
+  const PlanStats* stats = nullptr;  ///< writes "stage_us" and the counts, when given
+  const Metrics* metrics = nullptr;  ///< writes "metrics", when given
   const std::vector<Control>* controls = nullptr;
 };
 
@@ -24,7 +24,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
 
 struct PlanFile {
   Plan plan;
-  TargetField raster;     ///< plane and heights (pressure 0 where the file repeats none)
+  TargetField raster;  ///< plane and heights (pressure 0 where the file repeats none)
 };
 /// @throws InputError with a sentence.
 PlanFile plan_from_json(std::string_view text, const std::string& name);

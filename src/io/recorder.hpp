@@ -10,17 +10,21 @@
 
 namespace prostm {
 
-/// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed every second of data, so
-/// that a killed run leaves a file that opens. Earliest HDF5 file format. The layout, units and attributes are in docs/recordings.md.
+/// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed
+/// every second of data, so that a killed run leaves a file that opens. Earliest HDF5 file format.
+/// The layout, units and attributes are in docs/recordings.md.
 class Recorder {
  public:
-  /// @param settings_json kept as an attribute. @throws InputError: the folder is missing or not writable.
+  /// @param settings_json kept as an attribute. @throws InputError: the folder is missing or not
+  /// writable.
   Recorder(const std::string& path, const std::string& settings_json);
-  ~Recorder();   ///< closes like close(), but keeps quiet about errors
+  ~Recorder();  ///< closes like close(), but keeps quiet about errors
 
-  /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when there is one (its points
-  /// and pressures, padded with NaN to kMaxPathPoints). @throws InputError when the disk is full.
-  void append(const TargetFrame& frame, const HandFrame& hands, const Plan* plan, const PlanStats* stats);
+  /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when
+  /// there is one (its points and pressures, padded with NaN to kMaxPathPoints). @throws InputError
+  /// when the disk is full.
+  void append(const TargetFrame& frame, const HandFrame& hands, const Plan* plan,
+              const PlanStats* stats);
   /// Writes an attribute of the whole recording, e.g. the run's summary.
   void set_attribute(const std::string& name, const std::string& value);
   void close();
@@ -37,7 +41,7 @@ class RecordingReader {
   explicit RecordingReader(const std::string& path);
   ~RecordingReader();
   int frames() const;
-  std::string scene() const;       ///< of the attribute "scene", empty when absent
+  std::string scene() const;  ///< of the attribute "scene", empty when absent
   /// @throws InputError for a frame that is not there.
   TargetFrame frame(int i) const;
 

@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/input_error.hpp"
+#include "io/field_file.hpp"
+#include "io/raster_json.hpp"
+
+namespace prostm {
+
+TargetField field_from_json(std::string_view text, const std::string& name) {
+  const nlohmann::json document = parse_json(text, name);
+  const JsonNode root(document, name);
+  require_format(root, "prostm-field/1");
+  TargetField field;
+  read_raster(root, field);
+
+  // pressure, null where there is no skin
+  const JsonNode pressure = root.at("pressure", "an array of rows of pressures");
+  check_matrix(pressure, field);
+  for (int row = 0; row < field.rows; ++row) {
+    const nlohmann::json& line = pressure.value()[static_cast<std::size_t>(row)];
+    for (int col = 0; col < field.cols; ++col) {
+      const nlohmann::json& value = line[static_cast<std::size_t>(col)];
+      if (value.is_null()) continue;
+      const double p = value.get<double>();
+      check_pressure(p, row, col, name);
+      field.skin[field.index(row, col)] = 1;
+      field.pressure[field.index(row, col)] = p;
+    }
+  }
+
+  if (root.has("height_mm")) read_heights(root.at("height_mm", ""), field);
+  if (root.has("plane")) field.X_DP = read_plane(root.at("plane", ""));
+  return field;
+}
+
+std::string field_to_json(const TargetField& field) {
+  nlohmann::ordered_json document = {{"format", "prostm-field/1"}};
+  write_raster(field, document);
+  auto matrix = nlohmann::ordered_json::array();
+  for (int row = 0; row < field.rows; ++row) {
+    auto line = nlohmann::ordered_json::array();
+    for (int col = 0; col < field.cols; ++col) {
+      const std::size_t i = field.index(row, col);
+      line.push_back(field.skin[i] != 0 ? nlohmann::ordered_json(field.pressure[i])
+                                        : nlohmann::ordered_json(nullptr));
+    }
+    matrix.push_back(std::move(line));
+  }
+  document["pressure"] = std::move(matrix);
+  const bool flat =
+      std::all_of(field.height.begin(), field.height.end(), [](double h) { return h == 0.0; });
+  if (!flat) document["height_mm"] = heights_json(field);
+  document["plane"] = plane_json(field.X_DP);
+  return to_text(document);
+}
+
+}  // namespace prostm

@@ -1,0 +1,409 @@
+/// The layout is described in docs/recordings.md.
+#include "io/recorder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <system_error>
+#include <vector>
+
+#include "core/input_error.hpp"
+#include "io/hdf5.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr float kNanFloat = std::numeric_limits<float>::quiet_NaN();
+constexpr hsize_t kHands = 2;
+
+std::vector<h5::Column> frame_columns() {
+  return {{"time", H5T_NATIVE_DOUBLE, {}, "s", "time of the hand frame"},
+          {"first_patch", H5T_NATIVE_INT64, {}, "1", "row of the frame's first patch in /target"},
+          {"patches", H5T_NATIVE_INT32, {}, "1", "number of patches, one for each hand"}};
+}
+
+std::vector<h5::Column> target_columns() {
+  return {{"frame", H5T_NATIVE_INT64, {}, "1", "row of the patch's frame in /frame"},
+          {"rows", H5T_NATIVE_INT32, {}, "1", "rows of the raster"},
+          {"cols", H5T_NATIVE_INT32, {}, "1", "columns of the raster"},
+          {"offset",
+           H5T_NATIVE_INT64,
+           {},
+           "1",
+           "index of the raster's first cell in pressure and height"},
+          {"cell", H5T_NATIVE_DOUBLE, {}, "m", "edge of a cell"},
+          {"origin", H5T_NATIVE_DOUBLE, {2}, "m", "centre of the first cell in the plane, (x, y)"},
+          {"pose",
+           H5T_NATIVE_DOUBLE,
+           {4, 4},
+           "1, last column m",
+           "X_DP: plane coordinates to the device's"},
+          {"pressure",
+           H5T_NATIVE_DOUBLE,
+           {},
+           "Pa",
+           "rasters row by row, one after another; NaN = no skin"},
+          {"height",
+           H5T_NATIVE_DOUBLE,
+           {},
+           "m",
+           "of the skin along the plane's normal, like pressure"}};
+}
+
+std::vector<h5::Column> hand_columns() {
+  return {
+      {"id",
+       H5T_NATIVE_INT64,
+       {kHands},
+       "1",
+       "stays with a hand while it is tracked; -1 = no hand"},
+      {"side", H5T_NATIVE_INT32, {kHands}, "1", "0 = left, 1 = right, -1 = no hand"},
+      {"confidence", H5T_NATIVE_FLOAT, {kHands}, "1", "of the tracker, 0 to 1; NaN = no hand"},
+      {"inferred",
+       H5T_NATIVE_UINT32,
+       {kHands},
+       "1",
+       "bit 0: metacarpals were rebuilt, bit 1: the wrist"},
+      {"position",
+       H5T_NATIVE_FLOAT,
+       {kHands, kJointCount, 3},
+       "m",
+       "joints in OpenXR's order, frame D"},
+      {"orientation",
+       H5T_NATIVE_FLOAT,
+       {kHands, kJointCount, 4},
+       "1",
+       "unit quaternions x, y, z, w"},
+      {"radius", H5T_NATIVE_FLOAT, {kHands, kJointCount}, "m", "of the flesh around each joint"},
+      {"velocity", H5T_NATIVE_FLOAT, {kHands, kJointCount, 3}, "m/s", "of each joint"}};
+}
+
+std::vector<h5::Column> plan_columns() {
+  const hsize_t paths = kMaxPaths, points = kMaxPathPoints;
+  return {
+      {"paths", H5T_NATIVE_INT32, {}, "1", "number of paths; -1 = no plan was made in this frame"},
+      {"samples", H5T_NATIVE_INT32, {paths}, "1", "points of each path"},
+      {"patch",
+       H5T_NATIVE_INT32,
+       {paths},
+       "1",
+       "the frame's patch that a path lies on; -1 = no path"},
+      {"points",
+       H5T_NATIVE_DOUBLE,
+       {paths, points, 2},
+       "m",
+       "in the patch's plane, padded with NaN"},
+      {"pressure",
+       H5T_NATIVE_DOUBLE,
+       {paths, points},
+       "Pa",
+       "rendered at each point, padded with NaN"},
+      {"length", H5T_NATIVE_DOUBLE, {paths}, "m", "of each closed path"},
+      {"speed", H5T_NATIVE_DOUBLE, {paths}, "m/s", "of the focal point"},
+      {"period", H5T_NATIVE_DOUBLE, {paths}, "s", "of a lap"},
+      {"stage_time",
+       H5T_NATIVE_DOUBLE,
+       {7},
+       "s",
+       "init, kmeans, tour, split, resample, refine, total"},
+      {"counts",
+       H5T_NATIVE_INT32,
+       {7},
+       "1",
+       "clusters, lloyd_iterations, refine_iterations, cost_evaluations, leaves, long_paths, "
+       "crossings"},
+      {"cost", H5T_NATIVE_DOUBLE, {}, "1", "of Eqs. (2) to (5) after refinement"}};
+}
+
+/// One group of tables, found by their names.
+class Group {
+ public:
+  bool create(hid_t file, const char* name, const std::vector<h5::Column>& columns) {
+    const h5::Id group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    bool ok = group.valid();
+    for (const h5::Column& column : columns) {
+      if (!ok) break;
+      ok = tables_.emplace(column.name, h5::Table(group.get(), column)).first->second.valid();
+    }
+    return ok;
+  }
+  template <class T>
+  void append(const char* name, const std::vector<T>& values, hsize_t rows) {
+    ok_ = tables_.at(name).append(values.data(), rows) && ok_;
+  }
+  template <class T>
+  void append(const char* name, T value) {
+    ok_ = tables_.at(name).append(&value, 1) && ok_;
+  }
+  bool ok() const { return ok_; }
+  bool close() {
+    for (auto& [name, table] : tables_) ok_ = table.close() && ok_;
+    return ok_;
+  }
+
+ private:
+  std::map<std::string, h5::Table> tables_;
+  bool ok_ = true;
+};
+
+std::string reason(int error) {
+  return std::generic_category().message(error);
+}
+
+/// Creates the file to learn why it cannot be created; HDF5 does not say.
+void check_writable(const std::string& path, const std::string& part) {
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  if (kind != std::filesystem::file_type::regular &&
+      kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::none) {
+    throw InputError(path + " is not an ordinary file; name a file to record into");
+  }
+  const int fd = ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (fd < 0) {
+    throw InputError(fmt::format(
+        "{} cannot be written ({}); name a file in a folder that exists and is writable", path,
+        reason(errno)));
+  }
+  ::close(fd);
+}
+
+/// Earliest file format, so that every HDF5 of the last decades opens it, also after the writer was
+/// killed.
+h5::Id create_file(const std::string& part) {
+  const h5::Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  return {H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose};
+}
+
+/// 0 or the error.
+int sync(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return errno;
+  const int error = ::fsync(fd) == 0 ? 0 : errno;
+  ::close(fd);
+  return error;
+}
+
+}  // namespace
+
+struct Recorder::Impl {
+  std::string path, part;
+  h5::Id file;
+  Group frame, target, hand, plan;
+  std::int64_t frames = 0, patches = 0, cells = 0;
+  double flushed_at = 0.0;
+
+  void append_target(const TargetField& field);
+  void append_hands(const HandFrame& hands);
+  void append_plan(const Plan* p, const PlanStats* stats);
+  bool ok() const { return frame.ok() && target.ok() && hand.ok() && plan.ok(); }
+  bool close_all();
+  [[noreturn]] void give_up();
+};
+
+void Recorder::Impl::append_target(const TargetField& field) {
+  target.append<std::int64_t>("frame", frames);
+  target.append<std::int32_t>("rows", field.rows);
+  target.append<std::int32_t>("cols", field.cols);
+  target.append<std::int64_t>("offset", cells);
+  target.append("cell", field.cell);
+  target.append("origin", std::vector<double>{field.origin.x(), field.origin.y()}, 1);
+  std::vector<double> pose;
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < 4; ++col) pose.push_back(field.X_DP(row, col));
+  }
+  target.append("pose", pose, 1);
+
+  // skin and pressure in one: no skin is NaN
+  std::vector<double> pressure = field.pressure;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.skin[i] == 0) pressure[i] = kNan;
+  }
+  target.append("pressure", pressure, field.size());
+  target.append("height", field.height, field.size());
+  ++patches;
+  cells += static_cast<std::int64_t>(field.size());
+}
+
+void Recorder::Impl::append_hands(const HandFrame& hands) {
+  std::vector<std::int64_t> id(kHands, -1);
+  std::vector<std::int32_t> side(kHands, -1);
+  std::vector<std::uint32_t> inferred(kHands, 0);
+  std::vector<float> confidence(kHands, kNanFloat), radius(kHands * kJointCount, kNanFloat);
+  std::vector<float> position(3 * radius.size(), kNanFloat), velocity = position;
+  std::vector<float> orientation(4 * radius.size(), kNanFloat);
+  for (std::size_t h = 0; h < hands.hands.size(); ++h) {
+    const Hand& hand_now = hands.hands[h];
+    id[h] = hand_now.id;
+    side[h] = hand_now.side == Side::Left ? 0 : 1;
+    inferred[h] = hand_now.inferred;
+    confidence[h] = static_cast<float>(hand_now.confidence);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(kJointCount); ++j) {
+      const std::size_t at = h * kJointCount + j;
+      radius[at] = static_cast<float>(hand_now.radius[j]);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        position[3 * at + a] = static_cast<float>(hand_now.position[j][axis]);
+        velocity[3 * at + a] = static_cast<float>(hand_now.velocity[j][axis]);
+      }
+      for (int k = 0; k < 4; ++k) {
+        orientation[4 * at + static_cast<std::size_t>(k)] =
+            static_cast<float>(hand_now.orientation[j].coeffs()[k]);
+      }
+    }
+  }
+  hand.append("id", id, 1);
+  hand.append("side", side, 1);
+  hand.append("confidence", confidence, 1);
+  hand.append("inferred", inferred, 1);
+  hand.append("position", position, 1);
+  hand.append("orientation", orientation, 1);
+  hand.append("radius", radius, 1);
+  hand.append("velocity", velocity, 1);
+}
+
+void Recorder::Impl::append_plan(const Plan* p, const PlanStats* stats) {
+  const std::size_t paths = p == nullptr ? 0 : p->paths.size();
+  std::vector<std::int32_t> samples(kMaxPaths, 0), patch(kMaxPaths, -1);
+  std::vector<double> length(kMaxPaths, kNan), speed = length, period = length;
+  std::vector<double> pressure(static_cast<std::size_t>(kMaxPaths) * kMaxPathPoints, kNan);
+  std::vector<double> points(2 * pressure.size(), kNan);
+  for (std::size_t i = 0; i < paths; ++i) {
+    const FocalPath& path_now = p->paths[i];
+    samples[i] = static_cast<std::int32_t>(path_now.points.size());
+    patch[i] = path_now.patch;
+    length[i] = path_now.length;
+    speed[i] = path_now.speed;
+    period[i] = path_now.period;
+    for (std::size_t k = 0; k < path_now.points.size(); ++k) {
+      const std::size_t at = i * kMaxPathPoints + k;
+      points[2 * at] = path_now.points[k].x();
+      points[2 * at + 1] = path_now.points[k].y();
+      pressure[at] = path_now.pressure[k];
+    }
+  }
+  plan.append<std::int32_t>("paths", p == nullptr ? -1 : static_cast<std::int32_t>(paths));
+  plan.append("samples", samples, 1);
+  plan.append("patch", patch, 1);
+  plan.append("points", points, 1);
+  plan.append("pressure", pressure, 1);
+  plan.append("length", length, 1);
+  plan.append("speed", speed, 1);
+  plan.append("period", period, 1);
+
+  const PlanStats s = stats == nullptr ? PlanStats{} : *stats;
+  std::vector<double> stage{s.init, s.kmeans, s.tour, s.split, s.resample, s.refine, s.total};
+  if (stats == nullptr) stage.assign(stage.size(), kNan);
+  plan.append("stage_time", stage, 1);
+  plan.append("counts",
+              std::vector<std::int32_t>{s.clusters, s.lloyd_iterations, s.refine_iterations,
+                                        s.cost_evaluations, s.leaves, s.long_paths, s.crossings},
+              1);
+  plan.append("cost", stats == nullptr ? kNan : s.cost);
+}
+
+bool Recorder::Impl::close_all() {
+  bool done = frame.close();
+  done = target.close() && done;
+  done = hand.close() && done;
+  done = plan.close() && done;
+  return file.close() && done;
+}
+
+void Recorder::Impl::give_up() {
+  close_all();
+  // what was flushed before may still be a recording; a broken file is not left behind
+  std::string rest = fmt::format("what was recorded until then is in {}", part);
+  try {
+    RecordingReader reader(part);
+  } catch (const InputError&) {
+    ::unlink(part.c_str());
+    rest = "nothing was kept";
+  }
+  throw InputError(fmt::format("{} cannot be written: the disk is full or fails; {}", path, rest));
+}
+
+Recorder::Recorder(const std::string& path, const std::string& settings_json)
+    : impl_(std::make_unique<Impl>()) {
+  const h5::Quiet quiet;
+  Impl& r = *impl_;
+  r.path = path;
+  r.part = path + ".part.h5";
+  check_writable(path, r.part);
+  r.file = create_file(r.part);
+  const hid_t file = r.file.get();
+  const bool ok = r.file.valid() && h5::write_text(file, "format", "prostm-recording/1") &&
+                  h5::write_text(file, "settings", settings_json) &&
+                  r.frame.create(file, "frame", frame_columns()) &&
+                  r.target.create(file, "target", target_columns()) &&
+                  r.hand.create(file, "hand", hand_columns()) &&
+                  r.plan.create(file, "plan", plan_columns()) &&
+                  H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+  if (!ok) {
+    r.close_all();
+    ::unlink(r.part.c_str());
+    throw InputError(path +
+                     " cannot be written: the disk is full or another program uses the file");
+  }
+}
+
+Recorder::~Recorder() {
+  try {
+    close();
+  } catch (const InputError&) {
+    // a destructor has nobody to tell; who wants to know calls close()
+  }
+}
+
+void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const Plan* plan,
+                      const PlanStats* stats) {
+  if (!impl_->file.valid()) throw std::logic_error("a closed recording cannot be appended to");
+  const h5::Quiet quiet;
+  Impl& r = *impl_;
+  r.frame.append("time", frame.time);
+  r.frame.append<std::int64_t>("first_patch", r.patches);
+  r.frame.append<std::int32_t>("patches", static_cast<std::int32_t>(frame.patches.size()));
+  for (const TargetField& field : frame.patches) r.append_target(field);
+  r.append_hands(hands);
+  r.append_plan(plan, stats);
+
+  // every second of data reaches the file; time that runs backwards is a recording that starts
+  // again
+  if (r.frames++ == 0) r.flushed_at = frame.time;
+  bool ok = r.ok();
+  if (ok && std::abs(frame.time - r.flushed_at) >= 1.0) {
+    ok = H5Fflush(r.file.get(), H5F_SCOPE_GLOBAL) >= 0;
+    r.flushed_at = frame.time;
+  }
+  if (!ok) r.give_up();
+}
+
+void Recorder::set_attribute(const std::string& name, const std::string& value) {
+  const h5::Quiet quiet;
+  if (!h5::write_text(impl_->file.get(), name.c_str(), value)) impl_->give_up();
+}
+
+void Recorder::close() {
+  Impl& r = *impl_;
+  if (!r.file.valid()) return;
+  const h5::Quiet quiet;
+  const bool flushed = H5Fflush(r.file.get(), H5F_SCOPE_GLOBAL) >= 0;
+  if (!r.close_all() || !flushed) r.give_up();
+  int error = sync(r.part);
+  if (error == 0 && std::rename(r.part.c_str(), r.path.c_str()) != 0) error = errno;
+  if (error != 0) {
+    throw InputError(fmt::format("{} cannot be written ({}); the recording is in {}", r.path,
+                                 reason(error), r.part));
+  }
+}
+
+}  // namespace prostm

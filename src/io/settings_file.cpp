@@ -1,0 +1,187 @@
+#include "io/settings_file.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "core/input_error.hpp"
+#include "io/file.hpp"
+#include "io/json.hpp"
+
+namespace prostm {
+namespace {
+
+/// Edits (insert, delete, replace) that turn a into b.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+/// A name from the file as it may stand in a message.
+std::string shown(std::string_view name) {
+  return std::string(name.substr(0, 60));
+}
+
+/// "did you mean …", or all that there is when nothing is near.
+std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
+  const std::string typed = shown(unknown);
+  const auto nearest =
+      std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+        return edit_distance(typed, a) < edit_distance(typed, b);
+      });
+  if (nearest == known.end()) return "there are none";
+  const std::size_t tolerance = std::max<std::size_t>(2, nearest->size() / 3);
+  if (edit_distance(typed, *nearest) <= tolerance)
+    return fmt::format("did you mean \"{}\"?", *nearest);
+  return fmt::format("known are {}", fmt::join(known, ", "));
+}
+
+/// Lists the names of a group's fields.
+class NameCollector : public SettingsVisitor {
+ public:
+  void field(const char* name, double&) override { names.emplace_back(name); }
+  void field(const char* name, int&) override { names.emplace_back(name); }
+  void field(const char* name, bool&) override { names.emplace_back(name); }
+  void field(const char* name, std::string&) override { names.emplace_back(name); }
+  std::vector<std::string> names;
+};
+
+/// Sets the fields that a table gives.
+class TomlReader : public SettingsVisitor {
+ public:
+  TomlReader(const toml::table& table, const std::string& file, const std::string& group)
+      : table_(table), file_(file), group_(group) {}
+
+  void field(const char* name, double& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_number()) fail(name, *node, "must be a number");
+    const double x = *node->value<double>();
+    if (!std::isfinite(x)) fail(name, *node, "must be finite");
+    value = x;
+  }
+  void field(const char* name, int& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_integer()) fail(name, *node, "must be a whole number");
+    const std::int64_t x = node->as_integer()->get();
+    if (x < std::numeric_limits<int>::min() || x > std::numeric_limits<int>::max()) {
+      fail(name, *node, "must lie within 32 bits");
+    }
+    value = static_cast<int>(x);
+  }
+  void field(const char* name, bool& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_boolean()) fail(name, *node, "must be true or false");
+    value = node->as_boolean()->get();
+  }
+  void field(const char* name, std::string& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_string()) fail(name, *node, "must be a text in quotes");
+    value = node->as_string()->get();
+  }
+
+ private:
+  [[noreturn]] void fail(const char* name, const toml::node& node, const char* bound) const {
+    throw InputError(
+        fmt::format("{}, line {}: {}.{} {}", file_, node.source().begin.line, group_, name, bound));
+  }
+
+  const toml::table& table_;
+  const std::string& file_;
+  const std::string& group_;
+};
+
+/// Writes the fields of a group.
+class JsonWriter : public SettingsVisitor {
+ public:
+  explicit JsonWriter(nlohmann::ordered_json& object) : object_(object) {}
+  void field(const char* name, double& value) override { object_[name] = value; }
+  void field(const char* name, int& value) override { object_[name] = value; }
+  void field(const char* name, bool& value) override { object_[name] = value; }
+  void field(const char* name, std::string& value) override { object_[name] = value; }
+
+ private:
+  nlohmann::ordered_json& object_;
+};
+
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& e) {
+    throw InputError(fmt::format("{}, line {}, column {}: is not valid TOML ({:.200})", file,
+                                 e.source().begin.line, e.source().begin.column, e.description()));
+  }
+}
+
+void read_group(const toml::table& table, const SettingsGroup& group, const std::string& file) {
+  NameCollector known;
+  group.visit(known);
+  for (const auto& [key, node] : table) {
+    if (std::find(known.names.begin(), known.names.end(), key.str()) == known.names.end()) {
+      throw InputError(fmt::format("{}, line {}: {} has no setting \"{}\"; {}", file,
+                                   key.source().begin.line, group.name, shown(key.str()),
+                                   suggestion(key.str(), known.names)));
+    }
+  }
+  TomlReader reader(table, file, group.name);
+  group.visit(reader);
+}
+
+}  // namespace
+
+void read_settings(const std::string& path, const std::vector<SettingsGroup>& groups) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+  settings_from_toml(read_file(path, kMaxBytes), path, groups);
+}
+
+void settings_from_toml(std::string_view text, const std::string& name,
+                        const std::vector<SettingsGroup>& groups) {
+  const toml::table document = parse_toml(text, name);
+  std::vector<std::string> known(groups.size());
+  std::transform(groups.begin(), groups.end(), known.begin(), [](const auto& g) { return g.name; });
+  for (const auto& [key, node] : document) {
+    const auto group = std::find_if(groups.begin(), groups.end(),
+                                    [&](const auto& g) { return g.name == key.str(); });
+    if (group == groups.end()) {
+      throw InputError(fmt::format("{}, line {}: there is no group of settings \"{}\"; {}", name,
+                                   key.source().begin.line, shown(key.str()),
+                                   suggestion(key.str(), known)));
+    }
+    const toml::table* table = node.as_table();
+    if (table == nullptr) {
+      throw InputError(fmt::format("{}, line {}: {} must be a group of settings, written [{}]",
+                                   name, key.source().begin.line, group->name, group->name));
+    }
+    read_group(*table, *group, name);
+  }
+}
+
+std::string settings_to_json(const std::vector<SettingsGroup>& groups) {
+  auto document = nlohmann::ordered_json::object();
+  for (const SettingsGroup& group : groups) {
+    nlohmann::ordered_json& object = document[group.name] = nlohmann::ordered_json::object();
+    JsonWriter writer(object);
+    group.visit(writer);
+  }
+  return to_text(document);
+}
+
+}  // namespace prostm
