@@ -12,30 +12,30 @@ namespace prostm {
 /// What a device can do.
 struct DeviceInfo {
   std::string name;
-  double sample_rate = 0.0;            ///< of focal points [Hz]
-  int block_samples = 0;               ///< samples pulled at a time
+  double sample_rate = 0.0;  ///< of focal points [Hz]
+  int block_samples = 0;     ///< samples pulled at a time
   int max_foci = 0;
-  bool intensity_per_focus = false;    ///< false: one intensity for all foci of a sample
-  bool streams = false;                ///< pulls an endless stream
-  bool loads_segments = false;         ///< plays segments that are loaded whole
+  bool intensity_per_focus = false;  ///< false: one intensity for all foci of a sample
+  bool streams = false;              ///< pulls an endless stream
+  bool loads_segments = false;       ///< plays segments that are loaded whole
 };
 
 struct DeviceStats {
-  std::int64_t blocks = 0;             ///< filled
-  std::int64_t late_blocks = 0;        ///< filled after their deadline
-  std::int64_t missed_blocks = 0;      ///< block times at which the queue had run dry
-  int queue_blocks = 0;                ///< depth of the queue
+  std::int64_t blocks = 0;         ///< filled
+  std::int64_t late_blocks = 0;    ///< filled after their deadline
+  std::int64_t missed_blocks = 0;  ///< block times at which the queue had run dry
+  int queue_blocks = 0;            ///< depth of the queue
 };
 
 enum class DeviceStatus : std::uint8_t {
-  Idle,       ///< not started, or stopped
+  Idle,  ///< not started, or stopped
   Running,
-  Refused,    ///< it would not start or take a segment; see Device::problem
-  Vanished    ///< it was there and is gone: output has stopped, start() again when it is back
+  Refused,  ///< it would not start or take a segment; see Device::problem
+  Vanished  ///< it was there and is gone: output has stopped, start() again when it is back
 };
 
-/// Two ways in: an endless stream that pulls blocks at the device's own times (start), and segments that are loaded whole and
-/// repeat until the next one (load_segment).
+/// Two ways in: an endless stream that pulls blocks at the device's own times (start), and segments
+/// that are loaded whole and repeat until the next one (load_segment).
 class Device {
  public:
   virtual ~Device() = default;
@@ -47,7 +47,8 @@ class Device {
   /// Starts to pull from `source`, which must outlive stop(). @return Running or Refused.
   virtual DeviceStatus start(SampleSource& source) = 0;
   virtual void stop() = 0;
-  /// Loads samples (sample-major, `foci` a sample) that the device repeats. @return Running or Refused.
+  /// Loads samples (sample-major, `foci` a sample) that the device repeats. @return Running or
+  /// Refused.
   virtual DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) = 0;
 
   virtual DeviceStats stats() const = 0;

@@ -1,6 +1,7 @@
 #pragma once
 /// An array that exists in memory: it keeps real time, can be read back, and can be told to fail.
 
+#include <complex>
 #include <memory>
 #include <vector>
 
@@ -11,12 +12,12 @@
 namespace prostm {
 
 struct SimulatedArraySettings {
-  double sample_rate = 40e3;       ///< [Hz]
-  int block_samples = 40;          ///< a block is 1 ms
-  int max_foci = 8;
-  int queue_blocks = 8;            ///< 1..10
-  double history = 4.0;            ///< kept for reading back [s]
-  bool realtime = true;            ///< false: no thread and no clock, pull() is called by hand
+  double sample_rate = 40e3;  ///< [Hz], 1 kHz to 1 MHz
+  int block_samples = 40;     ///< a block is 1 ms; 1..4096
+  int max_foci = 8;           ///< 1..8
+  int queue_blocks = 8;       ///< 1..10
+  double history = 4.0;       ///< kept for reading back [s], up to 600
+  bool realtime = true;       ///< false: no thread and no clock, pull() is called by hand
 
   void visit(SettingsVisitor& v);
 };
@@ -28,36 +29,48 @@ struct SimulatedFaults {
   std::int64_t vanish_after = -1;  ///< vanishes after this many blocks; −1 = never
 };
 
+/// In real time its own thread pulls a block every block period by an absolute schedule
+/// (BlockClock), and catches up at once when it wakes late. The thread's priority is raised where
+/// that is allowed (raise_thread_priority); nothing needs it. Samples count from 0 at each start.
+/// All functions but start, stop, load_segment and pull may be called by any thread; those four
+/// belong to one.
 class SimulatedArray final : public Device {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
-  SimulatedArray(const SimulatedArraySettings& settings, const TransducerArray& array, const Medium& medium);
+  SimulatedArray(const SimulatedArraySettings& settings, const TransducerArray& array,
+                 const Medium& medium);
   ~SimulatedArray() override;
 
   const DeviceInfo& info() const override;
   DeviceStatus status() const override;
+  /// Also says why the last start or segment was refused while something else went on running.
   std::string problem() const override;
   DeviceStatus start(SampleSource& source) override;
   void stop() override;
+  /// While a segment plays, the new one takes over at its end; while a stream plays, segments are
+  /// refused.
   DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override;
   DeviceStats stats() const override;
+  /// Without a clock (realtime = false): seconds since the first sample.
   double play_time(std::int64_t sample) const override;
 
   void set_faults(const SimulatedFaults& faults);
-  /// Pulls n blocks now. @pre settings.realtime is false, started.
+  /// Pulls n blocks now, fewer when it vanishes. @pre settings.realtime is false, started.
   void pull(int n);
 
-  /// Samples first … first+n−1 as they were played, sample-major with `foci` a sample (0 intensity where
-  /// nothing played). What is older than `history` or not yet played is an error. @throws std::out_of_range.
+  /// Samples first … first+n−1 as they were played, sample-major with `foci` a sample. What is
+  /// older than `history` or not yet played is an error. @throws std::out_of_range.
   std::vector<FocusSample> read_back(std::int64_t first, std::int64_t n) const;
-  int foci() const;                 ///< per sample, of the running source or segment
-  std::int64_t samples() const;     ///< played so far
+  int foci() const;  ///< per sample, of the running source or segment; 0 before the first
+  std::int64_t samples() const;  ///< played so far
 
-  /// Complex drive of each transducer for one sample: the naive superposition of one focus per focal point, with
-  /// amplitudes from intensities, scaled down by a common factor when any exceeds 1.
+  /// Complex drive of each transducer for one sample, (A4): the naive superposition of one focus
+  /// per focal point, with amplitudes from intensities, scaled down by a common factor when any
+  /// exceeds 1.
   void drives(std::span<const FocusSample> foci, std::vector<std::complex<double>>& out) const;
-  /// rms acoustic pressure at points for such drives [Pa].
-  std::vector<double> field(std::span<const std::complex<double>> drives, std::span<const Vec3> points) const;
+  /// rms acoustic pressure at points for such drives [Pa], |Σ drive·propagate|.
+  std::vector<double> field(std::span<const std::complex<double>> drives,
+                            std::span<const Vec3> points) const;
 
  private:
   struct Impl;

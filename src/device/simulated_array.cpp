@@ -1,0 +1,389 @@
+#include "device/simulated_array.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "device/block_clock.hpp"
+#include "device/segment_player.hpp"
+#include "device/thread_priority.hpp"
+
+namespace prostm {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+constexpr int kMostFoci = 8;
+
+void require(double value, double low, double high, const char* name) {
+  if (std::isfinite(value) && value >= low && value <= high) return;
+  std::ostringstream text;
+  text << name << " = " << value << " must be between " << low << " and " << high;
+  throw std::invalid_argument(text.str());
+}
+
+const SimulatedArraySettings& validated(const SimulatedArraySettings& s) {
+  require(s.sample_rate, 1e3, 1e6, "sample_rate");
+  require(s.block_samples, 1, 4096, "block_samples");
+  require(s.max_foci, 1, kMostFoci, "max_foci");
+  require(s.queue_blocks, 1, 10, "queue_blocks");
+  require(s.history, 0.0, 600.0, "history");
+  return s;
+}
+
+SteadyClock::duration to_duration(double seconds) {
+  return std::chrono::round<SteadyClock::duration>(Seconds(seconds));
+}
+
+/// What is wrong with a segment; empty when nothing is.
+std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci) {
+  std::ostringstream text;
+  if (foci < 1 || foci > max_foci) {
+    text << "The segment has " << foci << " focal points a sample; the simulated array plays 1 to "
+         << max_foci << ".";
+  } else if (samples.empty() || samples.size() % static_cast<std::size_t>(foci) != 0) {
+    text << "The segment holds " << samples.size()
+         << " focal points, which is not a whole number of "
+         << "samples of " << foci << "; it must hold at least one sample.";
+  } else {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const FocusSample& s = samples[i];
+      if (s.p_D.allFinite() && std::isfinite(s.intensity) && s.intensity >= 0.0F &&
+          s.intensity <= 1.0F) {
+        continue;
+      }
+      text << "Sample " << i / static_cast<std::size_t>(foci)
+           << " of the segment has a number that is not finite or an intensity outside of 0 to 1.";
+      break;
+    }
+  }
+  return text.str();
+}
+
+}  // namespace
+
+void SimulatedArraySettings::visit(SettingsVisitor& v) {
+  v.field("sample_rate", sample_rate);
+  v.field("block_samples", block_samples);
+  v.field("max_foci", max_foci);
+  v.field("queue_blocks", queue_blocks);
+  v.field("history", history);
+  v.field("realtime", realtime);
+}
+
+struct SimulatedArray::Impl {
+  Impl(const SimulatedArraySettings& s, const TransducerArray& a, const Medium& m);
+
+  // constant
+  const SimulatedArraySettings settings;
+  const TransducerArray array;
+  const Medium medium;
+  DeviceInfo info;
+  const std::int64_t history_samples;
+
+  // shared, under the mutex
+  mutable std::mutex mutex;
+  DeviceStatus status = DeviceStatus::Idle;
+  std::string problem;
+  SimulatedFaults faults;
+  DeviceStats stats;
+  std::optional<BlockClock> clock;  // in real time, once started
+  int foci = 0;
+  std::vector<FocusSample> ring;  // sample i lies at (i mod its size in samples)
+  std::int64_t filled = 0;        // samples in all
+
+  // one thread's
+  SegmentPlayer segment;
+  SampleSource* source = nullptr;
+  std::vector<FocusSample> block;
+  std::jthread thread;
+
+  DeviceStatus refuse(const std::string& sentence);
+  DeviceStatus begin(SampleSource& s);
+  void run(const std::stop_token& stop);
+  SteadyClock::time_point next_wake() const;
+  bool pull_block();
+  void store_block();
+  std::int64_t played() const;
+};
+
+SimulatedArray::Impl::Impl(const SimulatedArraySettings& s, const TransducerArray& a,
+                           const Medium& m)
+    : settings(validated(s)),
+      array(a),
+      medium(m),
+      info{"simulated " + a.name, s.sample_rate, s.block_samples, s.max_foci, true, true, true},
+      history_samples(static_cast<std::int64_t>(std::ceil(s.history * s.sample_rate))) {
+  stats.queue_blocks = s.queue_blocks;
+}
+
+DeviceStatus SimulatedArray::Impl::refuse(const std::string& sentence) {
+  const std::lock_guard lock(mutex);
+  problem = sentence;
+  if (status != DeviceStatus::Running) status = DeviceStatus::Refused;
+  return DeviceStatus::Refused;
+}
+
+/// Starts to pull. @pre not running, the source fits.
+DeviceStatus SimulatedArray::Impl::begin(SampleSource& s) {
+  if (thread.joinable()) thread.join();  // of a stream that vanished
+  source = &s;
+  {
+    const std::lock_guard lock(mutex);
+    foci = s.foci();
+    // what is queued is filled and not yet played, so it comes on top of the history
+    const auto capacity = static_cast<std::size_t>(
+        history_samples + std::int64_t{settings.queue_blocks + 1} * settings.block_samples);
+    ring.assign(capacity * static_cast<std::size_t>(foci), FocusSample());
+    block.assign(static_cast<std::size_t>(settings.block_samples * foci), FocusSample());
+    filled = 0;
+    stats = {};
+    stats.queue_blocks = settings.queue_blocks;
+    status = DeviceStatus::Running;
+    problem.clear();
+    clock.reset();
+    if (settings.realtime) {
+      const double period = settings.block_samples / settings.sample_rate;
+      clock.emplace(SteadyClock::now(), to_duration(period), settings.queue_blocks);
+    }
+  }
+  if (settings.realtime) {
+    thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+  return DeviceStatus::Running;
+}
+
+SteadyClock::time_point SimulatedArray::Impl::next_wake() const {
+  const std::lock_guard lock(mutex);
+  return clock->ask_time(stats.blocks) + to_duration(faults.delay);
+}
+
+void SimulatedArray::Impl::run(const std::stop_token& stop) {
+  raise_thread_priority();
+  while (!stop.stop_requested()) {
+    std::this_thread::sleep_until(next_wake());
+    if (stop.stop_requested() || !pull_block()) return;
+  }
+}
+
+/// Pulls the next block; false when the array has vanished.
+bool SimulatedArray::Impl::pull_block() {
+  std::int64_t first = 0;
+  {
+    const std::lock_guard lock(mutex);
+    if (faults.vanish_after >= 0 && stats.blocks >= faults.vanish_after) {
+      status = DeviceStatus::Vanished;
+      problem = "The simulated array vanished after " + std::to_string(stats.blocks) +
+                " blocks, as it was told to; start it again.";
+      return false;
+    }
+    first = filled;
+  }
+  source->fill(first, block);
+  const std::lock_guard lock(mutex);
+  store_block();
+  return true;
+}
+
+/// Puts the block in the ring and in the books. @pre the mutex is held.
+void SimulatedArray::Impl::store_block() {
+  const auto width = static_cast<std::size_t>(foci);
+  const std::size_t capacity = ring.size() / width;
+  for (std::size_t i = 0; i * width < block.size(); ++i) {
+    const std::size_t slot = (static_cast<std::size_t>(filled) + i) % capacity;
+    std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                ring.begin() + static_cast<std::ptrdiff_t>(slot * width));
+  }
+  filled += settings.block_samples;
+  if (clock) {
+    const BlockClock::Filled result = clock->fill(stats.blocks, SteadyClock::now());
+    stats.late_blocks += result.late ? 1 : 0;
+    stats.missed_blocks += result.missed;
+  }
+  ++stats.blocks;
+}
+
+/// Samples that have left the array. @pre the mutex is held.
+std::int64_t SimulatedArray::Impl::played() const {
+  if (!clock) return filled;
+  // the block that plays now is among those still queued or the next one
+  const auto now = SteadyClock::now();
+  const std::int64_t oldest = std::max<std::int64_t>(0, stats.blocks - settings.queue_blocks - 1);
+  for (std::int64_t block_index = stats.blocks - 1; block_index >= oldest; --block_index) {
+    const double age = Seconds(now - clock->play_time(block_index)).count();
+    if (age < 0.0) continue;
+    const auto within = static_cast<std::int64_t>(age * settings.sample_rate) + 1;
+    return block_index * settings.block_samples +
+           std::min<std::int64_t>(within, settings.block_samples);
+  }
+  return oldest * settings.block_samples;
+}
+
+SimulatedArray::SimulatedArray(const SimulatedArraySettings& settings, const TransducerArray& array,
+                               const Medium& medium)
+    : impl_(std::make_unique<Impl>(settings, array, medium)) {}
+
+SimulatedArray::~SimulatedArray() {
+  stop();
+}
+
+const DeviceInfo& SimulatedArray::info() const {
+  return impl_->info;
+}
+
+DeviceStatus SimulatedArray::status() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->status;
+}
+
+std::string SimulatedArray::problem() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->problem;
+}
+
+DeviceStatus SimulatedArray::start(SampleSource& source) {
+  bool refuse = false;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    refuse = impl_->faults.refuse;
+  }
+  if (refuse) return impl_->refuse("The simulated array refuses to start, as it was told to.");
+  if (status() == DeviceStatus::Running) {
+    return impl_->refuse("The simulated array is running already; stop it first.");
+  }
+  if (source.foci() < 1 || source.foci() > impl_->settings.max_foci) {
+    return impl_->refuse("The stream has " + std::to_string(source.foci()) +
+                         " focal points a sample; the simulated array plays 1 to " +
+                         std::to_string(impl_->settings.max_foci) + ".");
+  }
+  return impl_->begin(source);
+}
+
+void SimulatedArray::stop() {
+  if (impl_->thread.joinable()) {
+    impl_->thread.request_stop();
+    impl_->thread.join();
+  }
+  impl_->source = nullptr;
+  const std::lock_guard lock(impl_->mutex);
+  impl_->status = DeviceStatus::Idle;
+}
+
+DeviceStatus SimulatedArray::load_segment(std::span<const FocusSample> samples, int foci) {
+  Impl& impl = *impl_;
+  bool refuse = false, running = false;
+  {
+    const std::lock_guard lock(impl.mutex);
+    refuse = impl.faults.refuse;
+    running = impl.status == DeviceStatus::Running;
+  }
+  if (refuse) return impl.refuse("The simulated array refuses the segment, as it was told to.");
+  const std::string problem = segment_problem(samples, foci, impl.settings.max_foci);
+  if (!problem.empty()) return impl.refuse(problem);
+  if (running && (impl.source != &impl.segment || impl.segment.foci() != foci)) {
+    return impl.refuse(
+        "The simulated array is playing a stream, or a segment with another number of focal "
+        "points; "
+        "stop it first.");
+  }
+  if (!running) impl.segment.reset(foci);
+  impl.segment.load(samples);
+  return running ? DeviceStatus::Running : impl.begin(impl.segment);
+}
+
+DeviceStats SimulatedArray::stats() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->stats;
+}
+
+double SimulatedArray::play_time(std::int64_t sample) const {
+  const SimulatedArraySettings& s = impl_->settings;
+  const std::lock_guard lock(impl_->mutex);
+  if (!impl_->clock) return static_cast<double>(sample) / s.sample_rate;
+  const std::int64_t block = sample / s.block_samples;
+  const double start = Seconds(impl_->clock->play_time(block).time_since_epoch()).count();
+  return start + static_cast<double>(sample % s.block_samples) / s.sample_rate;
+}
+
+void SimulatedArray::set_faults(const SimulatedFaults& faults) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->faults = faults;
+}
+
+void SimulatedArray::pull(int n) {
+  for (int i = 0; i < n; ++i) {
+    if (status() != DeviceStatus::Running || !impl_->pull_block()) return;
+  }
+}
+
+std::vector<FocusSample> SimulatedArray::read_back(std::int64_t first, std::int64_t n) const {
+  const std::lock_guard lock(impl_->mutex);
+  const std::int64_t end = impl_->played();
+  const std::int64_t begin = std::max<std::int64_t>(0, end - impl_->history_samples);
+  if (n < 0 || first < begin || n > end - first) {
+    std::ostringstream text;
+    text << "samples " << first << " to " << first + n << " cannot be read back; kept are " << begin
+         << " to " << end;
+    throw std::out_of_range(text.str());
+  }
+  const auto width = static_cast<std::size_t>(impl_->foci);
+  std::vector<FocusSample> out;
+  out.reserve(static_cast<std::size_t>(n) * width);
+  for (std::int64_t i = first; i < first + n; ++i) {
+    const std::size_t slot = static_cast<std::size_t>(i) % (impl_->ring.size() / width) * width;
+    const auto from = impl_->ring.begin() + static_cast<std::ptrdiff_t>(slot);
+    out.insert(out.end(), from, from + static_cast<std::ptrdiff_t>(width));
+  }
+  return out;
+}
+
+int SimulatedArray::foci() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->foci;
+}
+
+std::int64_t SimulatedArray::samples() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->played();
+}
+
+void SimulatedArray::drives(std::span<const FocusSample> foci,
+                            std::vector<std::complex<double>>& out) const {
+  const std::size_t transducers = impl_->array.position.size();
+  out.assign(transducers, 0.0);
+  std::vector<double> phases(transducers);
+  for (const FocusSample& focus : foci) {
+    focus_phases(impl_->array, impl_->medium, focus.p_D.cast<double>(), phases);
+    for (std::size_t i = 0; i < transducers; ++i) {
+      out[i] += std::polar(static_cast<double>(focus.intensity), phases[i]);
+    }
+  }
+
+  // a common factor, so that the foci keep their ratios
+  double largest = 1.0;
+  for (const auto& drive : out) largest = std::max(largest, std::abs(drive));
+  for (auto& drive : out) drive /= largest;
+}
+
+std::vector<double> SimulatedArray::field(std::span<const std::complex<double>> drives,
+                                          std::span<const Vec3> points) const {
+  std::vector<double> out;
+  out.reserve(points.size());
+  for (const Vec3& p : points) {
+    std::complex<double> sum = 0.0;
+    for (std::size_t i = 0; i < drives.size(); ++i) {
+      sum += drives[i] * propagate(impl_->array, impl_->medium, i, p);
+    }
+    out.push_back(std::abs(sum));
+  }
+  return out;
+}
+
+}  // namespace prostm

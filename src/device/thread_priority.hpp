@@ -1,0 +1,12 @@
+#pragma once
+/// Asks the system to let a thread run on time.
+
+namespace prostm {
+
+/// For the calling thread: round-robin real-time scheduling where the system allows it, else a
+/// higher priority where it allows that, and wake-ups without slack. Whatever is refused is left as
+/// it is: an unprivileged process keeps the default scheduling, and the queue of blocks must cover
+/// for it.
+void raise_thread_priority() noexcept;
+
+}  // namespace prostm

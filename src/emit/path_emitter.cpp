@@ -1,0 +1,407 @@
+#include "emit/path_emitter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/latest.hpp"
+#include "emit/drive.hpp"
+#include "emit/focus_motion.hpp"
+#include "emit/matching.hpp"
+#include "emit/take_over_log.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kMaxSpeed = 8.0;  // of a focal point that sounds [m/s]
+constexpr double kFloatMargin =
+    1.0 - 1e-3;  // keeps steps within the bound after rounding positions to float
+constexpr double kMaxSlew = 1.0 / 40.0;  // of intensity, per sample
+constexpr double kSounding = 0.01;       // intensity above which a focal point must not jump
+constexpr double kMaxCoordinate = 10.0;  // of anything that is felt over an array [m]
+constexpr double kLongestWait = 1e6;     // [s]
+
+void require(double value, double low, double high, const char* name) {
+  if (std::isfinite(value) && value >= low && value <= high) return;
+  std::ostringstream text;
+  text << name << " = " << value << " must be between " << low << " and " << high;
+  throw std::invalid_argument(text.str());
+}
+
+void validate(const EmitSettings& settings, double sample_rate) {
+  constexpr double kLargest = 1e300, kSmallest = 1e-300;
+  require(settings.foci, 1, kMaxPaths, "foci");
+  require(settings.full_scale_pressure, kSmallest, kLargest, "full_scale_pressure");
+  require(settings.silent_below, 0.0, 0.999, "silent_below");
+  require(settings.power_limit, 1e-6, kMaxPaths, "power_limit");
+  require(settings.fade_time, 1e-6, 0.02, "fade_time");
+  require(settings.stall_time, 1e-3, kLongestWait, "stall_time");
+  require(settings.stall_fade_time, 1e-6, 0.04, "stall_fade_time");
+  require(sample_rate, 1e3, 1e6, "sample_rate");
+  if (settings.switch_at != "lap" && settings.switch_at != "now") {
+    throw std::invalid_argument("switch_at = \"" + settings.switch_at +
+                                "\" must be \"lap\" or \"now\"");
+  }
+}
+
+/// Largest change of intensity per sample for a fade over the full range.
+double slew(double fade_time, double sample_rate) {
+  return std::min(kMaxSlew, 1.0 / (fade_time * sample_rate));
+}
+
+bool usable(const LiftedPath& path) {
+  const auto in_bounds = [](double x) { return std::isfinite(x) && std::abs(x) <= kMaxCoordinate; };
+  if (path.pressure.size() != path.p_D.size() || !std::isfinite(path.speed)) return false;
+  return std::all_of(path.p_D.begin(), path.p_D.end(),
+                     [&](const Vec3& p) {
+                       return in_bounds(p.x()) && in_bounds(p.y()) && in_bounds(p.z());
+                     }) &&
+         std::all_of(path.pressure.begin(), path.pressure.end(),
+                     [](double p) { return std::isfinite(p) && std::abs(p) <= 1e300; });
+}
+
+/// What is handed to the device's thread.
+struct Message {
+  LiftedPlan plan;
+  bool lost = false;
+  bool refused = false;
+};
+
+enum class State : std::uint8_t {
+  Resting,    // silent, on no path
+  Following,  // on a path
+  Leaving     // fading to silence, then on to the next path or to rest
+};
+
+struct Focus {
+  State state = State::Resting;
+  FocusMotion motion;
+  bool has_next = false;  // a newer plan says what to do after this lap …
+  int next = kNoPath;     // … which path of it to follow, or none
+  bool in_fade = false;   // of a transition, until the intensity is what its path wants
+  bool jumped = false;    // in this sample
+  TakeOverLog::Entry entry = TakeOverLog::kNone;
+  std::int64_t to_draw = 0;  // samples of the path not drawn yet
+  FocusSample last;
+};
+
+}  // namespace
+
+void EmitSettings::visit(SettingsVisitor& v) {
+  v.field("foci", foci);
+  v.field("full_scale_pressure", full_scale_pressure);
+  v.field("silent_below", silent_below);
+  v.field("power_limit", power_limit);
+  v.field("switch_at", switch_at);
+  v.field("fade_time", fade_time);
+  v.field("stall_time", stall_time);
+  v.field("stall_fade_time", stall_fade_time);
+}
+
+struct PathEmitter::Impl {
+  Impl(const EmitSettings& s, double sample_rate);
+
+  // constant
+  const EmitSettings settings;
+  const bool at_once;  // switch_at = "now"
+  const double fade_slew, stall_slew;
+  const std::int64_t stall_samples;
+
+  // between the threads
+  Latest<Message> inbox;
+  Latest<EmitStats> published;
+
+  // device's thread
+  TakeOverLog log;
+  std::array<Focus, kMaxPaths> focus;
+  std::array<Drive, kMaxPaths> drive;
+  EmitStats stats;
+  double max_step_squared = 0.0;
+  bool fed = false;             // a plan came and was not lost since
+  std::int64_t since_plan = 0;  // samples
+
+  std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
+  const LiftedPlan& plan() const { return inbox.value().plan; }
+
+  void receive(std::int64_t sample);
+  void assign();
+  double cost(const Focus& f, const LiftedPath& path) const;
+  void release();
+  bool join(Focus& f, std::int64_t sample);
+  void jump(Focus& f, std::int64_t sample);
+  void adopt(Focus& f, std::int64_t sample);
+  void take_over(Focus& f, Drive& d, std::int64_t sample);
+  void cut_lap(const Focus& f);
+  void move(Focus& f, Drive& d, std::int64_t sample);
+  void emit(std::int64_t sample, std::span<FocusSample> out);
+  void count(Focus& f, const Drive& d, std::int64_t sample);
+};
+
+PathEmitter::Impl::Impl(const EmitSettings& s, double sample_rate)
+    : settings(s),
+      at_once(s.switch_at == "now"),
+      fade_slew(slew(s.fade_time, sample_rate)),
+      stall_slew(slew(s.stall_fade_time, sample_rate)),
+      stall_samples(static_cast<std::int64_t>(std::ceil(s.stall_time * sample_rate))) {
+  for (Focus& f : focus) {
+    f.motion.configure(sample_rate, kMaxSpeed / sample_rate * kFloatMargin);
+    f.last.p_D = f.motion.position().cast<float>();
+  }
+}
+
+/// Takes the newest message, if one came.
+void PathEmitter::Impl::receive(std::int64_t sample) {
+  if (!inbox.refresh()) return;
+  const Message& message = inbox.value();
+  if (message.lost) {
+    stats.refused_plans += message.refused ? 1 : 0;
+    fed = false;
+    release();
+    return;
+  }
+  fed = true;
+  since_plan = 0;
+  assign();
+
+  // who fades already goes over at once if it can, and so does everyone with switch_at = "now"
+  for (std::size_t i = 0; i < foci().size(); ++i) {
+    Focus& f = focus[i];
+    if (f.state == State::Leaving) {
+      drive[i].max_fall = fade_slew;
+      if (f.next != kNoPath) join(f, sample);
+    } else if (f.state == State::Following && at_once) {
+      cut_lap(f);
+      take_over(f, drive[i], sample);
+    }
+  }
+}
+
+/// Cost of a take-over in (E5) [m]: the way to go, or what stands for a fade.
+double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path) const {
+  constexpr double kFadeUp = FocusMotion::kMaxOffset, kFadeBoth = 2.0 * kFadeUp;
+  if (f.state == State::Resting) return kFadeUp;
+  const bool at_lap_end = f.state == State::Following && !at_once;
+  const PathPlace place =
+      nearest_place(path, at_lap_end ? f.motion.lap_end() : f.motion.position());
+  return f.motion.reaches(path, place) ? place.distance : kFadeBoth;
+}
+
+/// Gives each focal point its part in the newest plan.
+void PathEmitter::Impl::assign() {
+  const std::size_t paths = std::min(plan().paths.size(), foci().size());
+  stats.dropped_paths += static_cast<std::int64_t>(plan().paths.size() - paths);
+
+  MatchCosts costs{};
+  double total_length = 0.0;
+  for (std::size_t p = 0; p < paths; ++p) total_length += plan().paths[p].length;
+  for (std::size_t i = 0; i < foci().size(); ++i) {
+    for (std::size_t p = 0; p < paths; ++p) costs[i][p] = cost(focus[i], plan().paths[p]);
+    costs[i][kMaxPaths] = focus[i].state == State::Resting ? 0.0 : FocusMotion::kMaxOffset;
+  }
+  const auto match = match_paths(costs, settings.foci, static_cast<int>(paths));
+  for (std::size_t i = 0; i < foci().size(); ++i) {
+    focus[i].has_next = true;
+    focus[i].next = match[i];
+  }
+  log.arrive(plan().id, total_length);
+}
+
+/// Lets every focal point fade out and rest.
+void PathEmitter::Impl::release() {
+  for (std::size_t i = 0; i < foci().size(); ++i) {
+    Focus& f = focus[i];
+    f.has_next = true;
+    f.next = kNoPath;
+    if (f.state == State::Resting) continue;
+    if (f.state == State::Following) cut_lap(f);
+    f.state = State::Leaving;
+    f.in_fade = false;
+    drive[i].max_fall = stall_slew;
+  }
+}
+
+void PathEmitter::Impl::cut_lap(const Focus& f) {
+  if (!f.motion.at_rest() && !f.motion.lap_ended()) ++stats.laps_cut;
+}
+
+/// Goes over to the next path by moving; false when it is too far. @pre next is a path.
+bool PathEmitter::Impl::join(Focus& f, std::int64_t sample) {
+  const LiftedPath& path = plan().paths[static_cast<std::size_t>(f.next)];
+  const PathPlace place = nearest_place(path, f.motion.position());
+  if (!f.motion.reaches(path, place)) return false;
+  f.motion.join(path, place);
+  adopt(f, sample);
+  return true;
+}
+
+/// Goes over to the next path, or to rest, in silence.
+void PathEmitter::Impl::jump(Focus& f, std::int64_t sample) {
+  f.has_next = false;
+  if (f.next == kNoPath) {
+    log.leave(f.entry);
+    f.entry = TakeOverLog::kNone;
+    f.state = State::Resting;
+    f.in_fade = false;
+    return;
+  }
+  const LiftedPath& path = plan().paths[static_cast<std::size_t>(f.next)];
+  f.motion.jump(path, nearest_place(path, f.motion.position()));
+  f.in_fade = f.jumped = true;
+  adopt(f, sample);
+}
+
+void PathEmitter::Impl::adopt(Focus& f, std::int64_t sample) {
+  log.leave(f.entry);
+  f.entry = log.follow(sample);
+  f.has_next = false;
+  f.state = State::Following;
+  f.to_draw = f.motion.lap_samples();
+  if (!f.motion.at_rest()) ++stats.laps_started;
+}
+
+/// Starts to go over to what comes next: by moving if it is near, else by fading.
+void PathEmitter::Impl::take_over(Focus& f, Drive& d, std::int64_t sample) {
+  if (f.next != kNoPath && join(f, sample)) return;
+  f.state = State::Leaving;
+  f.in_fade = true;
+  d.max_fall = fade_slew;
+}
+
+/// One focal point to its next sample: take-overs, position, and the intensity that its path wants.
+void PathEmitter::Impl::move(Focus& f, Drive& d, std::int64_t sample) {
+  d.wanted = 0.0;
+  f.jumped = false;
+  if (f.state == State::Following && f.motion.lap_ended()) {
+    if (f.has_next) {
+      take_over(f, d, sample);
+    } else if (!f.motion.at_rest()) {
+      ++stats.laps_started;
+    }
+  }
+
+  // silent: on to the next path, where this sample stays silent, so that no one feels the jump
+  if (f.state != State::Following && d.intensity <= 0.0) {
+    if (f.has_next) jump(f, sample);
+  }
+  if (f.jumped || f.state == State::Resting) return;
+
+  // along the path
+  const double pressure = f.motion.advance();
+  if (f.state == State::Leaving) return;
+  bool saturated = false;
+  d.wanted =
+      drive_intensity(pressure, settings.full_scale_pressure, settings.silent_below, saturated);
+  d.max_fall = fade_slew;
+  stats.saturated += saturated ? 1 : 0;
+}
+
+/// Keeps the books of one focal point after a sample.
+void PathEmitter::Impl::count(Focus& f, const Drive& d, std::int64_t sample) {
+  // a fade ends when the intensity is the path's
+  if (f.state == State::Following && !f.jumped && d.intensity >= d.wanted) f.in_fade = false;
+  stats.faded += f.in_fade ? 1 : 0;
+
+  // what has been drawn of the path, once round
+  if (f.state == State::Following && !f.in_fade && f.motion.on_path() && f.to_draw > 0) {
+    --f.to_draw;
+    log.draw(f.entry, f.motion.length() / static_cast<double>(f.motion.lap_samples()), sample);
+  }
+
+  // the largest step while it sounds
+  FocusSample now;
+  now.p_D = f.motion.position().cast<float>();
+  now.intensity = static_cast<float>(d.intensity);
+  if (std::max(now.intensity, f.last.intensity) > static_cast<float>(kSounding)) {
+    const double step = (now.p_D.cast<double>() - f.last.p_D.cast<double>()).squaredNorm();
+    max_step_squared = std::max(max_step_squared, step);
+  }
+  f.last = now;
+}
+
+/// One sample of every focal point.
+void PathEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
+  // silent stall
+  if (fed && ++since_plan > stall_samples) {
+    fed = false;
+    const bool sounding = std::any_of(foci().begin(), foci().end(),
+                                      [](const Focus& f) { return f.state != State::Resting; });
+    stats.stalls += sounding ? 1 : 0;
+    release();
+  }
+
+  // what the paths want, then what the limits allow
+  for (std::size_t i = 0; i < out.size(); ++i) move(focus[i], drive[i], sample);
+  const std::span<Drive> drives(drive.data(), out.size());
+  const bool limited = limit_drives(drives, fade_slew, settings.power_limit);
+
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    stats.limited += limited && drive[i].wanted > 0.0 ? 1 : 0;
+    count(focus[i], drive[i], sample);
+    out[i] = focus[i].last;
+  }
+}
+
+PathEmitter::PathEmitter(const EmitSettings& settings, double sample_rate) {
+  validate(settings, sample_rate);
+  impl_ = std::make_unique<Impl>(settings, sample_rate);
+}
+
+PathEmitter::~PathEmitter() = default;
+
+LiftedPlan& PathEmitter::draft() {
+  return impl_->inbox.draft().plan;
+}
+
+void PathEmitter::submit() noexcept {
+  Message& message = impl_->inbox.draft();
+  auto& paths = message.plan.paths;
+  message.refused = !std::all_of(paths.begin(), paths.end(), usable);
+  message.lost = message.refused;
+  if (!message.refused) {
+    const auto empty = [](const LiftedPath& path) { return path.p_D.empty(); };
+    paths.erase(std::remove_if(paths.begin(), paths.end(), empty), paths.end());
+    for (LiftedPath& path : paths) measure(path);
+  }
+  impl_->inbox.publish();
+}
+
+void PathEmitter::lose() noexcept {
+  Message& message = impl_->inbox.draft();
+  message.lost = true;
+  message.refused = false;
+  impl_->inbox.publish();
+}
+
+int PathEmitter::foci() const {
+  return impl_->settings.foci;
+}
+
+void PathEmitter::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
+  Impl& impl = *impl_;
+  const auto foci = static_cast<std::size_t>(impl.settings.foci);
+  const std::size_t samples = out.size() / foci;
+  impl.receive(first);
+  for (std::size_t i = 0; i < samples; ++i) {
+    impl.emit(first + static_cast<std::int64_t>(i), out.subspan(i * foci, foci));
+  }
+
+  // counters for stats()
+  impl.stats.samples += static_cast<std::int64_t>(samples * foci);
+  impl.stats.max_focus_step = std::sqrt(impl.max_step_squared);
+  impl.published.draft() = impl.stats;
+  impl.published.publish();
+}
+
+bool PathEmitter::next_take_over(TakeOver& out) {
+  return impl_->log.next(out);
+}
+
+EmitStats PathEmitter::stats() const {
+  impl_->published.refresh();
+  return impl_->published.value();
+}
+
+}  // namespace prostm
