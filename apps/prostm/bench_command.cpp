@@ -47,6 +47,8 @@ StageTimes median(const std::vector<StageTimes>& repeats) {
 
 /// One planner's times and quality over the fields of a recording.
 struct Column {
+  explicit Column(std::string planner) : name(std::move(planner)) {}
+
   std::string name;
   std::array<Distribution, kStages> stage;
   Distribution rmse, correlation, coverage;
@@ -146,8 +148,7 @@ int bench_command(const BenchOptionsGiven& given) {
   const Interrupt interrupt;
   for (const std::string& file : given.files) {
     const RecordingReader recording(file);
-    Column ours{"prostm " + settings.plan.preset, {}, {}, {}, {}},
-        baseline{"textbook", {}, {}, {}, {}};
+    Column ours("prostm " + settings.plan.preset), baseline("textbook");
     bool complete = false;
     {
       Progress progress("planning " + file);
