@@ -29,7 +29,7 @@ WorkerPool::WorkerPool(int threads) {
     throw std::invalid_argument("threads = " + std::to_string(threads) + " must be at least 1");
   }
   for (int i = 1; i < threads; ++i) {
-    workers_.emplace_back([this](std::stop_token stop) { work(stop); });
+    workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   }
 }
 
@@ -84,7 +84,7 @@ void WorkerPool::drain(std::uint64_t region) {
   }
 }
 
-void WorkerPool::work(std::stop_token stop) {
+void WorkerPool::work(const std::stop_token& stop) {
   std::uint64_t seen = 0;
   while (!stop.stop_requested()) {
     for (int spins = 0; spins < kSpins && region_.load(std::memory_order_acquire) == seen; ++spins)

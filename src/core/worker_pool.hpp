@@ -42,7 +42,7 @@ class WorkerPool {
  private:
   using Call = void (*)(void*, int);
   void run_erased(int n, Call call, void* context);
-  void work(std::stop_token stop);
+  void work(const std::stop_token& stop);
   void drain(std::uint64_t region);
 
   // A region's indices are handed out from one word: region number (24 bits), size (20), next index
