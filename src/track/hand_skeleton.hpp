@@ -1,0 +1,15 @@
+#pragma once
+/// A right hand of average size from a pose and joint angles. Private to track.
+
+#include "track/hand_frame.hpp"
+
+namespace prostm {
+
+/// Joints, orientations and radii of a right hand, (H2) and (H3) of docs/design.md.
+/// @param X_TH pose of the palm: origin at the palm joint, x towards the little finger, y dorsal, z
+/// towards the wrist.
+/// @param closure of the fingers: 0 open, 1 a loose fist. Beyond these it extrapolates.
+/// Sets position, orientation and radius of `hand` and leaves the rest.
+void pose_skeleton(const Pose& X_TH, double closure, Hand& hand) noexcept;
+
+}  // namespace prostm

@@ -1,0 +1,60 @@
+#include "track/track_settings.hpp"
+
+#include <sstream>
+#include <stdexcept>
+
+namespace prostm {
+namespace {
+
+void require(const char* name, double value, double low, double high, const char* unit) {
+  if (value >= low && value <= high) return;
+  std::ostringstream sentence;
+  sentence << name << " = " << value << unit << " must be between " << low << unit << " and "
+           << high << unit;
+  throw std::invalid_argument(sentence.str());
+}
+
+void require_factor(const char* name, double value) {
+  if (value > 0.0 && value <= 1.0) return;
+  std::ostringstream sentence;
+  sentence << name << " = " << value << " must be above 0 and at most 1, where 1 is no filter";
+  throw std::invalid_argument(sentence.str());
+}
+
+}  // namespace
+
+void TrackSettings::visit(SettingsVisitor& v) {
+  v.field("smoothing_time", smoothing_time);
+  v.field("max_speed", max_speed);
+  v.field("max_gap", max_gap);
+  v.field("filter_position", filter_position);
+  v.field("filter_velocity", filter_velocity);
+  v.field("filter_position_scale", filter_position_scale);
+  v.field("filter_velocity_scale", filter_velocity_scale);
+}
+
+void ScriptedHandSettings::visit(SettingsVisitor& v) {
+  v.field("height", height);
+  v.field("period", period);
+  v.field("jitter", jitter);
+  v.field("seed", seed);
+  v.field("still", still);
+}
+
+void validate(const TrackSettings& settings) {
+  require("smoothing_time", settings.smoothing_time, 0.001, 0.5, " s");
+  require("max_speed", settings.max_speed, 0.01, 100.0, " m/s");
+  require("max_gap", settings.max_gap, 0.001, 10.0, " s");
+  require_factor("filter_position", settings.filter_position);
+  require_factor("filter_velocity", settings.filter_velocity);
+  require("filter_position_scale", settings.filter_position_scale, 1e-5, 1.0, " m");
+  require("filter_velocity_scale", settings.filter_velocity_scale, 1e-4, 100.0, " m/s");
+}
+
+void validate(const ScriptedHandSettings& settings) {
+  require("height", settings.height, 0.10, 0.60, " m");
+  require("period", settings.period, 5.0, 3600.0, " s");
+  require("jitter", settings.jitter, 0.0, 0.01, " m");
+}
+
+}  // namespace prostm
