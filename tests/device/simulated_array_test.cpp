@@ -1,0 +1,347 @@
+#include "device/simulated_array.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "core/random.hpp"
+#include "core/units.hpp"
+#include "emit/path_emitter.hpp"
+#include "support/heap_guard.hpp"
+
+namespace prostm {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+/// Samples that carry their own number.
+class Counter final : public SampleSource {
+ public:
+  explicit Counter(int foci = 2) : foci_(foci) {}
+  int foci() const override { return foci_; }
+  void fill(std::int64_t first, std::span<FocusSample> out) noexcept override {
+    consecutive = consecutive && first == next_;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i].p_D.x() =
+          static_cast<float>(first) + static_cast<float>(i / static_cast<std::size_t>(foci_));
+      out[i].p_D.y() = static_cast<float>(i % static_cast<std::size_t>(foci_));
+      out[i].intensity = 1.0F;
+    }
+    next_ = first + static_cast<std::int64_t>(out.size()) / foci_;
+  }
+  bool consecutive = true;
+
+ private:
+  int foci_;
+  std::int64_t next_ = 0;
+};
+
+SimulatedArraySettings by_hand() {
+  SimulatedArraySettings settings;
+  settings.realtime = false;
+  return settings;
+}
+
+template <class Settings>
+SimulatedArray make(const Settings& settings) {
+  return SimulatedArray(settings, usx_array(), Medium());
+}
+
+void wait_until(const std::function<bool()>& done) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!done() && std::chrono::steady_clock::now() < limit) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+TEST(SimulatedArray, PullsByHandAndReadsBack) {
+  SimulatedArray array = make(by_hand());
+  EXPECT_EQ(array.status(), DeviceStatus::Idle);
+  EXPECT_EQ(array.info().block_samples, 40);
+  Counter counter(3);
+  ASSERT_EQ(array.start(counter), DeviceStatus::Running);
+  array.pull(100);
+  EXPECT_EQ(array.samples(), 4000);
+  EXPECT_EQ(array.foci(), 3);
+  EXPECT_EQ(array.stats().blocks, 100);
+  EXPECT_EQ(array.stats().late_blocks, 0);
+  EXPECT_EQ(array.stats().queue_blocks, 8);
+  const auto samples = array.read_back(1234, 100);
+  ASSERT_EQ(samples.size(), 300u);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(samples[i].p_D.x(), static_cast<float>(1234 + i / 3));
+    EXPECT_EQ(samples[i].p_D.y(), static_cast<float>(i % 3));
+  }
+  EXPECT_DOUBLE_EQ(array.play_time(4000), 0.1);
+  EXPECT_THROW(array.read_back(3999, 2), std::out_of_range);
+  EXPECT_THROW(array.read_back(-1, 1), std::out_of_range);
+  EXPECT_THROW(array.read_back(0, std::numeric_limits<std::int64_t>::max()), std::out_of_range);
+  EXPECT_TRUE(array.read_back(4000, 0).empty());
+}
+
+TEST(SimulatedArray, KeepsTheHistoryThatWasAskedFor) {
+  SimulatedArraySettings settings = by_hand();
+  settings.history = 0.5;
+  SimulatedArray array = make(settings);
+  Counter counter;
+  array.start(counter);
+  array.pull(2000);
+  EXPECT_EQ(array.samples(), 80000);
+  const auto samples = array.read_back(60000, 20000);
+  for (std::size_t i = 0; i < 20000; ++i) {
+    ASSERT_EQ(samples[2 * i].p_D.x(), static_cast<float>(60000 + i));
+  }
+  EXPECT_THROW(array.read_back(59999, 1), std::out_of_range);
+  EXPECT_TRUE(counter.consecutive);
+}
+
+TEST(SimulatedArray, PullingAllocatesNothing) {
+  SimulatedArray array = make(by_hand());
+  Counter counter;
+  array.start(counter);
+  const test::HeapGuard guard;
+  array.pull(100);
+  EXPECT_EQ(guard.allocations(), 0u);
+}
+
+TEST(SimulatedArray, SegmentsRepeatAndTakeOverAtTheirEnd) {
+  SimulatedArray array = make(by_hand());
+  const auto segment = [](std::size_t samples, float mark) {
+    std::vector<FocusSample> out(samples * 2);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i].p_D = Eigen::Vector3f(static_cast<float>(i / 2), mark, 0.2F);
+      out[i].intensity = 0.5F;
+    }
+    return out;
+  };
+  ASSERT_EQ(array.load_segment(segment(70, 1.0F), 2), DeviceStatus::Running);
+  array.pull(5);  // 200 samples: two laps and 60 samples
+  ASSERT_EQ(array.load_segment(segment(30, 2.0F), 2), DeviceStatus::Running);
+  array.pull(5);
+  const auto samples = array.read_back(0, 400);
+  for (std::size_t i = 0; i < 400; ++i) {
+    const bool old = i < 210;
+    EXPECT_EQ(samples[2 * i].p_D.y(), old ? 1.0F : 2.0F) << i;
+    EXPECT_EQ(samples[2 * i].p_D.x(), static_cast<float>(old ? i % 70 : (i - 210) % 30)) << i;
+  }
+}
+
+TEST(SimulatedArray, RefusesWithASentence) {
+  SimulatedArray array = make(by_hand());
+  Counter nine(9), two(2), other(2);
+  EXPECT_EQ(array.start(nine), DeviceStatus::Refused);
+  EXPECT_EQ(array.status(), DeviceStatus::Refused);
+  EXPECT_EQ(array.problem(),
+            "The stream has 9 focal points a sample; the simulated array plays 1 to 8.");
+  EXPECT_EQ(array.load_segment(std::vector<FocusSample>(5), 2), DeviceStatus::Refused);
+  EXPECT_EQ(array.load_segment({}, 2), DeviceStatus::Refused);
+  EXPECT_EQ(array.load_segment(std::vector<FocusSample>(4), 0), DeviceStatus::Refused);
+  std::vector<FocusSample> bad(4);
+  bad[3].p_D.z() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(array.load_segment(bad, 2), DeviceStatus::Refused);
+  EXPECT_EQ(
+      array.problem(),
+      "Sample 1 of the segment has a number that is not finite or an intensity outside of 0 to 1.");
+
+  // what runs goes on running when something else is refused
+  ASSERT_EQ(array.start(two), DeviceStatus::Running);
+  EXPECT_EQ(array.problem(), "");
+  EXPECT_EQ(array.start(other), DeviceStatus::Refused);
+  EXPECT_EQ(array.load_segment(std::vector<FocusSample>(4), 2), DeviceStatus::Refused);
+  EXPECT_EQ(array.status(), DeviceStatus::Running);
+  array.stop();
+  EXPECT_EQ(array.status(), DeviceStatus::Idle);
+
+  SimulatedFaults faults;
+  faults.refuse = true;
+  array.set_faults(faults);
+  EXPECT_EQ(array.start(two), DeviceStatus::Refused);
+  EXPECT_EQ(array.load_segment(std::vector<FocusSample>(4), 2), DeviceStatus::Refused);
+  EXPECT_NE(array.problem(), "");
+  array.set_faults({});
+  EXPECT_EQ(array.start(two), DeviceStatus::Running);
+}
+
+TEST(SimulatedArray, VanishesAndComesBack) {
+  for (const bool realtime : {false, true}) {
+    SimulatedArraySettings settings;
+    settings.realtime = realtime;
+    SimulatedArray array = make(settings);
+    SimulatedFaults faults;
+    faults.vanish_after = 20;
+    array.set_faults(faults);
+    Counter counter;
+    ASSERT_EQ(array.start(counter), DeviceStatus::Running);
+    if (!realtime) array.pull(50);
+    wait_until([&] { return array.status() == DeviceStatus::Vanished; });
+    EXPECT_EQ(array.status(), DeviceStatus::Vanished);
+    EXPECT_EQ(array.problem(),
+              "The simulated array vanished after 20 blocks, as it was told to; start it again.");
+    EXPECT_EQ(array.stats().blocks, 20);
+    array.set_faults({});
+    Counter again;
+    EXPECT_EQ(array.start(again), DeviceStatus::Running);
+    if (!realtime) array.pull(50);
+    wait_until([&] { return array.stats().blocks >= 30; });
+    EXPECT_GE(array.stats().blocks, 30);
+    EXPECT_EQ(array.status(), DeviceStatus::Running);
+  }
+}
+
+TEST(SimulatedArray, KeepsRealTime) {
+  SimulatedArray array = make(SimulatedArraySettings());
+  Counter counter;
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(array.start(counter), DeviceStatus::Running);
+  wait_until([&] { return array.stats().blocks >= 200; });
+  const double elapsed = Seconds(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GE(elapsed, 0.199);  // never ahead of time: block 199 is asked for at 199 ms
+  const DeviceStats stats = array.stats();
+  const std::int64_t played = array.samples();
+  const auto now = std::chrono::steady_clock::now();
+  // what has been played lies in the past, what has not in the future
+  const double now_s = Seconds(now.time_since_epoch()).count();
+  EXPECT_LE(array.play_time(played - 1), now_s);
+  EXPECT_GT(array.play_time(played + 4000), now_s);
+  EXPECT_LE(played, stats.blocks * 40 + 40 * 100);
+  const auto samples = array.read_back(played - 40, 40);
+  for (std::size_t i = 0; i < 40; ++i) {
+    EXPECT_EQ(samples[2 * i].p_D.x(), static_cast<float>(played - 40) + static_cast<float>(i));
+  }
+  array.stop();
+  EXPECT_TRUE(counter.consecutive);
+  EXPECT_EQ(array.status(), DeviceStatus::Idle);
+}
+
+TEST(SimulatedArray, DelayMakesBlocksLateAndThenMissed) {
+  SimulatedArray array = make(SimulatedArraySettings());
+  SimulatedFaults faults;
+  faults.delay = 3e-3;
+  array.set_faults(faults);
+  Counter counter;
+  array.start(counter);
+  wait_until([&] { return array.stats().blocks >= 50; });
+  array.stop();
+  EXPECT_EQ(array.stats().late_blocks, array.stats().blocks);
+
+  faults.delay = 30e-3;  // longer than the queue of 8 ms
+  array.set_faults(faults);
+  Counter again;
+  array.start(again);
+  wait_until([&] { return array.stats().blocks >= 3; });
+  array.stop();
+  EXPECT_GE(array.stats().missed_blocks, 22);
+  EXPECT_TRUE(again.consecutive);  // no sample is skipped
+}
+
+TEST(SimulatedArray, StreamsPlansThatComeMeanwhile) {
+  SimulatedArray array = make(SimulatedArraySettings());
+  EmitSettings settings;
+  settings.full_scale_pressure = 1.0;
+  PathEmitter emitter(settings, array.info().sample_rate);
+  ASSERT_EQ(array.start(emitter), DeviceStatus::Running);
+  Random random(1);
+  TakeOver report;
+  for (int k = 0; k < 100; ++k) {
+    LiftedPlan& plan = emitter.draft();
+    plan.id = k;
+    plan.paths.clear();
+    for (int p = 0; p < 4; ++p) {
+      LiftedPath path;
+      path.speed = 7.0;
+      const Vec3 centre(0.05 * p, 0.001 * k, 0.2);
+      for (int i = 0; i < 30; ++i) {
+        const double a = 2.0 * kPi * i / 30.0;
+        path.p_D.push_back(centre + 0.015 * Vec3(std::cos(a), std::sin(a), 0.0));
+        path.pressure.push_back(random.uniform());
+      }
+      plan.paths.push_back(path);
+    }
+    emitter.submit();
+    while (emitter.next_take_over(report)) array.play_time(report.first_sample);
+    array.stats();
+    emitter.stats();
+    std::this_thread::sleep_for(std::chrono::milliseconds(4));
+  }
+  array.stop();
+  const EmitStats stats = emitter.stats();
+  EXPECT_EQ(stats.samples, array.stats().blocks * 160);
+  EXPECT_LE(stats.max_focus_step, 0.2e-3);
+  EXPECT_GT(stats.laps_started, 40);
+}
+
+TEST(SimulatedArray, HalfTheTargetGivesHalfTheRadiationPressure) {
+  const SimulatedArray array = make(by_hand());
+  const Medium air;
+  const auto reached = [&](double pressure) {
+    bool saturated = false;
+    FocusSample sample;
+    sample.p_D = Eigen::Vector3f(0.01F, -0.02F, 0.18F);
+    sample.intensity = static_cast<float>(drive_intensity(pressure, 10.0, 0.01, saturated));
+    std::vector<std::complex<double>> drives;
+    array.drives(std::vector<FocusSample>{sample}, drives);
+    const std::vector<Vec3> points{sample.p_D.cast<double>()};
+    return radiation_pressure(array.field(drives, points)[0], air);
+  };
+  EXPECT_NEAR(reached(5.0) / reached(10.0), 0.5, 1e-6);
+  EXPECT_NEAR(reached(2.5) / reached(10.0), 0.25, 1e-6);
+  EXPECT_NEAR(reached(0.2) / reached(10.0), 0.02, 1e-6);
+}
+
+TEST(SimulatedArray, OneFocusAtFullDriveUsesEveryTransducerFully) {
+  const SimulatedArray array = make(by_hand());
+  FocusSample sample;
+  sample.p_D = Eigen::Vector3f(0.0F, 0.0F, 0.2F);
+  sample.intensity = 1.0F;
+  std::vector<std::complex<double>> drives;
+  array.drives(std::vector<FocusSample>{sample}, drives);
+  ASSERT_EQ(drives.size(), 256u);
+  for (const auto& drive : drives) EXPECT_NEAR(std::abs(drive), 1.0, 1e-12);
+  // in phase at the focus: the sum of the amplitudes
+  const TransducerArray usx = usx_array();
+  double sum = 0.0;
+  const Vec3 focus(0.0, 0.0, 0.2);
+  for (std::size_t i = 0; i < 256; ++i) sum += std::abs(propagate(usx, Medium(), i, focus));
+  EXPECT_NEAR(array.field(drives, std::vector<Vec3>{focus})[0], sum, 1e-4 * sum);
+}
+
+TEST(SimulatedArray, SeveralFociAreScaledTogether) {
+  const SimulatedArray array = make(by_hand());
+  std::vector<FocusSample> foci(4);
+  for (std::size_t f = 0; f < 4; ++f) {
+    foci[f].p_D = Eigen::Vector3f(0.03F * static_cast<float>(f) - 0.045F, 0.0F, 0.2F);
+    foci[f].intensity = f == 0 ? 0.5F : 1.0F;
+  }
+  std::vector<std::complex<double>> drives;
+  array.drives(foci, drives);
+  double largest = 0.0;
+  for (const auto& drive : drives) largest = std::max(largest, std::abs(drive));
+  EXPECT_NEAR(largest, 1.0, 1e-12);
+  for (FocusSample& f : foci) f.intensity = 0.0F;
+  array.drives(foci, drives);
+  for (const auto& drive : drives) EXPECT_EQ(std::abs(drive), 0.0);
+}
+
+TEST(SimulatedArray, SettingsAreChecked) {
+  SimulatedArraySettings settings = by_hand();
+  settings.queue_blocks = 11;
+  try {
+    make(settings);
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "queue_blocks = 11 must be between 1 and 10");
+  }
+  settings = by_hand();
+  settings.sample_rate = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(make(settings), std::invalid_argument);
+  settings = by_hand();
+  settings.max_foci = 0;
+  EXPECT_THROW(make(settings), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace prostm
