@@ -1,0 +1,204 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "io/field_file.hpp"
+#include "io/file.hpp"
+#include "io/input_errors.hpp"
+#include "io/json.hpp"
+#include "io/random_field.hpp"
+#include "support/shared.hpp"
+
+namespace prostm {
+namespace {
+
+using test::input_error;
+using testing::HasSubstr;
+
+constexpr const char* kField =
+    R"({"format": "prostm-field/1", "cell_mm": 5, "origin_mm": [-10, 20.5],
+ "rows": 2, "cols": 3, "pressure": [[0, 1.5, null], [2e-3, 4, 0.25]],
+ "height_mm": [[1, 2, null], [3, 4.5, -6]],
+ "plane": {"origin_mm": [1, 2, 180], "x": [0, 1, 0], "y": [-1, 0, 0]}})";
+
+/// The example with one piece replaced.
+std::string with(const std::string& old_text, const std::string& new_text) {
+  std::string text = kField;
+  const std::size_t at = text.find(old_text);
+  EXPECT_NE(at, text.npos) << old_text;
+  return text.replace(at, old_text.size(), new_text);
+}
+
+TEST(FieldJson, ReadsEveryMember) {
+  const TargetField field = field_from_json(kField, "a.json");
+  validate(field);
+  EXPECT_EQ(field.rows, 2);
+  EXPECT_EQ(field.cols, 3);
+  EXPECT_EQ(field.cell, 0.005);
+  EXPECT_EQ(field.origin, Vec2(-0.01, 0.0205));
+  EXPECT_THAT(field.pressure, testing::ElementsAre(0, 1.5, 0, 2e-3, 4, 0.25));
+  EXPECT_THAT(field.skin, testing::ElementsAre(1, 1, 0, 1, 1, 1));
+  EXPECT_EQ(field.height[4], 0.0045);
+  EXPECT_TRUE(field.height[2] == 0.002 || field.height[2] == -0.006);  // of a neighbour with skin
+  EXPECT_TRUE(
+      (field.X_DP * Vec3(0.01, 0.02, 0.03)).isApprox(Vec3(0.001 - 0.02, 0.002 + 0.01, 0.21)));
+}
+
+TEST(FieldJson, LiesAboveTheArrayWithoutAPlane) {
+  const TargetField field = field_from_json(
+      R"({"format":"prostm-field/1","cell_mm":1,"origin_mm":[0,0],"rows":1,"cols":1,"pressure":[[3]]})",
+      "a");
+  EXPECT_TRUE(field.X_DP.isApprox(TargetField::default_plane()));
+  EXPECT_EQ(field.height[0], 0.0);
+}
+
+TEST(FieldJson, RoundTripsExactly) {
+  Random random(5);
+  for (int trial = 0; trial < 200; ++trial) {
+    const TargetField field = test::random_field(random);
+    const std::string text = field_to_json(field);
+    const TargetField back = field_from_json(text, "a.json");
+    EXPECT_EQ(back.rows, field.rows);
+    EXPECT_EQ(back.cols, field.cols);
+    EXPECT_EQ(back.cell, field.cell);
+    EXPECT_EQ(back.origin, field.origin);
+    EXPECT_EQ(back.pressure, field.pressure);
+    EXPECT_EQ(back.skin, field.skin);
+    EXPECT_EQ(back.height, field.height);
+    EXPECT_TRUE(back.X_DP.isApprox(field.X_DP, 1e-14));
+    EXPECT_EQ(field_to_json(back), text);
+  }
+}
+
+TEST(FieldJson, TakesAxesThatAreNearlyOrthonormal) {
+  const TargetField field = field_from_json(
+      with("[0, 1, 0], \"y\": [-1, 0, 0]", "[0, 1.0000004, 0], \"y\": [-1, 3e-7, 0]"), "a");
+  EXPECT_NO_THROW(validate(field));
+  EXPECT_NEAR(
+      (field.X_DP.linear().transpose() * field.X_DP.linear() - Eigen::Matrix3d::Identity()).norm(),
+      0.0, 1e-15);
+}
+
+struct Wrong {
+  const char* old_text;
+  const char* new_text;
+  const char* sentence;
+};
+
+TEST(FieldJson, SaysWhatIsWrong) {
+  const Wrong wrongs[] = {
+      {"prostm-field/1", "prostm-field/2", "must be \"prostm-field/1\""},
+      {"\"format\": \"prostm-field/1\", ", "", "\"format\" is missing"},
+      {"\"cell_mm\": 5", "\"cell_mm\": 0", "\"cell_mm\" is 0; it must be the edge of a cell"},
+      {"\"cell_mm\": 5", "\"cell_mm\": -5", "\"cell_mm\" is -5"},
+      {"\"cell_mm\": 5", "\"cell_mm\": 1e200", "\"cell_mm\" is 1e+200"},
+      {"\"cell_mm\": 5", "\"cell_mm\": \"5\"", "\"cell_mm\" is \"5\"; it must be a number"},
+      {"\"cell_mm\": 5, ", "", "\"cell_mm\" is missing; it must be the edge"},
+      {"[-10, 20.5]", "[-10]", "\"origin_mm\" has 1 numbers; it must have 2"},
+      {"[-10, 20.5]", "[-10, 1e12]", "\"origin_mm\"[1] is 1000000000000"},
+      {"\"rows\": 2", "\"rows\": 3", "\"pressure\" has 2 rows; it must have \"rows\" = 3"},
+      {"\"rows\": 2, \"cols\": 3", "\"rows\": 20000, \"cols\": 20000", "from 1 to 1000000 cells"},
+      {"\"rows\": 2", "\"rows\": 0", "has 0 x 3 cells"},
+      {"\"rows\": 2", "\"rows\": 2.5", "\"rows\" is 2.5; it must be a whole number"},
+      {"2e-3, 4, 0.25", "2e-3, 4",
+       "\"pressure\"[1] has 2 numbers; every row must have \"cols\" = 3"},
+      {"2e-3, 4, 0.25", "2e-3, -4, 0.25", "pressure at row 1, column 1 is -4"},
+      {"2e-3, 4, 0.25", "2e-3, 4e200, 0.25", "pressure at row 1, column 1 is 4e+200"},
+      {"2e-3, 4, 0.25", "2e-3, \"4\", 0.25", "\"pressure\"[1][1] is not a number"},
+      {"2e-3, 4, 0.25", "2e-3, NaN, 0.25", "not valid JSON at line 2, column 5"},
+      {"[3, 4.5, -6]", "[3, null, -6]", "\"height_mm\"[1][1] is null; there is skin"},
+      {"[[1, 2, null], ", "[", "\"height_mm\" has 1 rows; it must have \"rows\" = 2"},
+      {"[3, 4.5, -6]", "[3, 4.5]", "\"height_mm\"[1] has 2 numbers"},
+      {"[0, 1, 0]", "[0, 1.1, 0]", "unit vectors at a right angle"},
+      {"[0, 1, 0]", "[-1, 0, 0]", "unit vectors at a right angle"},
+      {"[0, 1, 0]", "[0, 1]", "\"plane\".x has 2 numbers; it must have 3"},
+      {"\"x\": [0, 1, 0], ", "", "\"plane\".x is missing"},
+      {"{\"origin_mm\": [1, 2, 180]", "{\"origin_mm\": [1, null, 180]",
+       "is null; it must be a number"},
+  };
+  for (const Wrong& wrong : wrongs) {
+    EXPECT_THAT(
+        input_error([&] { field_from_json(with(wrong.old_text, wrong.new_text), "a.json"); }),
+        AllOf(testing::StartsWith("a.json: "), HasSubstr(wrong.sentence)))
+        << wrong.new_text;
+  }
+}
+
+TEST(FieldJson, SaysWhereJsonBreaks) {
+  const std::string text = kField;
+  EXPECT_THAT(input_error([&] { field_from_json(text.substr(0, text.size() / 2), "a.json"); }),
+              HasSubstr("ends too early"));
+  EXPECT_THAT(input_error([&] { field_from_json("\n  x", "a.json"); }),
+              HasSubstr("line 2, column 3"));
+  EXPECT_THAT(input_error([&] { field_from_json("[1]", "a.json"); }),
+              HasSubstr("must be an object"));
+  EXPECT_THAT(input_error([&] { field_from_json(std::string(1000000, '['), "a.json"); }),
+              HasSubstr("deeper than 32"));
+  EXPECT_NO_THROW(
+      parse_json("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]", "a"));
+}
+
+TEST(FieldJson, RefusesNumbersThatNoDoubleHolds) {
+  const test::WithoutTraps scope;
+  EXPECT_THAT(input_error([&] { field_from_json(with("4, 0.25", "1e999, 0.25"), "a.json"); }),
+              HasSubstr("the number '1e999' is out of range"));
+}
+
+TEST(FieldJson, EveryCutAndFlipIsRefusedOrValid) {
+  Random random(8);
+  const std::string text = kField;
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string broken =
+        text.substr(0, static_cast<std::size_t>(random.below(static_cast<int>(text.size()))));
+    if (trial % 2 == 0) {
+      broken = text;
+      broken[static_cast<std::size_t>(random.below(static_cast<int>(text.size())))] =
+          static_cast<char>(random.below(128));
+    }
+    const test::WithoutTraps scope;
+    try {
+      const TargetField field = field_from_json(broken, "a.json");
+      EXPECT_NO_THROW(validate(field)) << broken;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), testing::StartsWith("a.json: "));
+    }
+  }
+}
+
+TEST(ToMilli, ReadsBackAsTheSameLengthWithFewDigits) {
+  EXPECT_EQ(to_milli(0.0318), 31.8);
+  EXPECT_EQ(to_milli(0.14), 140.0);
+  Random random(2);
+  for (int trial = 0; trial < 10000; ++trial) {
+    const double mm = random.uniform(-500.0, 500.0);
+    EXPECT_EQ(from_milli(to_milli(from_milli(mm))), from_milli(mm));
+  }
+}
+
+TEST(ReadField, ChoosesByTheEndingAndChecksOptions) {
+  const test::TemporaryFolder folder;
+  const std::string json = folder.file("a.json");
+  write_file(json, kField);
+  EXPECT_EQ(read_field(json).size(), 6u);
+  FieldFileOptions options;
+  options.cell_mm = 5;
+  EXPECT_THAT(input_error([&] { read_field(json, options); }), HasSubstr("leave out --cell-mm"));
+  options = {};
+  options.frame = 2;
+  EXPECT_THAT(input_error([&] { read_field(json, options); }), HasSubstr("leave out --frame"));
+  EXPECT_THAT(input_error([&] { read_field(folder.file("a.tiff")); }),
+              HasSubstr("of no known kind"));
+  write_file(folder.file("a.npy"), "x");
+  EXPECT_THAT(input_error([&] { read_field(folder.file("a.npy")); }), HasSubstr("--cell-mm"));
+  EXPECT_THAT(input_error([&] { read_field(folder.file("b.json")); }), HasSubstr("cannot be read"));
+}
+
+TEST(ReadField, ReadsThePapersTarget) {
+  PROSTM_NEEDS_SHARED("data/paper/fig2.field.json");
+  const TargetField field = read_field(test::shared_file("data/paper/fig2.field.json"));
+  validate(field);
+  EXPECT_EQ(field.rows, 39);
+  EXPECT_EQ(field.cols, 30);
+}
+
+}  // namespace
+}  // namespace prostm

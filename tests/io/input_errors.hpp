@@ -1,0 +1,67 @@
+#pragma once
+/// Bad input must answer with one sentence that says what is wrong.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cfenv>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/input_error.hpp"
+
+namespace prostm::test {
+
+/// The sentence that `action` fails with; empty (and a failure) when it does not fail.
+inline std::string input_error(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& e) {
+    const std::string sentence = e.what();
+    EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+    return sentence;
+  }
+  ADD_FAILURE() << "bad input was accepted";
+  return {};
+}
+
+/// A folder of its own, gone afterwards.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "prostm-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::size_t entries() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++count;
+    return count;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Converting a text like 1e999 overflows inside the C library, which the tests' traps would stop.
+class WithoutTraps {
+ public:
+  WithoutTraps() { std::feholdexcept(&environment_); }
+  ~WithoutTraps() { std::fesetenv(&environment_); }
+  WithoutTraps(const WithoutTraps&) = delete;
+  WithoutTraps& operator=(const WithoutTraps&) = delete;
+
+ private:
+  std::fenv_t environment_{};
+};
+
+}  // namespace prostm::test

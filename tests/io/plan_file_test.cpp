@@ -1,0 +1,190 @@
+#include "io/plan_file.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/input_errors.hpp"
+#include "io/random_field.hpp"
+
+namespace prostm {
+namespace {
+
+using test::input_error;
+using testing::HasSubstr;
+
+Plan random_plan(Random& random, int paths) {
+  Plan plan;
+  for (int i = 0; i < paths; ++i) {
+    FocalPath path;
+    path.patch = random.below(2);
+    const int points = 1 + random.below(kMaxPathPoints);
+    for (int k = 0; k < points; ++k) {
+      path.points.push_back(
+          Vec2(random.below(100000) / 1e3 / 1e3, random.below(100000) / 1e3 / 1e3));
+      path.pressure.push_back(random.uniform(0.0, 40.0));
+    }
+    path.length = closed_length(path);
+    path.speed = random.uniform(1.0, 7.0);
+    path.period = path.length / path.speed;
+    plan.paths.push_back(path);
+  }
+  return plan;
+}
+
+std::string example() {
+  Random random(4);
+  TargetField field;
+  field.resize(2, 2);
+  field.cell = 0.005;
+  field.skin[1] = 1;
+  field.height[1] = 0.001;
+  Plan plan;
+  FocalPath path;
+  for (const Vec2& x : {Vec2(0, 0), Vec2(0.03, 0), Vec2(0.03, 0.04)}) {
+    path.points.push_back(x);
+    path.pressure.push_back(2.5);
+  }
+  path.length = 0.12;
+  path.speed = 7.0;
+  path.period = path.length / path.speed;
+  plan.paths.push_back(path);
+  return plan_to_json(plan, field, {}, {}, "");
+}
+
+std::string with(const std::string& old_text, const std::string& new_text) {
+  std::string text = example();
+  const std::size_t at = text.find(old_text);
+  EXPECT_NE(at, text.npos) << old_text << " in " << text;
+  return text.replace(at, old_text.size(), new_text);
+}
+
+TEST(PlanFile, RoundTripsPathsAndRaster) {
+  Random random(9);
+  for (int trial = 0; trial < 200; ++trial) {
+    const TargetField field = test::random_field(random);
+    const Plan plan = random_plan(random, random.below(kMaxPaths + 1));
+    const PlanFile file = plan_from_json(plan_to_json(plan, field, {}, {}, ""), "plan.json");
+    ASSERT_EQ(file.plan.paths.size(), plan.paths.size());
+    for (std::size_t i = 0; i < plan.paths.size(); ++i) {
+      const FocalPath &a = file.plan.paths[i], &b = plan.paths[i];
+      EXPECT_EQ(a.patch, b.patch);
+      EXPECT_EQ(a.points, b.points);
+      EXPECT_EQ(a.pressure, b.pressure);
+      EXPECT_EQ(a.speed, b.speed);
+      EXPECT_NEAR(a.length, b.length, 1e-15);
+      EXPECT_NEAR(a.period, b.period, 1e-15);
+    }
+    EXPECT_EQ(file.raster.cell, field.cell);
+    EXPECT_EQ(file.raster.origin, field.origin);
+    EXPECT_EQ(file.raster.skin, field.skin);
+    EXPECT_EQ(file.raster.height, field.height);
+    EXPECT_TRUE(file.raster.X_DP.isApprox(field.X_DP, 1e-14));
+    EXPECT_NO_THROW(validate(file.raster));
+  }
+}
+
+TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
+  Random random(3);
+  PlanStats stats;
+  stats.kmeans = 123e-6;
+  stats.total = 4e-3;
+  stats.crossings = 2;
+  Metrics metrics;
+  metrics.rmse = 0.125;
+  metrics.correlation = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Control> controls = {{"flat field", metrics}};
+  PlanFileExtras extras;
+  extras.stats = &stats;
+  extras.metrics = &metrics;
+  extras.controls = &controls;
+  PlanSettings settings;
+  settings.preset = "paper";
+  const Plan plan = random_plan(random, 4);
+  const auto json = nlohmann::json::parse(plan_to_json(plan, test::random_field(random), settings,
+                                                       extras, R"({"emit": {"speed": 7}})"));
+  EXPECT_EQ(json["format"], "prostm-plan/1");
+  EXPECT_EQ(json["method"], "pro-stm");
+  EXPECT_EQ(json["preset"], "paper");
+  EXPECT_NEAR(json["stage_us"]["kmeans"].get<double>(), 123.0, 1e-9);
+  EXPECT_NEAR(json["stage_us"]["total"].get<double>(), 4000.0, 1e-9);
+  for (const char* stage : {"init", "tour", "split", "resample", "refine"}) {
+    EXPECT_TRUE(json["stage_us"].contains(stage));
+  }
+  EXPECT_EQ(json["violations"]["crossings"], 2);
+  EXPECT_EQ(json["metrics"]["rmse"], 0.125);
+  EXPECT_TRUE(json["metrics"]["correlation"].is_null());
+  for (const char* metric : {"coverage", "skill_0", "skill_8", "overlap", "spill"}) {
+    EXPECT_TRUE(json["metrics"].contains(metric));
+  }
+  EXPECT_EQ(json["controls"][0]["name"], "flat field");
+  EXPECT_EQ(json["settings"]["emit"]["speed"], 7);
+  const auto& path = json["paths"][0];
+  EXPECT_NEAR(path["length_mm"].get<double>(), 1e3 * plan.paths[0].length, 1e-9);
+  EXPECT_NEAR(path["period_ms"].get<double>(), 1e3 * plan.paths[0].period, 1e-9);
+  EXPECT_NEAR(path["points_mm"][0][1].get<double>(), 1e3 * plan.paths[0].points[0].y(), 1e-9);
+}
+
+TEST(PlanFile, WritesThePlannersSettingsWhenNoOthersAreGiven) {
+  const auto json = nlohmann::json::parse(example());
+  EXPECT_EQ(json["settings"]["plan"]["clusters"], 50);
+  EXPECT_EQ(json["settings"]["plan"]["preset"], "paper-valid");
+  EXPECT_FALSE(json.contains("metrics"));
+  EXPECT_FALSE(json.contains("stage_us"));
+}
+
+TEST(PlanFile, WritesTheSameBytesForTheSamePlan) {
+  EXPECT_EQ(example(), example());
+}
+
+struct Wrong {
+  const char* old_text;
+  const char* new_text;
+  const char* sentence;
+};
+
+TEST(PlanFile, SaysWhatIsWrong) {
+  const Wrong wrongs[] = {
+      {"prostm-plan/1", "prostm-field/1", "must be \"prostm-plan/1\""},
+      {"\"paths\"", "\"path\"", "\"paths\" is missing"},
+      {"[2.5,2.5,2.5]", "[2.5,2.5]", "has 2 numbers; it must have one for each of the 3 points"},
+      {"[2.5,2.5,2.5]", "[2.5,-2.5,2.5]", "pressure[1] is -2.5"},
+      {"[2.5,2.5,2.5]", "[2.5,null,2.5]", "pressure[1] is null; it must be a number"},
+      {"\"length_mm\": 120.0", "\"length_mm\": 130",
+       "is 130; the closed path through the points is 120.000 mm"},
+      {"\"speed_m_s\": 7.0", "\"speed_m_s\": 0", "speed_m_s is 0; it must be from"},
+      {"\"patch\": 0", "\"patch\": 2", "patch is 2; it must be from 0 to 1"},
+      {"[30.0,0.0]", "[30.0]", "points_mm[1] has 1 numbers; it must have 2"},
+      {"\"raster\"", "\"rester\"", "\"raster\" is missing"},
+      {"\"plane\"", "\"plain\"", "\"plane\" is missing"},
+      {"\"rows\": 2", "\"rows\": 3", "has 2 rows; it must have \"rows\" = 3"},
+  };
+  for (const Wrong& wrong : wrongs) {
+    EXPECT_THAT(
+        input_error([&] { plan_from_json(with(wrong.old_text, wrong.new_text), "p.json"); }),
+        AllOf(testing::StartsWith("p.json: "), HasSubstr(wrong.sentence)))
+        << wrong.new_text;
+  }
+}
+
+TEST(PlanFile, RefusesTooManyPathsAndPoints) {
+  const auto changed = [](const std::function<void(nlohmann::json&)>& change) {
+    auto json = nlohmann::json::parse(example());
+    change(json);
+    return input_error([&] { plan_from_json(json.dump(), "p.json"); });
+  };
+  EXPECT_THAT(changed([](auto& json) {
+                for (int i = 0; i < 8; ++i) json["paths"].push_back(json["paths"][0]);
+              }),
+              HasSubstr("has 9 paths; it must have at most 8"));
+  EXPECT_THAT(changed([](auto& json) {
+                auto& path = json["paths"][0];
+                for (int i = 0; i < 62; ++i) path["points_mm"].push_back({1, 2});
+              }),
+              HasSubstr("has 65 points; a path must have from 1 to 64"));
+  EXPECT_THAT(changed([](auto& json) { json["paths"][0]["points_mm"].clear(); }),
+              HasSubstr("has 0 points"));
+}
+
+}  // namespace
+}  // namespace prostm

@@ -1,0 +1,33 @@
+#pragma once
+/// Random target fields for round trips.
+
+#include <Eigen/Geometry>
+
+#include "core/random.hpp"
+#include "target/target_field.hpp"
+
+namespace prostm::test {
+
+/// Skin with gaps, pressures over many magnitudes, heights, a tilted plane; lengths that files hold
+/// exactly.
+inline TargetField random_field(Random& random) {
+  TargetField field;
+  field.resize(1 + random.below(20), 1 + random.below(20));
+  field.cell = (1 + random.below(100)) / 10.0 / 1000.0;
+  const auto length = [&] { return (random.below(400000) - 200000) / 1000.0 / 1000.0; };
+  field.origin = Vec2(length(), length());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (random.uniform() < 0.3) continue;
+    field.skin[i] = 1;
+    field.pressure[i] = std::exp(random.uniform(-50.0, 50.0));
+    field.height[i] = (random.below(40000) - 20000) / 1000.0 / 1000.0;
+  }
+  fill_heights(field);
+  const Quat q =
+      Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
+  field.X_DP.linear() = q.toRotationMatrix();
+  field.X_DP.translation() = Vec3(length(), length(), length());
+  return field;
+}
+
+}  // namespace prostm::test

@@ -1,0 +1,235 @@
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+#include "io/field_file.hpp"
+#include "io/file.hpp"
+#include "io/input_errors.hpp"
+#include "io/random_field.hpp"
+#include "io/recorder.hpp"
+
+namespace prostm {
+namespace {
+
+using test::input_error;
+using testing::HasSubstr;
+
+HandFrame hand_at(double time) {
+  HandFrame frame;
+  frame.time = time;
+  Hand hand;
+  hand.id = 7;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    hand.position[j] = Vec3(0.001 * static_cast<double>(j), 0.0, 0.2);
+    hand.orientation[j] = Quat::Identity();
+    hand.radius[j] = 0.01;
+    hand.velocity[j] = Vec3(0.1, 0.0, 0.0);
+  }
+  frame.hands.push_back(hand);
+  return frame;
+}
+
+std::vector<TargetFrame> random_frames(int count) {
+  Random random(21);
+  std::vector<TargetFrame> frames;
+  for (int i = 0; i < count; ++i) {
+    TargetFrame frame;
+    frame.time = 0.02 * i;
+    const int patches = random.below(3);
+    for (int p = 0; p < patches; ++p) frame.patches.push_back(test::random_field(random));
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+Plan one_path() {
+  Plan plan;
+  FocalPath path;
+  for (const Vec2& x : {Vec2(0, 0), Vec2(0.03, 0), Vec2(0.03, 0.04)}) {
+    path.points.push_back(x);
+    path.pressure.push_back(2.5);
+  }
+  path.length = 0.12;
+  path.speed = 7.0;
+  path.period = path.length / path.speed;
+  plan.paths.push_back(path);
+  return plan;
+}
+
+void expect_same(const TargetFrame& a, const TargetFrame& b) {
+  EXPECT_EQ(a.time, b.time);
+  ASSERT_EQ(a.patches.size(), b.patches.size());
+  for (std::size_t p = 0; p < a.patches.size(); ++p) {
+    const TargetField &x = a.patches[p], &y = b.patches[p];
+    EXPECT_EQ(x.rows, y.rows);
+    EXPECT_EQ(x.cols, y.cols);
+    EXPECT_EQ(x.cell, y.cell);
+    EXPECT_EQ(x.origin, y.origin);
+    EXPECT_EQ(x.pressure, y.pressure);
+    EXPECT_EQ(x.skin, y.skin);
+    EXPECT_EQ(x.height, y.height);
+    EXPECT_EQ(x.X_DP.matrix(), y.X_DP.matrix());
+  }
+}
+
+std::string record(const std::string& path, const std::vector<TargetFrame>& frames) {
+  Recorder recorder(path, "{}");
+  recorder.set_attribute("scene", "one-plume");
+  const Plan plan = one_path();
+  const PlanStats stats;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool planned = i % 2 == 1;
+    recorder.append(frames[i], hand_at(frames[i].time), planned ? &plan : nullptr,
+                    planned ? &stats : nullptr);
+  }
+  recorder.set_attribute("scene", "four-plumes");
+  recorder.close();
+  return path;
+}
+
+TEST(Recording, ReadsBackWhatWasWritten) {
+  const test::TemporaryFolder folder;
+  const std::vector<TargetFrame> frames = random_frames(200);
+  const RecordingReader reader(record(folder.file("r.h5"), frames));
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_EQ(reader.scene(), "four-plumes");
+  ASSERT_EQ(reader.frames(), 200);
+  for (int i = 199; i >= 0; --i) expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
+}
+
+TEST(Recording, HoldsAnEmptyOne) {
+  const test::TemporaryFolder folder;
+  const RecordingReader reader(record(folder.file("r.h5"), {}));
+  EXPECT_EQ(reader.frames(), 0);
+  EXPECT_THAT(input_error([&] { static_cast<void>(reader.frame(0)); }),
+              HasSubstr("no frame 0; it has 0 frames"));
+}
+
+TEST(Recording, GivesTheHeavierPatchAsAField) {
+  const test::TemporaryFolder folder;
+  Random random(2);
+  TargetFrame frame;
+  frame.patches.push_back(test::random_field(random));
+  frame.patches.push_back(test::random_field(random));
+  frame.patches[0].resize(3, 3);
+  frame.patches[1].skin[0] = 1;
+  frame.patches[1].pressure[0] = 7.0;
+  TargetFrame empty;
+  empty.time = 1.0;
+  const std::string path = record(folder.file("r.h5"), {frame, empty});
+  EXPECT_EQ(read_field(path).pressure, frame.patches[1].pressure);
+  FieldFileOptions options;
+  options.frame = 1;
+  EXPECT_THAT(input_error([&] { read_field(path, options); }), HasSubstr("frame 1 holds no hand"));
+  options.frame = 2;
+  EXPECT_THAT(input_error([&] { read_field(path, options); }),
+              HasSubstr("no frame 2; it has 2 frames"));
+  options.frame = -1;
+  EXPECT_THAT(input_error([&] { read_field(path, options); }), HasSubstr("no frame -1"));
+}
+
+TEST(Recording, OpensAfterItsWriterDiedWithWhatWasFlushed) {
+  const test::TemporaryFolder folder;
+  const std::vector<TargetFrame> frames = random_frames(160);  // 3.2 s
+  const std::string path = folder.file("r.h5"), copy = folder.file("copy.h5");
+  Recorder recorder(path, "{}");
+  for (const TargetFrame& frame : frames)
+    recorder.append(frame, hand_at(frame.time), nullptr, nullptr);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  std::filesystem::copy_file(path + ".part.h5", copy);
+  const RecordingReader reader(copy);
+  ASSERT_GE(reader.frames(), 150);  // all but the last second
+  for (int i = 0; i < 150; ++i) expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
+}
+
+TEST(Recording, ReplacesAnOlderOneOnlyWhenItIsDone) {
+  const test::TemporaryFolder folder;
+  const std::string path = record(folder.file("r.h5"), random_frames(3));
+  {
+    Recorder recorder(path, "{}");
+    EXPECT_EQ(RecordingReader(path).frames(), 3);
+  }
+  EXPECT_EQ(RecordingReader(path).frames(), 0);
+}
+
+TEST(Recording, SaysWhatIsNoRecording) {
+  const test::TemporaryFolder folder;
+  const auto sentence = [](const std::string& path) {
+    return input_error([&] { const RecordingReader reader(path); });
+  };
+  EXPECT_THAT(sentence(folder.file("none.h5")), HasSubstr("cannot be read"));
+  EXPECT_THAT(sentence(folder.file("")), HasSubstr("is a folder"));
+  write_file(folder.file("text.h5"), "hello");
+  EXPECT_THAT(sentence(folder.file("text.h5")), HasSubstr("is not an HDF5 file"));
+
+  // every way to cut one off
+  const std::string bytes = read_file(record(folder.file("r.h5"), random_frames(20)));
+  for (std::size_t size = 1; size < bytes.size(); size += bytes.size() / 50) {
+    write_file(folder.file("cut.h5"), std::string_view(bytes).substr(0, size));
+    EXPECT_THAT(sentence(folder.file("cut.h5")), HasSubstr("must be a recording"));
+  }
+}
+
+TEST(Recording, CannotBeWrittenWithoutAFolder) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("missing/r.h5");
+  EXPECT_THAT(input_error([&] { const Recorder recorder(path, "{}"); }),
+              AllOf(HasSubstr(path), HasSubstr("No such file")));
+  EXPECT_THAT(input_error([&] { const Recorder recorder("/dev/full", "{}"); }),
+              HasSubstr("not an ordinary file"));
+  EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file(""), "{}"); }),
+              HasSubstr("not an ordinary file"));
+}
+
+/// A file-size limit stands for a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit tight{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &tight);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST(Recording, SaysThatTheDiskIsFullWheneverThatHappens) {
+  const std::vector<TargetFrame> frames = random_frames(300);
+  const test::TemporaryFolder sizes;
+  const auto whole = std::filesystem::file_size(record(sizes.file("r.h5"), frames));
+  for (int part = 0; part < 12; ++part) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("r.h5");
+    std::string sentence;
+    {
+      const FullDisk disk(static_cast<rlim_t>(whole * static_cast<std::uintmax_t>(part) / 12));
+      sentence = input_error([&] { record(path, frames); });
+    }
+    EXPECT_THAT(sentence, HasSubstr("cannot be written"));
+    EXPECT_FALSE(std::filesystem::exists(path));
+
+    // what is left opens, or nothing is left
+    if (std::filesystem::exists(path + ".part.h5")) {
+      EXPECT_THAT(sentence, HasSubstr(".part.h5"));
+      const RecordingReader reader(path + ".part.h5");
+      for (int i = 0; i < reader.frames(); ++i)
+        expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
+    } else {
+      EXPECT_EQ(folder.entries(), 0u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace prostm

@@ -1,0 +1,101 @@
+#include "io/settings_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "io/file.hpp"
+#include "io/input_errors.hpp"
+
+namespace prostm {
+namespace {
+
+using test::input_error;
+using testing::HasSubstr;
+
+struct Stove {
+  double power = 1.5;
+  int plates = 4;
+  bool gas = false;
+  std::string maker = "us";
+  void visit(SettingsVisitor& v) {
+    v.field("power", power);
+    v.field("plates", plates);
+    v.field("gas", gas);
+    v.field("maker", maker);
+  }
+};
+
+struct Kitchen {
+  Stove stove, oven;
+  std::vector<SettingsGroup> groups() {
+    return {{"stove", [this](SettingsVisitor& v) { stove.visit(v); }},
+            {"oven", [this](SettingsVisitor& v) { oven.visit(v); }}};
+  }
+};
+
+TEST(Settings, SetWhatTheFileGivesAndLeaveTheRest) {
+  Kitchen kitchen;
+  settings_from_toml("[stove]\npower = 2\ngas = true\n[oven]\nmaker = \"them\"\nplates = -1\n",
+                     "s.toml", kitchen.groups());
+  EXPECT_EQ(kitchen.stove.power, 2.0);
+  EXPECT_TRUE(kitchen.stove.gas);
+  EXPECT_EQ(kitchen.stove.plates, 4);
+  EXPECT_EQ(kitchen.oven.maker, "them");
+  EXPECT_EQ(kitchen.oven.plates, -1);
+  EXPECT_EQ(kitchen.oven.power, 1.5);
+}
+
+TEST(Settings, RoundTripThroughJson) {
+  Kitchen kitchen;
+  kitchen.stove.power = 0.1;
+  kitchen.oven.maker = "a \"quoted\"\nname";
+  const auto json = nlohmann::json::parse(settings_to_json(kitchen.groups()));
+  EXPECT_EQ(json["stove"]["power"].get<double>(), 0.1);
+  EXPECT_EQ(json["stove"]["plates"], 4);
+  EXPECT_EQ(json["stove"]["gas"], false);
+  EXPECT_EQ(json["oven"]["maker"], "a \"quoted\"\nname");
+}
+
+TEST(Settings, ReadAFile) {
+  const test::TemporaryFolder folder;
+  Kitchen kitchen;
+  write_file(folder.file("s.toml"), "stove.plates = 2\n");
+  read_settings(folder.file("s.toml"), kitchen.groups());
+  EXPECT_EQ(kitchen.stove.plates, 2);
+  EXPECT_THAT(input_error([&] { read_settings(folder.file("none.toml"), kitchen.groups()); }),
+              HasSubstr("cannot be read"));
+}
+
+struct Wrong {
+  const char* text;
+  const char* sentence;
+};
+
+TEST(Settings, SayWhatIsWrongAndWhere) {
+  const Wrong wrongs[] = {
+      {"[stove]\npowr = 1",
+       "s.toml, line 2: stove has no setting \"powr\"; did you mean \"power\"?"},
+      {"[stove]\nxylophone = 1", "known are power, plates, gas, maker"},
+      {"\n[stov]\npower = 1",
+       "s.toml, line 2: there is no group of settings \"stov\"; did you mean \"stove\"?"},
+      {"[bath]", "known are stove, oven"},
+      {"stove = 1", "s.toml, line 1: stove must be a group of settings, written [stove]"},
+      {"[stove]\npower = \"high\"", "s.toml, line 2: stove.power must be a number"},
+      {"[stove]\npower = inf", "stove.power must be finite"},
+      {"[stove]\npower = nan", "stove.power must be finite"},
+      {"[stove]\nplates = 2.0", "stove.plates must be a whole number"},
+      {"[stove]\nplates = 3000000000", "stove.plates must lie within 32 bits"},
+      {"[stove]\ngas = 1", "stove.gas must be true or false"},
+      {"[stove]\nmaker = 1", "stove.maker must be a text in quotes"},
+      {"[stove]\npower = ", "s.toml, line 2, column 9: is not valid TOML"},
+      {"[stove]\npower = 1\npower = 2", "is not valid TOML"},
+  };
+  for (const Wrong& wrong : wrongs) {
+    Kitchen kitchen;
+    EXPECT_THAT(input_error([&] { settings_from_toml(wrong.text, "s.toml", kitchen.groups()); }),
+                HasSubstr(wrong.sentence))
+        << wrong.text;
+  }
+}
+
+}  // namespace
+}  // namespace prostm
