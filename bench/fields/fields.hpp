@@ -11,13 +11,14 @@
 
 namespace prostm::fields {
 
-inline constexpr int kCells = 80;          ///< rows and columns
-inline constexpr double kCell = 2e-3;      ///< edge of a cell [m]
+inline constexpr int kCells = 80;      ///< rows and columns
+inline constexpr double kCell = 2e-3;  ///< edge of a cell [m]
 
 enum class Pattern { OnePlume, FourPlumes, Ring, Ridge, Letter, Noise, Fingertips, Palm };
 
-inline constexpr std::array kPatterns{Pattern::OnePlume, Pattern::FourPlumes, Pattern::Ring,       Pattern::Ridge,
-                                      Pattern::Letter,   Pattern::Noise,      Pattern::Fingertips, Pattern::Palm};
+inline constexpr std::array kPatterns{Pattern::OnePlume,   Pattern::FourPlumes, Pattern::Ring,
+                                      Pattern::Ridge,      Pattern::Letter,     Pattern::Noise,
+                                      Pattern::Fingertips, Pattern::Palm};
 
 inline std::string to_string(Pattern pattern) {
   constexpr std::array names{"one-plume", "four-plumes", "ring",       "ridge",
@@ -49,8 +50,10 @@ inline bool is_hand(const Vec2& x) {
   return false;
 }
 
-/// Pressure of a pattern at x, unscaled. `shift` moves the pattern, `size` is about 1, `phase` turns it [rad].
-inline double pattern_pressure(Pattern pattern, const Vec2& x, const Vec2& shift, double size, double phase) {
+/// Pressure of a pattern at x, unscaled. `shift` moves the pattern, `size` is about 1, `phase`
+/// turns it [rad].
+inline double pattern_pressure(Pattern pattern, const Vec2& x, const Vec2& shift, double size,
+                               double phase) {
   const auto bump = [&](const Vec2& centre, double sigma) {
     return std::exp(-0.5 * (x - shift - centre).squaredNorm() / (sigma * sigma * size * size));
   };
@@ -71,7 +74,8 @@ inline double pattern_pressure(Pattern pattern, const Vec2& x, const Vec2& shift
       return std::exp(-0.5 * d * d / (0.007 * 0.007));
     }
     case Pattern::Ridge: {
-      const double d2 = segment_distance2(x - shift, Vec2(0.0, -0.02) - 0.06 * along, Vec2(0.0, -0.02) + 0.06 * along);
+      const double d2 = segment_distance2(x - shift, Vec2(0.0, -0.02) - 0.06 * along,
+                                          Vec2(0.0, -0.02) + 0.06 * along);
       return std::exp(-0.5 * d2 / (0.009 * 0.009));
     }
     case Pattern::Letter: {
@@ -99,7 +103,8 @@ inline double pattern_pressure(Pattern pattern, const Vec2& x, const Vec2& shift
   return std::max(sum, 0.0);
 }
 
-/// One frame of a pattern: `frame` moves, sizes and turns it a little, the same way each time. Pressures are of order 1.
+/// One frame of a pattern: `frame` moves, sizes and turns it a little, the same way each time.
+/// Pressures are of order 1.
 inline TargetField make(Pattern pattern, int frame) {
   Random random(1000003u * static_cast<unsigned>(pattern) + static_cast<unsigned>(frame) + 1u);
   const Vec2 shift(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01));
@@ -115,13 +120,15 @@ inline TargetField make(Pattern pattern, int frame) {
       const Vec2 x = field.position(row, col);
       if (!is_hand(x)) continue;
       field.skin[field.index(row, col)] = 1;
-      field.pressure[field.index(row, col)] = strength * pattern_pressure(pattern, x, shift, size, phase);
+      field.pressure[field.index(row, col)] =
+          strength * pattern_pressure(pattern, x, shift, size, phase);
     }
   }
   return field;
 }
 
-/// The field turned by 90°: cell (row, col) goes to (col, rows − 1 − row), x to (height of the raster − y, x).
+/// The field turned by 90°: cell (row, col) goes to (col, rows − 1 − row), x to (height of the
+/// raster − y, x).
 inline TargetField rotated(const TargetField& field) {
   TargetField turned;
   turned.resize(field.cols, field.rows);

@@ -20,16 +20,20 @@ void slopes(double t, double* w) {
   w[3] = (1.5 * t - 1.0) * t;
 }
 
-double row(const double* w, const double* p) { return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3]; }
+double row(const double* w, const double* p) {
+  return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
+}
 
 }  // namespace
 
 Bicubic::Bicubic(const Field& field, double maximum)
     : rows_(field.rows), cols_(field.cols), stride_(field.cols + 2 * kBorder), cell_(field.cell) {
-  value_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_ + 2 * kBorder), 0.0);
+  value_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_ + 2 * kBorder),
+                0.0);
   for (int j = 0; j < rows_; ++j) {
     for (int i = 0; i < cols_; ++i) {
-      const auto from = static_cast<std::size_t>(j) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(i);
+      const auto from = static_cast<std::size_t>(j) * static_cast<std::size_t>(cols_) +
+                        static_cast<std::size_t>(i);
       const auto to = static_cast<std::size_t>(j + kBorder) * static_cast<std::size_t>(stride_) +
                       static_cast<std::size_t>(i + kBorder);
       if (field.skin[from] != 0) value_[to] = field.pressure[from] / maximum;
@@ -37,7 +41,8 @@ Bicubic::Bicubic(const Field& field, double maximum)
   }
 }
 
-/// First of the 4×4 neighbours of (u, v) in cells, or null where all are zero; s, t are the fractions.
+/// First of the 4×4 neighbours of (u, v) in cells, or null where all are zero; s, t are the
+/// fractions.
 const double* Bicubic::corner(double u, double v, double& s, double& t) const {
   if (!(u > -2.0 && u < cols_ + 1.0 && v > -2.0 && v < rows_ + 1.0)) return nullptr;
   const double i = std::floor(u), j = std::floor(v);
@@ -81,9 +86,11 @@ double Descent::cost(const Coordinates& x, const Coordinates& y) const {
   const double segment = s_.max_length / s_.samples;
   double pressure = 0, length = 0, overlap = 0, bend = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t begin = i / n * n, next = begin + (i - begin + 1) % n, before = begin + (i - begin + n - 1) % n;
+    const std::size_t begin = i / n * n, next = begin + (i - begin + 1) % n,
+                      before = begin + (i - begin + n - 1) % n;
     pressure -= raster_.value(x[i], y[i]);
-    const double bx = x[next] - x[i], by = y[next] - y[i], ax = x[i] - x[before], ay = y[i] - y[before];
+    const double bx = x[next] - x[i], by = y[next] - y[i], ax = x[i] - x[before],
+                 ay = y[i] - y[before];
     const double d = std::sqrt(bx * bx + by * by) - segment;
     length += d * d;
     const double angle = std::atan2(bx * ay - by * ax, ax * bx + ay * by);
@@ -95,10 +102,12 @@ double Descent::cost(const Coordinates& x, const Coordinates& y) const {
       overlap += depth * depth;
     }
   }
-  return s_.pressure * pressure + s_.length * length + s_.intersection * overlap + s_.bending * bend;
+  return s_.pressure * pressure + s_.length * length + s_.intersection * overlap +
+         s_.bending * bend;
 }
 
-void Descent::gradient(const Coordinates& x, const Coordinates& y, Coordinates& gx, Coordinates& gy) const {
+void Descent::gradient(const Coordinates& x, const Coordinates& y, Coordinates& gx,
+                       Coordinates& gy) const {
   const std::size_t n = static_cast<std::size_t>(s_.samples), count = x.size();
   const double segment = s_.max_length / s_.samples;
   std::fill(gx.begin(), gx.end(), 0.0);
@@ -110,14 +119,16 @@ void Descent::gradient(const Coordinates& x, const Coordinates& y, Coordinates& 
     gy[i] -= force * dy;
   };
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t begin = i / n * n, next = begin + (i - begin + 1) % n, before = begin + (i - begin + n - 1) % n;
+    const std::size_t begin = i / n * n, next = begin + (i - begin + 1) % n,
+                      before = begin + (i - begin + n - 1) % n;
     double px = 0, py = 0;
     raster_.value(x[i], y[i], px, py);
     gx[i] -= s_.pressure * px;
     gy[i] -= s_.pressure * py;
 
     // length and bending; the direction of (a_x, a_y) turns by (−a_y, a_x)/|a|²
-    const double bx = x[next] - x[i], by = y[next] - y[i], ax = x[i] - x[before], ay = y[i] - y[before];
+    const double bx = x[next] - x[i], by = y[next] - y[i], ax = x[i] - x[before],
+                 ay = y[i] - y[before];
     const double aa = ax * ax + ay * ay, bb = bx * bx + by * by, d = std::sqrt(bb);
     if (d > 1e-9) pull(i, next, 2.0 * s_.length * (d - segment) / d, bx, by);
     if (aa > 1e-18 && bb > 1e-18) {

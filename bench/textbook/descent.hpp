@@ -1,5 +1,6 @@
 #pragma once
-/// Path refinement of the textbook planner: the costs of Eqs. (2)–(5) and steepest descent with backtracking.
+/// Path refinement of the textbook planner: the costs of Eqs. (2)–(5) and steepest descent with
+/// backtracking.
 
 #include <vector>
 
@@ -7,7 +8,8 @@
 
 namespace prostm::textbook {
 
-/// p*/max p* of the skin, interpolated by Catmull-Rom bicubics; zero elsewhere. Kept with a border of zeros.
+/// p*/max p* of the skin, interpolated by Catmull-Rom bicubics; zero elsewhere. Kept with a border
+/// of zeros.
 class Bicubic {
  public:
   Bicubic(const Field& field, double maximum);
@@ -24,7 +26,8 @@ class Bicubic {
   std::vector<double> value_;
 };
 
-/// Steepest descent on the weighted sum of the four costs; x, y hold the samples of all paths, one path after the other.
+/// Steepest descent on the weighted sum of the four costs; x, y hold the samples of all paths, one
+/// path after the other.
 class Descent {
  public:
   Descent(const Bicubic& raster, const Settings& settings) : raster_(raster), s_(settings) {}

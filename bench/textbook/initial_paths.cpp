@@ -125,7 +125,8 @@ Points lloyd(const Points& points, int k, int max_iterations, Random& random, in
   centres.weight.assign(count, 0.0);
 
   std::vector<int> label(points.size(), -1);
-  for (iterations = 0; iterations < max_iterations && assign(points, centres, label); ++iterations) {
+  for (iterations = 0; iterations < max_iterations && assign(points, centres, label);
+       ++iterations) {
     update(points, label, centres);
   }
   Points kept;
@@ -168,7 +169,8 @@ void two_opt(const Points& points, Tour& tour, Random& random) {
   }
 }
 
-std::vector<Tour> split(const Points& points, const Tour& whole, double max_length, Random& random) {
+std::vector<Tour> split(const Points& points, const Tour& whole, double max_length,
+                        Random& random) {
   std::vector<Tour> open{whole}, leaves;
   while (!open.empty()) {
     const Tour tour = open.back();
@@ -181,7 +183,8 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
         first = std::min(first, axis.along(points, c));
         last = std::max(last, axis.along(points, c));
       }
-      for (const int c : tour) (axis.along(points, c) <= 0.5 * (first + last) ? low : high).push_back(c);
+      for (const int c : tour)
+        (axis.along(points, c) <= 0.5 * (first + last) ? low : high).push_back(c);
     }
     if (low.empty() || high.empty()) {
       leaves.push_back(tour);
@@ -197,7 +200,8 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
   return leaves;
 }
 
-void resample(const Points& points, const Tour& tour, int n, std::vector<double>& x, std::vector<double>& y) {
+void resample(const Points& points, const Tour& tour, int n, std::vector<double>& x,
+              std::vector<double>& y) {
   // the polygon: the tour itself, or an ellipse when it encloses nothing
   const Axis axis(points, tour);
   double low = HUGE_VAL, high = -HUGE_VAL, left = HUGE_VAL, right = -HUGE_VAL;
@@ -226,7 +230,8 @@ void resample(const Points& points, const Tour& tour, int n, std::vector<double>
       edge_length = distance(polygon, edge, (edge + 1) % corners);
     }
     const double t = edge_length > 0.0 ? std::min((s - start) / edge_length, 1.0) : 0.0;
-    const auto a = static_cast<std::size_t>(edge), b = static_cast<std::size_t>((edge + 1) % corners);
+    const auto a = static_cast<std::size_t>(edge),
+               b = static_cast<std::size_t>((edge + 1) % corners);
     x.push_back(polygon.x[a] + t * (polygon.x[b] - polygon.x[a]));
     y.push_back(polygon.y[a] + t * (polygon.y[b] - polygon.y[a]));
   }

@@ -23,7 +23,8 @@ Points strong_points(const Field& field, double maximum, double weak) {
   Points points;
   for (int j = 0; j < field.rows; ++j) {
     for (int i = 0; i < field.cols; ++i) {
-      const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(field.cols) + static_cast<std::size_t>(i);
+      const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(field.cols) +
+                      static_cast<std::size_t>(i);
       if (field.skin[at] == 0 || field.pressure[at] / maximum < weak) continue;
       points.x.push_back(field.cell * i);
       points.y.push_back(field.cell * j);
@@ -45,7 +46,8 @@ Result run(const Field& field, const Settings& s) {
   const Bicubic raster(field, maximum);
   result.init = timer.lap();
 
-  const Points clusters = lloyd(points, s.clusters, s.lloyd_iterations, random, result.lloyd_iterations);
+  const Points clusters =
+      lloyd(points, s.clusters, s.lloyd_iterations, random, result.lloyd_iterations);
   result.clusters = static_cast<int>(clusters.size());
   result.kmeans = timer.lap();
 

@@ -1,7 +1,7 @@
 #pragma once
-/// The textbook planner's computation, on plain arrays. This header and its sources hold no Eigen type: they are compiled for
-/// the machine at hand, where Eigen's types may have another alignment than in the rest of the program.
-/// Lengths in mm from the centre of cell (0, 0).
+/// The textbook planner's computation, on plain arrays. This header and its sources hold no Eigen
+/// type: they are compiled for the machine at hand, where Eigen's types may have another alignment
+/// than in the rest of the program. Lengths in mm from the centre of cell (0, 0).
 
 #include <cstdint>
 #include <vector>
@@ -10,14 +10,14 @@ namespace prostm::textbook {
 
 struct Field {
   int rows = 0, cols = 0;
-  double cell = 0.0;                        ///< [mm]
-  const double* pressure = nullptr;         ///< rows·cols
-  const unsigned char* skin = nullptr;      ///< rows·cols
+  double cell = 0.0;                    ///< [mm]
+  const double* pressure = nullptr;     ///< rows·cols
+  const unsigned char* skin = nullptr;  ///< rows·cols
 };
 
 struct Settings {
   int paths = 4, clusters = 50, samples = 20;
-  double max_length = 140.0, sigma = 8.6;   ///< [mm]
+  double max_length = 140.0, sigma = 8.6;  ///< [mm]
   double gain = 1.4;
   double pressure = 3.0, length = 3.0, intersection = 1.0, bending = 0.3;  ///< weights
   double weak_pressure = 0.01;
@@ -30,7 +30,7 @@ struct Path {
 };
 
 struct Result {
-  std::vector<Path> paths;                  ///< empty when there is no pressure on skin
+  std::vector<Path> paths;  ///< empty when there is no pressure on skin
   double init = 0, kmeans = 0, tour = 0, split = 0, resample = 0, refine = 0, total = 0;  ///< [s]
   int clusters = 0, leaves = 0, lloyd_iterations = 0, refine_iterations = 0, cost_evaluations = 0;
   double cost = 0;

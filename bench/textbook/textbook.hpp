@@ -1,16 +1,18 @@
 #pragma once
-/// The baseline of every planner benchmark: PRO-STM as a careful reader of the paper would program it, in double precision, with
-/// plain Lloyd from random points, plain 2-opt from a random tour, midpoint splits, and steepest descent with backtracking.
-/// The costs, weights and decisions are those of docs/design.md section "Planner", preset paper.
+/// The baseline of every planner benchmark: PRO-STM as a careful reader of the paper would program
+/// it, in double precision, with plain Lloyd from random points, plain 2-opt from a random tour,
+/// midpoint splits, and steepest descent with backtracking. The costs, weights and decisions are
+/// those of docs/design.md section "Planner", preset paper.
 
 #include "plan/planner.hpp"
 #include "textbook/kernel.hpp"
 
 namespace prostm::textbook {
 
-/// Plans one target as Planner::plan does, but allocates as it goes. The settings' preset is ignored: violations are neither mended nor
-/// counted. @pre the target is valid (see validate()).
-inline PlanStatus plan(const TargetField& target, const PlanSettings& settings, Plan& plan, PlanStats& stats) {
+/// Plans one target as Planner::plan does, but allocates as it goes. The settings' preset is
+/// ignored: violations are neither mended nor counted. @pre the target is valid (see validate()).
+inline PlanStatus plan(const TargetField& target, const PlanSettings& settings, Plan& plan,
+                       PlanStats& stats) {
   Settings s;
   s.paths = settings.paths;
   s.clusters = settings.clusters;
@@ -26,8 +28,8 @@ inline PlanStatus plan(const TargetField& target, const PlanSettings& settings, 
   s.lloyd_iterations = settings.lloyd_iterations;
   s.refine_iterations = settings.refine_iterations;
   s.seed = static_cast<std::uint64_t>(settings.seed);
-  const Result result =
-      run({target.rows, target.cols, 1e3 * target.cell, target.pressure.data(), target.skin.data()}, s);
+  const Result result = run(
+      {target.rows, target.cols, 1e3 * target.cell, target.pressure.data(), target.skin.data()}, s);
 
   stats = {};
   stats.init = result.init;

@@ -29,7 +29,7 @@ double checked_maximum(const TargetField& target, std::size_t max_cells) {
     return -1.0;
   }
   if (!std::isfinite(target.cell) || target.cell < kSmallestCell || target.cell > kLargestCell ||
-      !target.origin.allFinite()) {
+      !std::isfinite(target.origin.x()) || !std::isfinite(target.origin.y())) {
     return -1.0;
   }
   double maximum = 0.0;

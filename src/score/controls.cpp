@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/random.hpp"
+#include "plan/closest_point.hpp"
+#include "plan/clustering.hpp"
+#include "score/score.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr int kCircles = 4, kCirclePoints = 20, kDraws = 20, kPlacements = 50, kSweeps = 100;
+constexpr double kWeak =
+    0.01;  // points below this share of the maximum have no say in where the mass is
+
+FocalPath circle(const Vec2& centre, double length, double pressure) {
+  FocalPath path;
+  const double radius = length / (2.0 * kCirclePoints * std::sin(kPi / kCirclePoints));
+  for (int i = 0; i < kCirclePoints; ++i) {
+    const double angle = 2.0 * kPi * i / kCirclePoints;
+    path.points.push_back(centre + radius * Vec2(std::cos(angle), std::sin(angle)));
+    path.pressure.push_back(pressure);
+  }
+  path.length = closed_length(path);
+  return path;
+}
+
+/// Visits the skin cells: position, p* over its maximum.
+template <typename Visit>
+void for_skin(const TargetField& target, double maximum, const Visit& visit) {
+  for (int row = 0; row < target.rows; ++row) {
+    for (int col = 0; col < target.cols; ++col) {
+      const std::size_t i = target.index(row, col);
+      if (target.skin[i] != 0) visit(target.position(row, col), target.pressure[i] / maximum);
+    }
+  }
+}
+
+Metrics flat_field(const TargetField& target, double maximum) {
+  double sum = 0.0, cells = 0.0;
+  for_skin(target, maximum, [&](const Vec2&, double p) {
+    sum += p;
+    cells += 1.0;
+  });
+  return score_field(target, std::vector<double>(target.size(), sum / cells * maximum), 0.0);
+}
+
+/// Circles about the centres of a weighted 4-means, at the mean pressure of what was clustered.
+Plan circles_at_mass_centres(const TargetField& target, double maximum, double gain, double length,
+                             std::uint64_t seed) {
+  planning::WeightedKMeans kmeans(target.size());
+  double sum = 0.0, cells = 0.0;
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    if (p < kWeak) return;
+    kmeans.add(x, p);
+    sum += p;
+    cells += 1.0;
+  });
+  planning::Clusters clusters;
+  kmeans.run(kCircles, 100, seed, clusters);
+  Plan plan;
+  for (const Vec2& centre : clusters.centre) {
+    plan.paths.push_back(circle(centre, length, gain * sum / cells * maximum));
+  }
+  return plan;
+}
+
+/// Up to four circles about random skin cells that do not cross.
+Plan random_circles(const TargetField& target, double maximum, double length, Random& random) {
+  std::vector<Vec2> skin;
+  for_skin(target, maximum, [&](const Vec2& x, double) { skin.push_back(x); });
+  std::vector<Vec2> centres;
+  const double apart = 1.01 * length / kPi;
+  for (int k = 0; k < kCircles; ++k) {
+    for (int attempt = 0; attempt < kPlacements; ++attempt) {
+      const Vec2& x = skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
+      const bool free = std::all_of(centres.begin(), centres.end(),
+                                    [&](const Vec2& c) { return (c - x).norm() > apart; });
+      if (!free) continue;
+      centres.push_back(x);
+      break;
+    }
+  }
+  Plan plan;
+  for (const Vec2& centre : centres) plan.paths.push_back(circle(centre, length, 0.0));
+  return plan;
+}
+
+/// Sets the pressures of circles to the non-negative least-squares solution of p̂ = p* on the skin.
+/// Eq. (1) is linear in the p_i: each cell sees the two samples beside its closest point. Solved by
+/// projected Gauss-Seidel on the normal equations.
+void solve_pressures(const TargetField& target, double maximum, double sigma, double gain,
+                     Plan& plan) {
+  constexpr std::size_t kUnknowns = static_cast<std::size_t>(kCircles) * kCirclePoints;
+  std::vector<std::array<double, kUnknowns>> normal(kUnknowns, std::array<double, kUnknowns>{});
+  std::array<double, kUnknowns> right{}, solution{};
+  PathSegments segments(plan, 0);
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    const ClosestPoint nearest = segments.closest(x);
+    const double phi = std::exp(-0.5 * nearest.distance2 / (sigma * sigma)) / gain;
+    const std::size_t i = nearest.segment;
+    const std::size_t j = (i + 1) % kCirclePoints == 0 ? i + 1 - kCirclePoints : i + 1;
+    const double a = (1.0 - nearest.along) * phi, b = nearest.along * phi;
+    normal[i][i] += a * a;
+    normal[j][j] += b * b;
+    normal[i][j] += a * b;
+    normal[j][i] += a * b;
+    right[i] += a * p;
+    right[j] += b * p;
+  });
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 0; i < segments.count(); ++i) {
+      // samples that hardly touch the skin stay silent
+      if (normal[i][i] < 1e-9) continue;
+      double residual = right[i];
+      for (std::size_t j = 0; j < segments.count(); ++j) residual -= normal[i][j] * solution[j];
+      solution[i] = std::max(solution[i] + residual / normal[i][i], 0.0);
+    }
+  }
+  for (std::size_t i = 0; i < segments.count(); ++i) {
+    plan.paths[i / kCirclePoints].pressure[i % kCirclePoints] = solution[i] * maximum;
+  }
+}
+
+Vec2 centre_of_mass(const TargetField& target, double maximum) {
+  Vec2 sum = Vec2::Zero();
+  double mass = 0.0;
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    sum += p * x;
+    mass += p;
+  });
+  return sum / mass;
+}
+
+/// The plan moved so that its mean sample lies at `centre`, its highest pressure set to γ·maximum.
+Plan moved(const Plan& other, const Vec2& centre, double maximum, double gain) {
+  Plan plan = other;
+  Vec2 mean = Vec2::Zero();
+  double samples = 0.0, highest = 0.0;
+  for (const FocalPath& path : other.paths) {
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+      mean += path.points[i];
+      samples += 1.0;
+      highest = std::max(highest, path.pressure[i]);
+    }
+  }
+  for (FocalPath& path : plan.paths) {
+    path.patch = 0;
+    for (Vec2& x : path.points) x += centre - mean / samples;
+    for (double& p : path.pressure) p = highest > 0.0 ? p / highest * gain * maximum : 0.0;
+  }
+  return plan;
+}
+
+/// The median of each metric for itself.
+Metrics median(const std::vector<Metrics>& draws) {
+  const auto of = [&](double Metrics::*member) {
+    std::vector<double> values;
+    for (const Metrics& m : draws) values.push_back(m.*member);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  return {of(&Metrics::rmse),    of(&Metrics::correlation), of(&Metrics::coverage),
+          of(&Metrics::skill_0), of(&Metrics::skill_8),     of(&Metrics::overlap),
+          of(&Metrics::spill)};
+}
+
+}  // namespace
+
+std::vector<Control> controls(const TargetField& target, double sigma, double gain, double length,
+                              const Plan* other, std::uint64_t seed) {
+  const double maximum = max_pressure(target);
+  if (!(maximum > 0.0)) return {};
+  std::vector<Control> table;
+  table.push_back({"flat field", flat_field(target, maximum)});
+  const Plan circles = circles_at_mass_centres(target, maximum, gain, length, seed);
+  table.push_back(
+      {"four circles at the mass centres", score_plan(target, circles, 0, sigma, gain)});
+
+  Random random(seed);
+  std::vector<Metrics> draws;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Plan plan = random_circles(target, maximum, length, random);
+    solve_pressures(target, maximum, sigma, gain, plan);
+    draws.push_back(score_plan(target, plan, 0, sigma, gain));
+  }
+  table.push_back({"random circles, solved pressures", median(draws)});
+
+  if (other != nullptr && !other->paths.empty()) {
+    const Plan plan = moved(*other, centre_of_mass(target, maximum), maximum, gain);
+    table.push_back({"paths of another target", score_plan(target, plan, 0, sigma, gain)});
+  }
+  return table;
+}
+
+}  // namespace prostm
