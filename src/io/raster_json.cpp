@@ -102,7 +102,7 @@ Pose read_plane(const JsonNode& node) {
 
   // axes that are right already stay as they are, to the bit
   Eigen::Matrix3d R;
-  constexpr double kRounding = 1e-15;
+  constexpr double kRounding = 1e-12;
   const bool exact = std::abs(x.squaredNorm() - 1.0) <= kRounding &&
                      std::abs(y.squaredNorm() - 1.0) <= kRounding &&
                      std::abs(x.dot(y)) <= kRounding;

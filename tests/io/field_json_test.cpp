@@ -104,7 +104,7 @@ TEST(FieldJson, SaysWhatIsWrong) {
       {"2e-3, 4, 0.25", "2e-3, -4, 0.25", "pressure at row 1, column 1 is -4"},
       {"2e-3, 4, 0.25", "2e-3, 4e200, 0.25", "pressure at row 1, column 1 is 4e+200"},
       {"2e-3, 4, 0.25", "2e-3, \"4\", 0.25", "\"pressure\"[1][1] is not a number"},
-      {"2e-3, 4, 0.25", "2e-3, NaN, 0.25", "not valid JSON at line 2, column 5"},
+      {"2e-3, 4, 0.25", "2e-3, NaN, 0.25", "not valid JSON at line 2, column 60"},
       {"[3, 4.5, -6]", "[3, null, -6]", "\"height_mm\"[1][1] is null; there is skin"},
       {"[[1, 2, null], ", "[", "\"height_mm\" has 1 rows; it must have \"rows\" = 2"},
       {"[3, 4.5, -6]", "[3, 4.5]", "\"height_mm\"[1] has 2 numbers"},
