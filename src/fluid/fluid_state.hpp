@@ -1,0 +1,66 @@
+#pragma once
+/// What a Fluid keeps between steps, and the parts of a step.
+
+#include <span>
+#include <vector>
+
+#include "fluid/advection.hpp"
+#include "fluid/fluid.hpp"
+#include "fluid/obstacle.hpp"
+#include "fluid/pressure_solver.hpp"
+#include "fluid/projection.hpp"
+
+namespace prostm {
+
+struct Fluid::State {
+  State(const FluidSettings& settings, const Scene& scene, WorkerPool& pool);
+
+  /// Everything at rest, without smoke.
+  void reset();
+  FluidStats step(double dt, const HandRaster& raster);
+
+  // parts of a step, in order
+  void advect(double dt);
+  void add_forces(double dt);
+  void place_hands(const HandRaster& raster);
+  void project(double dt, FluidStats& stats);
+  bool publish(double dt, FluidStats& stats);
+
+  void set_jets(const Scene& scene);
+  void set_smoke_halo();
+  void confine_vorticity(double dt);
+  void push_swept(const HandRaster& raster);
+  void mark_fluid_cells(const HandRaster& raster);
+  /// Runs f(k0, k1) over all planes.
+  template <class F>
+  void over_planes(F&& f);
+
+  FluidSettings settings;
+  WorkerPool& pool;
+  GridShape grid;
+  fluid::PaddedGrid padded;
+
+  // state
+  fluid::Field velocity[3];  // at faces [m/s]
+  fluid::Field smoke;        // at cells, 0..1; the halo holds what would flow in
+  fluid::Obstacle obstacle;
+  fluid::PressureSolver solver;
+  std::vector<float> inlet;  // share of fresh smoke in what the floor's faces let in, 0..1
+
+  // scratch
+  fluid::Field next_velocity[3], next_smoke;
+  fluid::Field centre[3], trace[3];  // cell-centred velocity and displacement [cells per step]
+  fluid::PaddedField<std::uint8_t> layer[3];
+  struct PlaneSums {
+    fluid::DivergenceSum divergence;
+    std::int32_t fastest = 0;  // the bits of the largest |velocity|
+  };
+  std::vector<PlaneSums> sums;  // one per plane, so that totals do not depend on threads
+  CellBox marked;               // where fluid_cells may be 0
+
+  // what others read, without padding
+  std::vector<float> pressure_out, smoke_out;
+  std::vector<std::uint8_t> fluid_cells;
+};
+
+}  // namespace prostm

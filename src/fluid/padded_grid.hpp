@@ -1,0 +1,68 @@
+#pragma once
+/// Storage of the fluid's fields: rows along x, padded so that stencils need no branches.
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <new>
+
+namespace prostm::fluid {
+
+using Index = std::ptrdiff_t;
+
+/// n³ cells with one halo row and plane on each side. A row holds `width()` = n rounded up to 16
+/// values and 16 more, which are the halo of its end and of the next row's start. Faces use the
+/// same index: face i of the x-component lies between cells i−1 and i, so n+1 faces fit. Row starts
+/// are aligned to 64 bytes.
+struct PaddedGrid {
+  static constexpr Index kLane = 16;  // floats of the widest vector
+  static constexpr Index kGuardRows =
+      6;  // readable rows before the first and after the last: tiles reach beyond
+
+  int n = 0;
+
+  Index width() const { return (n + kLane - 1) / kLane * kLane; }
+  Index row() const { return width() + kLane; }    ///< distance of y-neighbours
+  Index plane() const { return row() * (n + 2); }  ///< distance of z-neighbours
+  Index stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? row() : plane(); }
+  Index index(Index i, Index j, Index k) const {
+    return kGuardRows * row() + (k + 1) * plane() + (j + 1) * row() + i;
+  }
+  Index size() const { return 2 * kGuardRows * row() + plane() * (n + 2); }
+};
+
+/// One value per cell or face of a padded grid.
+template <class T>
+class PaddedField {
+ public:
+  explicit PaddedField(const PaddedGrid& grid, T value = T{})
+      : size_(grid.size()), data_(allocate(static_cast<std::size_t>(size_))) {
+    fill(value);
+  }
+  PaddedField(const PaddedField& other) = delete;
+  PaddedField& operator=(const PaddedField&) = delete;
+  PaddedField(PaddedField&&) noexcept = default;
+  PaddedField& operator=(PaddedField&&) noexcept = default;
+
+  T* data() { return data_.get(); }
+  const T* data() const { return data_.get(); }
+  T& operator[](Index i) { return data_[static_cast<std::size_t>(i)]; }
+  const T& operator[](Index i) const { return data_[static_cast<std::size_t>(i)]; }
+  void fill(T value) { std::fill_n(data_.get(), size_, value); }
+  /// @pre same grid.
+  void copy_from(const PaddedField& other) { std::copy_n(other.data(), size_, data()); }
+
+ private:
+  struct Free {
+    void operator()(T* p) const { ::operator delete (p, std::align_val_t{64}); }
+  };
+  static T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{64}));
+  }
+  Index size_ = 0;
+  std::unique_ptr<T[], Free> data_;
+};
+
+using Field = PaddedField<float>;
+
+}  // namespace prostm::fluid
