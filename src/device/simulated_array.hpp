@@ -15,7 +15,7 @@ struct SimulatedArraySettings {
   double sample_rate = 40e3;  ///< [Hz], 1 kHz to 1 MHz
   int block_samples = 40;     ///< a block is 1 ms; 1..4096
   int max_foci = 8;           ///< 1..8
-  int queue_blocks = 8;       ///< 1..10
+  int queue_blocks = 10;      ///< 1..10; each costs a block of latency and covers for one of delay
   double history = 4.0;       ///< kept for reading back [s], up to 600
   bool realtime = true;       ///< false: no thread and no clock, pull() is called by hand
 

@@ -106,13 +106,14 @@ TEST(Array, FocusIsAsWideAsTheApertureAllows) {
     const Vec3 focus(0.0, 0.0, z);
     const auto phases = phases_for(array, air, focus);
     const double peak = std::abs(focused_field(array, air, phases, focus));
-    // a square aperture's pressure is sinc(D x / (λ z)): it halves at 0.6034 λ z / D on either side
+    // (A6)
     double half = 0.0;
     while (std::abs(focused_field(array, air, phases, focus + Vec3(half, 0.0, 0.0))) > 0.5 * peak) {
       half += 0.02e-3;
     }
-    const double expected = 0.6034 * wavelength * std::hypot(z, 0.25 * aperture) / aperture;
-    EXPECT_NEAR(half, expected, 0.1 * expected) << "z = " << z;
+    const double sine = 0.5 * aperture / std::hypot(z, 0.5 * aperture);
+    const double expected = 0.6034 * wavelength / (2.0 * sine);
+    EXPECT_NEAR(half, expected, 0.05 * expected) << "z = " << z;
   }
 }
 

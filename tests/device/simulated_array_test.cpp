@@ -69,7 +69,7 @@ TEST(SimulatedArray, PullsByHandAndReadsBack) {
   EXPECT_EQ(array.foci(), 3);
   EXPECT_EQ(array.stats().blocks, 100);
   EXPECT_EQ(array.stats().late_blocks, 0);
-  EXPECT_EQ(array.stats().queue_blocks, 8);
+  EXPECT_EQ(array.stats().queue_blocks, 10);
   const auto samples = array.read_back(1234, 100);
   ASSERT_EQ(samples.size(), 300u);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -228,13 +228,13 @@ TEST(SimulatedArray, DelayMakesBlocksLateAndThenMissed) {
   array.stop();
   EXPECT_EQ(array.stats().late_blocks, array.stats().blocks);
 
-  faults.delay = 30e-3;  // longer than the queue of 8 ms
+  faults.delay = 30e-3;  // longer than the queue of 10 ms
   array.set_faults(faults);
   Counter again;
   array.start(again);
   wait_until([&] { return array.stats().blocks >= 3; });
   array.stop();
-  EXPECT_GE(array.stats().missed_blocks, 22);
+  EXPECT_GE(array.stats().missed_blocks, 20);
   EXPECT_TRUE(again.consecutive);  // no sample is skipped
 }
 
