@@ -4,6 +4,7 @@
 # usage: tools/check_headers.sh [FOLDER…]     folders of src/, default all
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../src"
+read -ra libraries < <(pkg-config --cflags-only-I eigen3 hdf5 cairo)
 find "${@:-.}" -name '*.hpp' -print0 |
   xargs -0 -n 1 -P "$(nproc)" clang++ -std=c++20 -fsyntax-only -x c++-header -Wall -Wextra -Wshadow -Werror \
-    -I. -isystem /usr/include/eigen3
+    -I. "${libraries[@]/#-I/-isystem}"

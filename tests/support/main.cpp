@@ -1,4 +1,5 @@
-/// Every test runs with floating-point traps on: an invalid operation, a division by zero or an overflow stops it.
+/// Every test runs with floating-point traps on: an invalid operation, a division by zero or an
+/// overflow stops it.
 
 #include <gtest/gtest.h>
 

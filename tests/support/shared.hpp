@@ -8,11 +8,13 @@
 
 namespace prostm::test {
 
-inline std::string shared_file(const std::string& name) { return std::string(PROSTM_SHARED_DIR) + "/" + name; }
+inline std::string shared_file(const std::string& name) {
+  return std::string(PROSTM_SHARED_DIR) + "/" + name;
+}
 
 }  // namespace prostm::test
 
 /// Skips the running test when `name` (relative to ../shared) is not there.
-#define PROSTM_NEEDS_SHARED(name)                                                              \
-  if (!std::filesystem::exists(prostm::test::shared_file(name)))                               \
+#define PROSTM_NEEDS_SHARED(name)                                \
+  if (!std::filesystem::exists(prostm::test::shared_file(name))) \
   GTEST_SKIP() << "needs " << (name) << " in ../shared, which is not part of the project"
