@@ -18,14 +18,16 @@ struct Bench {
   explicit Bench(const ScriptedHandSettings& hand, const std::string& scene = "one-plume",
                  bool filter_on = true)
       : filter(filter_settings(filter_on)),
-        source(make_scripted_hand(hand, TrackSettings{})),
+        source(make_scripted_hand(hand, filter_settings(filter_on))),
         fluid(FluidSettings{}, scene_from_name(scene), pool),
         rasteriser(fluid.grid()),
         contact(ContactSettings{}, fluid.grid()) {}
 
   static TrackSettings filter_settings(bool on) {
     TrackSettings s;
-    if (!on) s.filter_position = s.filter_velocity = 1.0;
+    if (on) return s;
+    s.smoothing_time = 0.001;  // velocities from one tracker frame to the next
+    s.filter_position = s.filter_velocity = 1.0;
     return s;
   }
   void step() {
