@@ -168,7 +168,7 @@ TEST(Tours, ASplitIsAtTheMidpointAlongTheWeightedDirection) {
   clusters.mass.push_back(1e-3);
   DistanceTable distance;
   distance.set({clusters.centre.data(), clusters.centre.size()});
-  const auto leaves = split_tours(clusters, distance, in_order(4), 250.0, 1);
+  const auto leaves = split_tours(clusters, distance, in_order(4), 290.0, 1);
   ASSERT_EQ(leaves.size(), 2u);
   EXPECT_NEAR(leaves[0].mass, 2.001, 1e-12);
   ASSERT_EQ(leaves[1].tour.size(), 1u);

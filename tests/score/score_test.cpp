@@ -1,0 +1,214 @@
+#include "score/score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../../bench/fields/fields.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kSigma = 8.6e-3, kGain = 1.4;
+
+/// Two rows of three cells, the last without skin.
+TargetField small_target() {
+  TargetField target;
+  target.resize(2, 3);
+  target.cell = 0.1;  // far wider than the blur, so that blurring changes nothing
+  target.skin = {1, 1, 1, 1, 1, 0};
+  target.pressure = {4.0, 2.0, 0.0, 2.0, 0.0, 0.0};
+  return target;
+}
+
+TEST(ScoreField, ClosedFormsOnFiveCells) {
+  const TargetField target = small_target();
+  // what is rendered off the skin counts nothing
+  const std::vector<double> rendered{2.0, 2.0, 2.0, 0.0, 0.0, 100.0};
+  const Metrics m = score_field(target, rendered, 0.25);
+  EXPECT_DOUBLE_EQ(m.coverage, 0.25);
+  // over the maximum of 4: target 1 .5 0 .5 0, rendered .5 .5 .5 0 0
+  EXPECT_NEAR(m.rmse, std::sqrt((0.25 + 0.0 + 0.25 + 0.25 + 0.0) / 5.0), 1e-12);
+  // deviations of the target .6 .1 −.4 .1 −.4, of the rendered .2 .2 .2 −.3 −.3
+  const double product = 0.12 + 0.02 - 0.08 - 0.03 + 0.12,
+               spread = 0.36 + 0.01 + 0.16 + 0.01 + 0.16;
+  EXPECT_NEAR(m.correlation, product / std::sqrt(spread * (3 * 0.04 + 2 * 0.09)), 1e-12);
+  // g = Σ p* p̂ / Σ p̂² = .75 / .75 = 1
+  EXPECT_NEAR(m.skill_0, 1.0 - 0.75 / spread, 1e-12);
+  EXPECT_NEAR(m.skill_8, m.skill_0, 1e-12);
+  EXPECT_NEAR(m.overlap, (0.5 + 0.5) / (1.0 + 0.5 + 0.5 + 0.5), 1e-12);
+  EXPECT_NEAR(m.spill, 0.5 / 1.5, 1e-12);
+}
+
+TEST(ScoreField, APerfectFieldOfAnyStrengthHasFullSkill) {
+  for (const fields::Pattern pattern : fields::kPatterns) {
+    const TargetField target = fields::make(pattern, 0);
+    std::vector<double> rendered = target.pressure;
+    EXPECT_NEAR(score_field(target, rendered, 1.0).rmse, 0.0, 1e-12);
+    for (double& p : rendered) p *= 0.3;
+    const Metrics m = score_field(target, rendered, 1.0);
+    EXPECT_GT(m.rmse, 0.05);
+    EXPECT_NEAR(m.correlation, 1.0, 1e-9);
+    EXPECT_NEAR(m.skill_0, 1.0, 1e-9);
+    EXPECT_NEAR(m.skill_8, 1.0, 1e-9);
+    EXPECT_NEAR(m.overlap, 1.0, 1e-9);
+  }
+}
+
+TEST(ScoreField, AFlatFieldHasNoSkillAndNoCorrelation) {
+  for (const fields::Pattern pattern : fields::kPatterns) {
+    const TargetField target = fields::make(pattern, 1);
+    const Metrics m = score_field(target, std::vector<double>(target.size(), 0.7), 0.0);
+    EXPECT_NEAR(m.skill_0, 0.0, 1e-9);
+    EXPECT_NEAR(m.skill_8, 0.0, 1e-9);
+    EXPECT_NEAR(m.correlation, 0.0, 1e-9);
+  }
+}
+
+TEST(ScoreField, TheUnitOfPressureChangesNothing) {
+  const TargetField target = fields::make(fields::Pattern::FourPlumes, 2);
+  const std::vector<double> rendered = fields::make(fields::Pattern::FourPlumes, 3).pressure;
+  const Metrics m = score_field(target, rendered, 0.5);
+  for (const double scale : {1e-290, 1e-3, 1e290}) {
+    TargetField scaled = target;
+    std::vector<double> scaled_rendered = rendered;
+    for (double& p : scaled.pressure) p *= scale;
+    for (double& p : scaled_rendered) p *= scale;
+    const Metrics n = score_field(scaled, scaled_rendered, 0.5);
+    EXPECT_NEAR(n.rmse, m.rmse, 1e-9);
+    EXPECT_NEAR(n.skill_8, m.skill_8, 1e-9);
+    EXPECT_NEAR(n.overlap, m.overlap, 1e-9);
+    EXPECT_NEAR(n.spill, m.spill, 1e-9);
+  }
+}
+
+/// Skill after the blur, from the definition: every pair of skin cells.
+double slow_blurred_skill(const TargetField& target, const std::vector<double>& rendered) {
+  constexpr double kBlur = 8.5e-3;
+  std::vector<double> a, b;
+  for (int r = 0; r < target.rows; ++r) {
+    for (int c = 0; c < target.cols; ++c) {
+      if (target.skin[target.index(r, c)] == 0) continue;
+      double weight = 0, sum_a = 0, sum_b = 0;
+      for (int s = 0; s < target.rows; ++s) {
+        for (int d = 0; d < target.cols; ++d) {
+          const std::size_t i = target.index(s, d);
+          if (target.skin[i] == 0) continue;
+          const double w =
+              std::exp(-0.5 * (target.position(r, c) - target.position(s, d)).squaredNorm() /
+                       (kBlur * kBlur));
+          weight += w;
+          sum_a += w * target.pressure[i];
+          sum_b += w * rendered[i];
+        }
+      }
+      a.push_back(sum_a / weight);
+      b.push_back(sum_b / weight);
+    }
+  }
+  double ab = 0, bb = 0, mean = 0, rest = 0, spread = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ab += a[i] * b[i];
+    bb += b[i] * b[i];
+    mean += a[i] / static_cast<double>(a.size());
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    rest += std::pow(a[i] - ab / bb * b[i], 2);
+    spread += std::pow(a[i] - mean, 2);
+  }
+  return 1.0 - rest / spread;
+}
+
+TEST(ScoreField, BlurredSkillAgreesWithItsDefinition) {
+  Random random(51);
+  for (int trial = 0; trial < 5; ++trial) {
+    TargetField target;
+    target.resize(14 + trial, 19 - trial);
+    target.cell = 5e-3;
+    std::vector<double> rendered(target.size());
+    for (std::size_t i = 0; i < target.size(); ++i) {
+      target.skin[i] = random.uniform() < 0.7 ? 1 : 0;
+      target.pressure[i] = target.skin[i] != 0 ? random.uniform() : 0.0;
+      rendered[i] = 0.5 * target.pressure[i] + random.uniform();
+    }
+    // the blur is cut off at 4 b, where the Gaussian is 3e-4
+    EXPECT_NEAR(score_field(target, rendered, 0.0).skill_8, slow_blurred_skill(target, rendered),
+                2e-3);
+  }
+}
+
+TEST(ScorePlan, CoverageIsTheShareWithinSigmaOfAPath) {
+  TargetField target;
+  target.resize(1, 11);
+  target.cell = 4e-3;
+  for (std::size_t i = 0; i < 11; ++i) {
+    target.skin[i] = 1;
+    target.pressure[i] = static_cast<double>(i + 1);
+  }
+  // a thin triangle that crosses the row at x = 8 mm: cells at 0 to 16 mm are within 8.6 mm
+  FocalPath path;
+  for (const Vec2& x : {Vec2(8e-3, -0.05), Vec2(8e-3, 0.05), Vec2(7.9e-3, 0.05)}) {
+    path.points.push_back(x);
+    path.pressure.push_back(1.0);
+  }
+  Plan plan;
+  plan.paths.push_back(path);
+  EXPECT_NEAR(score_plan(target, plan, 0, kSigma, kGain).coverage, 15.0 / 66.0, 1e-12);
+  EXPECT_EQ(score_plan(target, plan, 1, kSigma, kGain).coverage, 0.0);
+  EXPECT_EQ(score_plan(target, Plan{}, 0, kSigma, kGain).skill_0,
+            score_field(target, std::vector<double>(11), 0).skill_0);
+}
+
+TEST(ScorePlan, WithoutPressureAllIsZero) {
+  TargetField target;
+  target.resize(3, 3);
+  target.cell = 5e-3;
+  const Metrics m = score_plan(target, Plan{}, 0, kSigma, kGain);
+  EXPECT_EQ(m.rmse, 0.0);
+  EXPECT_EQ(m.skill_0, 0.0);
+  EXPECT_TRUE(controls(target, kSigma, kGain, 0.14, nullptr, 1).empty());
+}
+
+TEST(Controls, AreFiniteForOneCellAndForEveryPattern) {
+  const auto expect_finite = [](const TargetField& target) {
+    for (const Control& control : controls(target, kSigma, kGain, 0.14, nullptr, 3)) {
+      const Metrics& m = control.metrics;
+      for (const double v :
+           {m.rmse, m.correlation, m.coverage, m.skill_0, m.skill_8, m.overlap, m.spill}) {
+        EXPECT_TRUE(std::isfinite(v)) << control.name;
+      }
+      EXPECT_GE(m.coverage, 0.0);
+      EXPECT_LE(m.coverage, 1.0);
+    }
+  };
+  TargetField cell;
+  cell.resize(1, 1);
+  cell.cell = 5e-3;
+  cell.skin[0] = 1;
+  cell.pressure[0] = 1e-290;
+  expect_finite(cell);
+  for (const fields::Pattern pattern : fields::kPatterns) expect_finite(fields::make(pattern, 0));
+}
+
+TEST(Controls, SolvedPressuresBeatAConstantPressureOnTheSameCircles) {
+  // one hump under one small circle: the solved pressures give a positive skill
+  TargetField target;
+  target.resize(31, 31);
+  target.cell = 2e-3;
+  target.origin = Vec2(-0.03, -0.03);
+  for (int row = 0; row < 31; ++row) {
+    for (int col = 0; col < 31; ++col) {
+      target.skin[target.index(row, col)] = 1;
+      target.pressure[target.index(row, col)] =
+          std::exp(-0.5 * target.position(row, col).squaredNorm() / (0.012 * 0.012));
+    }
+  }
+  const std::vector<Control> table = controls(target, kSigma, kGain, 0.06, nullptr, 1);
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[0].name, "flat field");
+  EXPECT_NEAR(table[0].metrics.skill_0, 0.0, 1e-9);
+  EXPECT_GT(table[2].metrics.skill_0, 0.1);
+}
+
+}  // namespace
+}  // namespace prostm
