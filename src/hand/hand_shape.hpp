@@ -1,26 +1,26 @@
 #pragma once
 /// The surface of a hand: round cones along the bones and sphere-triangles across the palm.
 
-#include <array>
 #include <boost/container/static_vector.hpp>
+#include <span>
 
 #include "core/geometry.hpp"
+#include "hand/primitives.hpp"
 #include "track/hand_frame.hpp"
 
 namespace prostm {
 
-struct SurfacePoint {
-  double distance = 0.0;             ///< signed, negative inside [m]
-  Vec3 normal = Vec3::UnitZ();       ///< outward, unit
-  Vec3 velocity = Vec3::Zero();      ///< of the nearest skin point [m/s]
-};
-
-/// Signed distance, normal and velocity of the skin of one hand, in the frame of the hand it was made from (D in the
-/// pipeline). The union (minimum) of round cones between consecutive joints and sphere-triangles that span the palm.
+/// Signed distance, normal and velocity of the skin of one hand, in the frame of the hand it was
+/// made from (D in the pipeline). The union (minimum) of round cones along the phalanges and of
+/// sphere-triangles that span the palm, the ball of the thumb and the wrist. Distances are exact
+/// outside and at the skin; inside, where bodies overlap, they are those of the deepest body, never
+/// deeper than the truth.
 class HandShape {
  public:
   HandShape() = default;
   explicit HandShape(const Hand& hand) { set(hand); }
+  /// Trackers report the flesh of the fingers well, but metacarpals as thin as fingers: in the palm
+  /// the radius is at least a share of the palm's own, as (H12) of docs/design.md says.
   void set(const Hand& hand) noexcept;
 
   SurfacePoint query(const Vec3& p) const noexcept;
@@ -30,11 +30,19 @@ class HandShape {
   Vec3 lower() const { return lower_; }
   Vec3 upper() const { return upper_; }
 
+  std::span<const RoundCone> cones() const { return {cones_.data(), cones_.size()}; }
+  std::span<const SphereTriangle> triangles() const {
+    return {triangles_.data(), triangles_.size()};
+  }
+
+  static constexpr std::size_t kMaxCones = 14, kMaxTriangles = 10;
+
  private:
-  struct RoundCone { Vec3 a, b, va, vb; double ra = 0, rb = 0; };
-  struct SphereTriangle { Vec3 a, b, c, va, vb, vc; double ra = 0, rb = 0, rc = 0; };
-  boost::container::static_vector<RoundCone, 32> cones_;
-  boost::container::static_vector<SphereTriangle, 16> triangles_;
+  void add(const CornerSphere& a, const CornerSphere& b) noexcept;
+  void add(const CornerSphere& a, const CornerSphere& b, const CornerSphere& c) noexcept;
+
+  boost::container::static_vector<RoundCone, kMaxCones> cones_;
+  boost::container::static_vector<SphereTriangle, kMaxTriangles> triangles_;
   Vec3 lower_ = Vec3::Zero(), upper_ = Vec3::Zero();
 };
 
