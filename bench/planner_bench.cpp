@@ -1,22 +1,19 @@
 /// Table I of the paper on generated fields: stage times and quality of the textbook planner and of
 /// this one.
 ///
-///   planner_bench [--json FILE] [--frames N]
+/// usage: planner_bench [--json FILE]
 
 #include <fmt/core.h>
 
 #include <array>
-#include <charconv>
-#include <cstring>
-#include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/distribution.hpp"
 #include "fields/fields.hpp"
 #include "plan/planner.hpp"
+#include "report.hpp"
 #include "score/score.hpp"
 #include "textbook/textbook.hpp"
 
@@ -38,7 +35,7 @@ struct Contender {
   std::string name;
   std::function<void(const TargetField&, Plan&, PlanStats&)> plan;
   std::vector<Distribution> times = std::vector<Distribution>(kStages.size());
-  Metrics sum;
+  Metrics sum{};
   int frames = 0;
 
   void measure(const TargetField& field, const PlanSettings& settings) {
@@ -89,25 +86,18 @@ void print(const std::string& pattern, const std::vector<Contender>& list) {
   }
 }
 
-nlohmann::json rows(const std::string& pattern, const std::vector<Contender>& list) {
-  nlohmann::json json = nlohmann::json::array();
-  const Summary baseline = list[0].times.back().summary();
+/// Each planner's total beside the textbook's.
+void append_rows(const std::string& pattern, const std::vector<Contender>& list,
+                 std::vector<bench::Row>& rows) {
+  const Summary textbook = list[0].times.back().summary();
   for (std::size_t c = 1; c < list.size(); ++c) {
-    const Summary t = list[c].times.back().summary();
-    json.push_back({{"name", fmt::format("planner/{}/{}", list[c].name, pattern)},
-                    {"unit", "us"},
-                    {"n", t.n},
-                    {"p50", t.p50},
-                    {"p99", t.p99},
-                    {"max", t.max},
-                    {"baseline", list[0].name},
-                    {"baseline_p50", baseline.p50},
-                    {"ratio", baseline.p50 / t.p50}});
+    rows.push_back({fmt::format("planner/{}/{}", list[c].name, pattern), "us",
+                    list[c].times.back().summary(), list[0].name, textbook.p50});
   }
-  return json;
 }
 
-int run(const std::string& json_file, int frames) {
+std::vector<bench::Row> measure() {
+  constexpr int kFrames = 100;
   const PlanSettings settings;
   std::vector<Planner> planners;
   for (const char* preset : {"paper", "paper-valid"}) {
@@ -115,51 +105,24 @@ int run(const std::string& json_file, int frames) {
     own.preset = preset;
     planners.emplace_back(own, fields::kCells * fields::kCells);
   }
-  nlohmann::json json = nlohmann::json::array();
+  std::vector<bench::Row> rows;
   for (const fields::Pattern pattern : fields::kPatterns) {
     // frame by frame in turn, so that what else the machine does weighs on all alike
     std::vector<Contender> list = contenders(settings, planners);
-    for (int frame = 0; frame < frames; ++frame) {
+    for (int frame = 0; frame < kFrames; ++frame) {
       const TargetField field = fields::make(pattern, frame);
       for (Contender& c : list) c.measure(field, settings);
     }
     print(to_string(pattern), list);
-    for (const nlohmann::json& row : rows(to_string(pattern), list)) json.push_back(row);
+    append_rows(to_string(pattern), list, rows);
   }
-  if (json_file.empty()) return 0;
-  if (json_file == "-") {
-    fmt::print("{}\n", json.dump(1));
-    return 0;
-  }
-  std::ofstream file(json_file);
-  file << json.dump(1) << '\n';
-  if (file.flush()) return 0;
-  fmt::print(
-      stderr,
-      "planner_bench: '{}' cannot be written: name a file in a folder that can be written to\n",
-      json_file);
-  return 2;
+  fmt::print("\n");
+  return rows;
 }
 
 }  // namespace
 }  // namespace prostm
 
 int main(int argc, char** argv) {
-  std::string json_file;
-  int frames = 100;
-  for (int i = 1; i < argc; i += 2) {
-    const char* value = i + 1 < argc ? argv[i + 1] : "";
-    if (std::strcmp(argv[i], "--json") == 0 && *value != '\0') {
-      json_file = value;
-    } else if (std::strcmp(argv[i], "--frames") != 0 ||
-               std::from_chars(value, value + std::strlen(value), frames).ec != std::errc{} ||
-               frames < 1) {
-      fmt::print(
-          stderr,
-          "planner_bench: '{} {}' is not an option: give --json FILE or --frames N with N >= 1\n",
-          argv[i], value);
-      return 2;
-    }
-  }
-  return prostm::run(json_file, frames);
+  return prostm::bench::run(argc, argv, prostm::measure);
 }
