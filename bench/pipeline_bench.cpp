@@ -42,7 +42,7 @@ struct Line {
   Distribution total, fluid, plan;
 };
 
-std::vector<bench::Row> measure() {
+std::vector<bench::Row> measure_updates() {
   std::vector<bench::Row> rows;
   for (const char* scene : {"one-plume", "four-plumes"}) {
     Line ours(settings_of(scene, false)), papers(settings_of(scene, true));
@@ -66,5 +66,5 @@ std::vector<bench::Row> measure() {
 }  // namespace prostm
 
 int main(int argc, char** argv) {
-  return prostm::bench::run(argc, argv, prostm::measure);
+  return prostm::bench::run(argc, argv, prostm::measure_updates);
 }
