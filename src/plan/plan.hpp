@@ -7,18 +7,19 @@
 
 namespace prostm {
 
-inline constexpr int kMaxPaths = 8;         ///< focal points that a device can show at once
-inline constexpr int kMaxPathPoints = 64;   ///< samples of one path
+inline constexpr int kMaxPaths = 8;        ///< focal points that a device can show at once
+inline constexpr int kMaxPathPoints = 64;  ///< samples of one path
 
-/// A closed focal-point path in a target's plane: the last point joins the first. Fixed capacity, so that a plan is
-/// copied and handed between threads without touching the heap.
+/// A closed focal-point path in a target's plane: the last point joins the first. Fixed capacity,
+/// so that a plan is copied and handed between threads without touching the heap.
 struct FocalPath {
-  int patch = 0;                                                    ///< index of the target patch (hand)
-  boost::container::static_vector<Vec2, kMaxPathPoints> points;     ///< in P [m]
-  boost::container::static_vector<double, kMaxPathPoints> pressure; ///< rendered p_i = γ p*, unit of the target; linear between points
-  double length = 0.0;                                              ///< of the closed polygon in the plane [m]
-  double speed = 0.0;                                               ///< of the focal point [m/s]
-  double period = 0.0;                                              ///< length / speed [s]
+  int patch = 0;  ///< index of the target patch (hand)
+  boost::container::static_vector<Vec2, kMaxPathPoints> points;  ///< in P [m]
+  boost::container::static_vector<double, kMaxPathPoints>
+      pressure;         ///< rendered p_i = γ p*, unit of the target; linear between points
+  double length = 0.0;  ///< of the closed polygon in the plane [m]
+  double speed = 0.0;   ///< of the focal point [m/s]
+  double period = 0.0;  ///< length / speed [s]
 };
 
 struct Plan {

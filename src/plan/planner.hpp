@@ -1,5 +1,6 @@
 #pragma once
-/// PRO-STM: from a target pressure field to a few closed focal-point paths (the paper's section IV).
+/// PRO-STM: from a target pressure field to a few closed focal-point paths (the paper's section IV;
+/// docs/design.md section 5).
 
 #include <cstdint>
 #include <memory>
@@ -12,7 +13,8 @@
 
 namespace prostm {
 
-/// `paper`: the paper, exact; its violations of length and crossing are reported. `paper-valid`: the same, then made valid.
+/// `paper`: the paper, exact; its violations of length and crossing are reported. `paper-valid`:
+/// the same, then made valid.
 enum class Preset : std::uint8_t { Paper, PaperValid };
 
 /// @throws std::invalid_argument with a sentence for a name that is unknown or not built yet.
@@ -22,21 +24,22 @@ std::string to_string(Preset preset);
 /// Defaults are the paper's, and docs/design.md section "Planner" where the paper is silent.
 struct PlanSettings {
   std::string preset = "paper-valid";
-  int paths = 4;                    ///< at most, 1..8
-  int clusters = 50;                ///< k of the weighted k-means, 1..50
-  int samples = 20;                 ///< N of a path, 8..64
-  double max_length = 0.140;        ///< L [m]
-  double speed = 7.0;               ///< v of the focal points [m/s]
-  double sigma = 8.6e-3;            ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
-  double gain = 1.4;                ///< γ: rendered pressure over effective pressure
-  double weight_pressure = 3.0;     ///< of Eq. (2), p* over the frame's maximum
-  double weight_length = 3.0;       ///< of Eq. (3), lengths in mm
-  double weight_intersection = 1.0; ///< of Eq. (4), lengths in mm
-  double weight_bending = 0.3;      ///< of Eq. (5), angles in rad
-  double weak_pressure = 0.01;      ///< points below this share of the frame's maximum are not clustered
-  int lloyd_iterations = 100;       ///< at most
-  int refine_iterations = 200;      ///< gradient steps at most
-  int seed = 1;                     ///< of the clustering
+  int paths = 4;                     ///< at most, 1..8
+  int clusters = 50;                 ///< k of the weighted k-means, 1..50
+  int samples = 20;                  ///< N of a path, 8..64
+  double max_length = 0.140;         ///< L [m]
+  double speed = 7.0;                ///< v of the focal points [m/s]
+  double sigma = 8.6e-3;             ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
+  double gain = 1.4;                 ///< γ: rendered pressure over effective pressure
+  double weight_pressure = 3.0;      ///< of Eq. (2), p* over the frame's maximum
+  double weight_length = 3.0;        ///< of Eq. (3), lengths in mm
+  double weight_intersection = 1.0;  ///< of Eq. (4), lengths in mm
+  double weight_bending = 0.3;       ///< of Eq. (5), angles in rad
+  double weak_pressure =
+      0.01;                    ///< points below this share of the frame's maximum are not clustered
+  int lloyd_iterations = 100;  ///< at most
+  int refine_iterations = 200;  ///< gradient steps at most
+  int seed = 1;                 ///< of the clustering
 
   void visit(SettingsVisitor& v);
 };
@@ -44,28 +47,31 @@ struct PlanSettings {
 enum class PlanStatus : std::uint8_t {
   Planned,       ///< `plan` holds 1..paths paths
   EmptyTarget,   ///< no skin, or no pressure on it: `plan` holds no path
-  InvalidTarget  ///< a value is not finite or negative, or the raster exceeds the capacity: `plan` holds no path
+  InvalidTarget  ///< a pressure is not finite, negative or above 1e300, the cell is not 1 µm to 1 m
+                 ///< wide, sizes disagree, or the raster exceeds the capacity: `plan` holds no path
 };
 
-/// What a call did and how long each stage of Table I took.
+/// What a call did and how long each stage of Table I took. `refine` includes making paths valid
+/// and setting pressures.
 struct PlanStats {
   double init = 0, kmeans = 0, tour = 0, split = 0, resample = 0, refine = 0, total = 0;  ///< [s]
   int clusters = 0, lloyd_iterations = 0, refine_iterations = 0, cost_evaluations = 0;
-  int leaves = 0;              ///< paths after splitting, before the heaviest are kept
-  double cost = 0;             ///< of Eqs. (2)–(5) after refinement
-  int long_paths = 0;          ///< paths longer than L + 0.5 mm
-  int crossings = 0;           ///< pairs of segments that cross, within and between paths
+  int leaves = 0;      ///< paths after splitting, before the heaviest are kept
+  double cost = 0;     ///< of Eqs. (2)–(5) after refinement
+  int long_paths = 0;  ///< paths longer than L + 0.5 mm
+  int crossings = 0;   ///< pairs of segments that cross, within and between paths
 };
 
 /// The intermediate results of the paper's Fig. 2, for figures.
 struct PlanTrace {
-  std::vector<Vec2> clusters;                  ///< (b) centroids [m]
-  std::vector<double> cluster_mass;            ///< Σ p* of each
-  std::vector<int> tour;                       ///< (c) the closed tour, indices of clusters
-  std::vector<std::vector<int>> split;         ///< (d) the kept tours, indices of clusters
+  std::vector<Vec2> clusters;           ///< (b) centroids [m]
+  std::vector<double> cluster_mass;     ///< Σ p* of each
+  std::vector<int> tour;                ///< (c) the closed tour, indices of clusters
+  std::vector<std::vector<int>> split;  ///< (d) the kept tours, indices of clusters
 };
 
-/// Plans the paths of one target. Deterministic: the same settings and target give the same plan to the bit.
+/// Plans the paths of one target. Deterministic: the same settings and target give the same plan to
+/// the bit.
 class Planner {
  public:
   /// @param max_cells the largest raster that plan() will be given.
@@ -77,12 +83,15 @@ class Planner {
 
   const PlanSettings& settings() const;
 
-  /// Paths for one patch; they are appended to nothing: `plan` is overwritten. Allocates and throws nothing (with a
-  /// trace it does allocate). Leaves `plan` valid in every case.
-  PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats, PlanTrace* trace = nullptr) noexcept;
+  /// Paths for one patch; they are appended to nothing: `plan` is overwritten. Allocates and throws
+  /// nothing (with a trace it does allocate). Leaves `plan` valid in every case.
+  PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats,
+                  PlanTrace* trace = nullptr) noexcept;
 
-  /// Paths for every patch of a frame: settings.paths are shared out in proportion to Σ p*, at least one to each patch that
-  /// has pressure, and no path spans two patches. Stage times and counts are summed over patches.
+  /// Paths for every patch of a frame: settings.paths are shared out in proportion to Σ p*
+  /// (d'Hondt), at least one to each patch that has pressure (with one path in all, to the
+  /// strongest), and no path spans two patches. One invalid patch makes the frame invalid. Stage
+  /// times and counts are summed over patches.
   PlanStatus plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept;
 
  private:
