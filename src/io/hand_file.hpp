@@ -1,5 +1,6 @@
 #pragma once
-/// Hand recordings: the neutral JSON Lines format, and Leap Motion recordings as the tracker sent them.
+/// Hand recordings: the neutral JSON Lines format, and Leap Motion recordings as the tracker sent
+/// them.
 
 #include <string>
 #include <string_view>
@@ -8,9 +9,11 @@
 
 namespace prostm {
 
-/// Reads `.hands.jsonl` (hand-frames/1) or a Leap JSON v6 recording, told apart by their content. Frames without hands are kept.
-/// @throws InputError with a sentence that names file, line or frame, and what would be right: wrong joint count,
-/// non-finite numbers, time that does not increase, radii or bone lengths that no hand has, no frames.
+/// Reads `.hands.jsonl` (hand-frames/1) or a Leap JSON v6 recording, told apart by their content.
+/// Frames without hands are kept.
+/// @throws InputError with a sentence that names file, line or frame, and what would be right:
+/// wrong joint count, non-finite numbers, time that does not increase, radii or bone lengths that
+/// no hand has, no frames.
 HandRecording read_hand_recording(const std::string& path);
 
 /// The two parsers; `name` stands for the file in messages. @throws InputError.
