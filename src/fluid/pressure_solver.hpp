@@ -22,6 +22,7 @@ class PressureSolver {
 
   Field& pressure() { return levels_.front().p; }
   const Field& pressure() const { return levels_.front().p; }
+  /// b of (F6); 0 in closed cells.
   Field& right_side() { return levels_.front().b; }
 
   /// V-cycles from the pressure of the last call (F7)–(F10).

@@ -1,0 +1,365 @@
+/// The fluid as others use it.
+
+#include "fluid/fluid.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "analytic_raster.hpp"
+#include "fluid/obstacle.hpp"
+#include "support/heap_guard.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kStep = 0.02;
+
+FluidSettings settings_of(int cells, int cycles = 2) {
+  FluidSettings settings;
+  settings.cells = cells;
+  settings.cycles = cycles;
+  return settings;
+}
+
+Scene still_air() {
+  return {"still", {}, 1.0};
+}
+
+HandRaster hand_at(const GridShape& grid, double z, double speed) {
+  return test::shape_raster(
+      grid, [&](const Vec3& p) { return test::flat_hand(p, z); }, Vec3(0, 0, speed));
+}
+
+/// A hand that bobs at 1 Hz; step t of a run.
+HandRaster bobbing_hand(const GridShape& grid, int t) {
+  const double phase = 2.0 * 3.14159265 * kStep * t;
+  return hand_at(grid, 0.18 + 0.02 * std::sin(phase), 0.02 * 2.0 * 3.14159265 * std::cos(phase));
+}
+
+TEST(Fluid, RefusesSettingsOutOfBounds) {
+  WorkerPool pool(1);
+  const auto message = [&](auto change) -> std::string {
+    FluidSettings settings;
+    change(settings);
+    try {
+      Fluid fluid(settings, still_air(), pool);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message([](FluidSettings& s) { s.cells = 60; }),
+            "cells = 60 must be a multiple of 16 between 32 and 128");
+  EXPECT_EQ(message([](FluidSettings& s) { s.cells = 144; }),
+            "cells = 144 must be a multiple of 16 between 32 and 128");
+  EXPECT_EQ(message([](FluidSettings& s) { s.cycles = 0; }),
+            "cycles = 0 must be between 1 and 100");
+  EXPECT_EQ(message([](FluidSettings& s) { s.solver = "magic"; }),
+            "solver = magic must be multigrid or jacobi");
+  EXPECT_THAT(message([](FluidSettings& s) { s.width = std::numeric_limits<double>::quiet_NaN(); }),
+              testing::HasSubstr("width"));
+  EXPECT_THAT(message([](FluidSettings& s) { s.density = 0; }),
+              testing::HasSubstr("density = 0 must be"));
+  EXPECT_THAT(message([](FluidSettings& s) { s.jacobi_sweeps = 0; }),
+              testing::HasSubstr("jacobi_sweeps = 0"));
+  EXPECT_THROW(scene_from_name("two-plumes"), std::invalid_argument);
+  EXPECT_EQ(scene_from_name("one-plume").jets.size(), 1u);
+  EXPECT_EQ(scene_from_name("four-plumes").jets.size(), 4u);
+}
+
+TEST(Fluid, RestStaysRest) {
+  WorkerPool pool(1);
+  Fluid fluid(settings_of(32), still_air(), pool);
+  const HandRaster hand = hand_at(fluid.grid(), 0.2, 0.0);
+  for (int t = 0; t < 5; ++t) {
+    const FluidStats stats = fluid.step(kStep, hand);
+    EXPECT_EQ(stats.max_speed, 0.0);
+    EXPECT_EQ(stats.divergence_max, 0.0);
+    EXPECT_GT(stats.solid_cells, 20);
+  }
+  for (const float p : fluid.pressure()) EXPECT_EQ(p, 0.0F);
+}
+
+/// −(impulse on the sphere)/(ρ V U) after it starts at once with velocity U along z.
+double added_mass(int cells, double radius_in_cells, const Vec3& offset_in_cells) {
+  WorkerPool pool(2);
+  Fluid fluid(settings_of(cells, 20), still_air(), pool);
+  const GridShape& g = fluid.grid();
+  const double radius = radius_in_cells * g.cell, speed = 0.1;
+  const Vec3 centre = Vec3(0, 0, 0.18) + g.cell * offset_in_cells;
+  const HandRaster ball = test::shape_raster(
+      g, [&](const Vec3& p) { return test::sphere(p, centre, radius); }, Vec3(0, 0, speed));
+  fluid.step(kStep, ball);
+  // the solid's area in a cell is what its faces across z lack; the faces of closed cells, which
+  // hold no pressure, are shut
+  const auto pressure = [&](int i, int j, int k) {
+    return static_cast<double>(fluid.pressure()[g.cell_index(i, j, k)]);
+  };
+  const auto open = [&](int i, int j, int k) {
+    const auto d = [&](int a, int b) { return ball.node_distance[g.node_index(i + a, j + b, k)]; };
+    const auto area = static_cast<double>(fluid::open_fraction(d(0, 0), d(1, 0), d(1, 1), d(0, 1)));
+    const bool shut =
+        area < 1.0 && k < g.nz && (pressure(i, j, k) == 0.0 || pressure(i, j, k - 1) == 0.0);
+    return shut ? 0.0 : area;
+  };
+  double impulse = 0.0;
+  for (int k = 1; k < g.nz; ++k) {
+    for (int j = 0; j < g.ny; ++j) {
+      for (int i = 0; i < g.nx; ++i) {
+        const double area = (open(i, j, k) - open(i, j, k + 1)) * g.cell * g.cell;
+        impulse += pressure(i, j, k) * area * kStep;
+      }
+    }
+  }
+  const double volume = 4.0 / 3.0 * 3.14159265358979 * std::pow(radius, 3);
+  return -impulse / (fluid.settings().density * volume * speed);
+}
+
+TEST(Fluid, SphereHasHalfItsVolumeOfAddedMass) {
+  for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.5, 0.5, 0.5), Vec3(0.21, -0.34, 0.13)}) {
+    EXPECT_NEAR(added_mass(64, 4.4, offset), 0.5, 0.05);
+    EXPECT_NEAR(added_mass(64, 7.0, offset), 0.5, 0.05);
+  }
+}
+
+TEST(Fluid, PlumesStaySymmetric) {
+  WorkerPool pool(2);
+  for (const char* name : {"one-plume", "four-plumes"}) {
+    Fluid fluid(settings_of(48), scene_from_name(name), pool);
+    const HandRaster none = test::empty_raster(fluid.grid());
+    for (int t = 0; t < 25; ++t) fluid.step(kStep, none);
+    const int n = fluid.grid().nx;
+    double asymmetry = 0.0, most = 0.0;
+    for (int k = 0; k < n; ++k) {
+      for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+          const double w = fluid.velocity(i, j, k).z();
+          most = std::max(most, w);
+          asymmetry = std::max(asymmetry, std::abs(w - fluid.velocity(n - 1 - i, j, k).z()));
+          asymmetry = std::max(asymmetry, std::abs(w - fluid.velocity(j, i, k).z()));
+        }
+      }
+    }
+    EXPECT_GT(most, 0.2);
+    EXPECT_LT(asymmetry, 1e-4 * most) << name;
+  }
+}
+
+TEST(Fluid, SmokeStaysBetweenNoneAndAll) {
+  WorkerPool pool(2);
+  FluidSettings settings = settings_of(32);
+  settings.buoyancy = 1.0;
+  settings.vorticity = 2.0;
+  settings.dissipation = 0.5;
+  Fluid fluid(settings, scene_from_name("one-plume"), pool);
+  for (int t = 0; t < 40; ++t) {
+    EXPECT_FALSE(fluid.step(kStep, bobbing_hand(fluid.grid(), t)).reset);
+    for (const float s : fluid.smoke()) {
+      ASSERT_GE(s, 0.0F);
+      ASSERT_LE(s, 1.00001F);
+    }
+  }
+  EXPECT_GT(*std::max_element(fluid.smoke().begin(), fluid.smoke().end()), 0.5F);
+}
+
+TEST(Fluid, BuoyancyLiftsSmoke) {
+  WorkerPool pool(1);
+  FluidSettings heavy = settings_of(32), light = heavy;
+  light.buoyancy = 2.0;
+  Fluid a(heavy, scene_from_name("one-plume"), pool), b(light, scene_from_name("one-plume"), pool);
+  const HandRaster none = test::empty_raster(a.grid());
+  for (int t = 0; t < 40; ++t) {
+    a.step(kStep, none);
+    b.step(kStep, none);
+  }
+  EXPECT_GT(b.velocity(16, 16, 16).z(), a.velocity(16, 16, 16).z() + 0.1);
+}
+
+TEST(Fluid, ThreadsDoNotChangeABit) {
+  std::vector<std::vector<float>> pressures, smokes;
+  for (const int threads : {1, 2, 3}) {
+    WorkerPool pool(threads);
+    FluidSettings settings = settings_of(48);
+    settings.vorticity = 1.0;
+    Fluid fluid(settings, scene_from_name("four-plumes"), pool);
+    for (int t = 0; t < 12; ++t) fluid.step(kStep, bobbing_hand(fluid.grid(), t));
+    pressures.emplace_back(fluid.pressure().begin(), fluid.pressure().end());
+    smokes.emplace_back(fluid.smoke().begin(), fluid.smoke().end());
+  }
+  EXPECT_EQ(pressures[0], pressures[1]);
+  EXPECT_EQ(pressures[0], pressures[2]);
+  EXPECT_EQ(smokes[0], smokes[1]);
+  EXPECT_EQ(smokes[0], smokes[2]);
+}
+
+TEST(Fluid, JacobiWithManySweepsAgreesWithMultigrid) {
+  WorkerPool pool(2);
+  FluidSettings paper = settings_of(32), exact = settings_of(32, 20);
+  paper.solver = "jacobi";
+  paper.jacobi_sweeps = 4000;
+  const Scene scene = scene_from_name("one-plume");
+  Fluid history(settings_of(32), scene, pool), a(paper, scene, pool), b(exact, scene, pool);
+  for (int t = 0; t < 20; ++t) history.step(kStep, bobbing_hand(history.grid(), t));
+  const HandRaster hand = bobbing_hand(history.grid(), 20);
+  a.copy_state(history);
+  b.copy_state(history);
+  const FluidStats stats = a.step(kStep, hand);
+  b.step(kStep, hand);
+  EXPECT_LT(stats.divergence_rms, 1e-4);
+  double error = 0.0, norm = 0.0;
+  for (std::size_t c = 0; c < a.pressure().size(); ++c) {
+    error +=
+        std::pow(static_cast<double>(a.pressure()[c]) - static_cast<double>(b.pressure()[c]), 2);
+    norm += std::pow(static_cast<double>(b.pressure()[c]), 2);
+  }
+  EXPECT_LT(std::sqrt(error / norm), 1e-3);
+}
+
+TEST(Fluid, ReportsTheDivergenceThatItLeaves) {
+  WorkerPool pool(2);
+  double previous = 1.0;
+  for (const int cycles : {1, 2, 4}) {
+    Fluid fluid(settings_of(48, cycles), scene_from_name("one-plume"), pool);
+    double most = 0.0;
+    for (int t = 0; t < 20; ++t) {
+      const FluidStats stats = fluid.step(kStep, bobbing_hand(fluid.grid(), t));
+      if (t >= 5) most = std::max(most, stats.divergence_rms);
+    }
+    EXPECT_LT(most, 0.4 * previous) << cycles;
+    EXPECT_GT(most, 0.0);
+    previous = most;
+  }
+}
+
+TEST(Fluid, AHandThatLeftLeavesNoTrace) {
+  WorkerPool pool(1);
+  const Scene scene = scene_from_name("one-plume");
+  Fluid seen(settings_of(32), scene, pool), fresh(settings_of(32), scene, pool);
+  for (int t = 0; t < 10; ++t) seen.step(kStep, bobbing_hand(seen.grid(), t));
+  EXPECT_EQ(std::count(seen.fluid_cells().begin(), seen.fluid_cells().end(), 0) > 50, true);
+  const HandRaster none = test::empty_raster(seen.grid());
+  fresh.copy_state(seen);
+  for (int t = 0; t < 3; ++t) {
+    EXPECT_EQ(seen.step(kStep, none).solid_cells, 0);
+    fresh.step(kStep, none);
+  }
+  EXPECT_TRUE(std::equal(seen.pressure().begin(), seen.pressure().end(), fresh.pressure().begin()));
+  EXPECT_EQ(std::count(seen.fluid_cells().begin(), seen.fluid_cells().end(), 0), 0);
+  // and it may come back
+  EXPECT_GT(seen.step(kStep, bobbing_hand(seen.grid(), 0)).solid_cells, 50);
+}
+
+TEST(Fluid, PressureIsZeroInsideTheHand) {
+  WorkerPool pool(1);
+  Fluid fluid(settings_of(48), scene_from_name("one-plume"), pool);
+  const HandRaster hand = hand_at(fluid.grid(), 0.18, 0.0);
+  for (int t = 0; t < 30; ++t) fluid.step(kStep, hand);
+  const GridShape& g = fluid.grid();
+  int inside = 0;
+  for (int k = 0; k < g.nz; ++k) {
+    for (int j = 0; j < g.ny; ++j) {
+      for (int i = 0; i < g.nx; ++i) {
+        const std::size_t c = g.cell_index(i, j, k);
+        const double d = test::flat_hand(g.cell_centre(i, j, k), 0.18);
+        if (d < -g.cell) {
+          ++inside;
+          EXPECT_EQ(fluid.pressure()[c], 0.0F);
+          EXPECT_EQ(fluid.smoke()[c], 0.0F);
+        }
+        if (std::abs(d) <= 0.3 * g.cell) continue;
+        EXPECT_EQ(fluid.fluid_cells()[c], d > 0.0 ? 1 : 0);
+      }
+    }
+  }
+  EXPECT_GT(inside, 50);
+}
+
+TEST(Fluid, TheSmokePressesOnTheSideOfTheArray) {
+  WorkerPool pool(2);
+  Fluid fluid(settings_of(48), scene_from_name("one-plume"), pool);
+  const HandRaster hand = hand_at(fluid.grid(), 0.18, 0.0);
+  for (int t = 0; t < 100; ++t) fluid.step(kStep, hand);
+  const GridShape& g = fluid.grid();
+  const auto at = [&](double z) {
+    return fluid.pressure()[g.cell_index(g.nx / 2, g.ny / 2, static_cast<int>(z / g.cell))];
+  };
+  EXPECT_GT(at(0.18 - 0.013 - g.cell), 0.02F);
+  EXPECT_GT(at(0.18 - 0.013 - g.cell), 3.0F * std::abs(at(0.18 + 0.013 + g.cell)));
+}
+
+TEST(Fluid, NonFiniteInputResetsToRest) {
+  WorkerPool pool(1);
+  Fluid fluid(settings_of(32), scene_from_name("one-plume"), pool);
+  const HandRaster good = hand_at(fluid.grid(), 0.18, 0.0);
+  for (int t = 0; t < 5; ++t) fluid.step(kStep, good);
+  const auto at_rest = [&] {
+    return std::all_of(fluid.pressure().begin(), fluid.pressure().end(),
+                       [](float p) { return p == 0.0F; }) &&
+           std::all_of(fluid.smoke().begin(), fluid.smoke().end(),
+                       [](float s) { return s == 0.0F; });
+  };
+  HandRaster bad = good;
+  bad.node_distance[bad.node_distance.size() / 2] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(fluid.step(kStep, bad).reset);
+  EXPECT_TRUE(at_rest());
+  EXPECT_FALSE(fluid.step(kStep, good).reset);
+  bad = good;
+  bad.velocity[1][bad.velocity[1].size() / 2] = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(fluid.step(kStep, bad).reset);
+  EXPECT_TRUE(fluid.step(std::numeric_limits<double>::quiet_NaN(), good).reset);
+  EXPECT_TRUE(fluid.step(0.0, good).reset);
+  // finite, but no state of air: 10⁷ m/s
+  bad = hand_at(fluid.grid(), 0.18, 1e7);
+  EXPECT_TRUE(fluid.step(kStep, bad).reset);
+  EXPECT_TRUE(at_rest());
+  EXPECT_FALSE(fluid.step(kStep, good).reset);
+}
+
+TEST(Fluid, SweptCellsTakeTheHandsVelocity) {
+  WorkerPool pool(1);
+  Fluid fluid(settings_of(32), still_air(), pool);
+  // a palm that passed through a slab within one step and is outside the box now
+  HandRaster raster = test::empty_raster(fluid.grid());
+  const GridShape& g = fluid.grid();
+  for (int a = 0; a < 3; ++a) {
+    raster.box.lower[a] = 8;
+    raster.box.upper[a] = 24;
+  }
+  for (int k = 10; k < 22; ++k) {
+    for (int j = 12; j < 20; ++j) {
+      for (int i = 12; i < 20; ++i) {
+        raster.swept[g.cell_index(i, j, k)] = 1;
+        raster.velocity[2][g.cell_index(i, j, k)] = 1.0F;
+      }
+    }
+  }
+  fluid.step(kStep, raster);
+  EXPECT_GT(fluid.velocity(16, 16, 16).z(), 0.4);
+  EXPECT_LT(fluid.velocity(28, 16, 16).z(), 0.0);  // air flows back around
+}
+
+TEST(Fluid, StepAllocatesNothing) {
+  WorkerPool pool(1);
+  FluidSettings settings = settings_of(32);
+  settings.vorticity = 1.0;
+  settings.buoyancy = 1.0;
+  Fluid fluid(settings, scene_from_name("four-plumes"), pool);
+  const HandRaster a = bobbing_hand(fluid.grid(), 0), b = bobbing_hand(fluid.grid(), 3);
+  fluid.step(kStep, a);
+  const test::HeapGuard guard;
+  fluid.step(kStep, b);
+  fluid.step(kStep, a);
+  EXPECT_EQ(guard.allocations(), 0u);
+}
+
+TEST(Fluid, StateOfAnotherGridIsRefused) {
+  WorkerPool pool(1);
+  Fluid a(settings_of(32), still_air(), pool), b(settings_of(48), still_air(), pool);
+  EXPECT_THROW(a.copy_state(b), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace prostm
