@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
-#include <stdexcept>
 
 #include "core/latest.hpp"
 #include "emit/drive.hpp"
@@ -16,36 +14,12 @@
 namespace prostm {
 namespace {
 
-constexpr double kMaxSpeed = 8.0;  // of a focal point that sounds [m/s]
-constexpr double kFloatMargin =
-    1.0 - 1e-3;  // keeps steps within the bound after rounding positions to float
+constexpr double kMaxSpeed = 8.0;        // of a focal point that sounds [m/s]
+constexpr double kFloatMargin = 0.999;   // keeps steps in bounds when positions become floats
+constexpr double kLongestLap = 1.0;      // that a new plan waits for [s]
 constexpr double kMaxSlew = 1.0 / 40.0;  // of intensity, per sample
 constexpr double kSounding = 0.01;       // intensity above which a focal point must not jump
 constexpr double kMaxCoordinate = 10.0;  // of anything that is felt over an array [m]
-constexpr double kLongestWait = 1e6;     // [s]
-
-void require(double value, double low, double high, const char* name) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  std::ostringstream text;
-  text << name << " = " << value << " must be between " << low << " and " << high;
-  throw std::invalid_argument(text.str());
-}
-
-void validate(const EmitSettings& settings, double sample_rate) {
-  constexpr double kLargest = 1e300, kSmallest = 1e-300;
-  require(settings.foci, 1, kMaxPaths, "foci");
-  require(settings.full_scale_pressure, kSmallest, kLargest, "full_scale_pressure");
-  require(settings.silent_below, 0.0, 0.999, "silent_below");
-  require(settings.power_limit, 1e-6, kMaxPaths, "power_limit");
-  require(settings.fade_time, 1e-6, 0.02, "fade_time");
-  require(settings.stall_time, 1e-3, kLongestWait, "stall_time");
-  require(settings.stall_fade_time, 1e-6, 0.04, "stall_fade_time");
-  require(sample_rate, 1e3, 1e6, "sample_rate");
-  if (settings.switch_at != "lap" && settings.switch_at != "now") {
-    throw std::invalid_argument("switch_at = \"" + settings.switch_at +
-                                "\" must be \"lap\" or \"now\"");
-  }
-}
 
 /// Largest change of intensity per sample for a fade over the full range.
 double slew(double fade_time, double sample_rate) {
@@ -90,17 +64,6 @@ struct Focus {
 
 }  // namespace
 
-void EmitSettings::visit(SettingsVisitor& v) {
-  v.field("foci", foci);
-  v.field("full_scale_pressure", full_scale_pressure);
-  v.field("silent_below", silent_below);
-  v.field("power_limit", power_limit);
-  v.field("switch_at", switch_at);
-  v.field("fade_time", fade_time);
-  v.field("stall_time", stall_time);
-  v.field("stall_fade_time", stall_fade_time);
-}
-
 struct PathEmitter::Impl {
   Impl(const EmitSettings& s, double sample_rate);
 
@@ -108,7 +71,7 @@ struct PathEmitter::Impl {
   const EmitSettings settings;
   const bool at_once;  // switch_at = "now"
   const double fade_slew, stall_slew;
-  const std::int64_t stall_samples;
+  const std::int64_t stall_samples, longest_lap;
 
   // between the threads
   Latest<Message> inbox;
@@ -125,6 +88,9 @@ struct PathEmitter::Impl {
 
   std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
   const LiftedPlan& plan() const { return inbox.value().plan; }
+
+  /// Goes over at the end of its lap, not before.
+  bool waits(const Focus& f) const { return !at_once && f.motion.lap_samples() <= longest_lap; }
 
   void receive(std::int64_t sample);
   void assign();
@@ -145,7 +111,8 @@ PathEmitter::Impl::Impl(const EmitSettings& s, double sample_rate)
       at_once(s.switch_at == "now"),
       fade_slew(slew(s.fade_time, sample_rate)),
       stall_slew(slew(s.stall_fade_time, sample_rate)),
-      stall_samples(static_cast<std::int64_t>(std::ceil(s.stall_time * sample_rate))) {
+      stall_samples(static_cast<std::int64_t>(std::ceil(s.stall_time * sample_rate))),
+      longest_lap(static_cast<std::int64_t>(kLongestLap * sample_rate)) {
   for (Focus& f : focus) {
     f.motion.configure(sample_rate, kMaxSpeed / sample_rate * kFloatMargin);
     f.last.p_D = f.motion.position().cast<float>();
@@ -166,13 +133,13 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   since_plan = 0;
   assign();
 
-  // who fades already goes over at once if it can, and so does everyone with switch_at = "now"
+  // who fades already goes over at once if it can, and so does who need not wait
   for (std::size_t i = 0; i < foci().size(); ++i) {
     Focus& f = focus[i];
     if (f.state == State::Leaving) {
       drive[i].max_fall = fade_slew;
       if (f.next != kNoPath) join(f, sample);
-    } else if (f.state == State::Following && at_once) {
+    } else if (f.state == State::Following && !waits(f)) {
       cut_lap(f);
       take_over(f, drive[i], sample);
     }
@@ -183,7 +150,7 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
 double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path) const {
   constexpr double kFadeUp = FocusMotion::kMaxOffset, kFadeBoth = 2.0 * kFadeUp;
   if (f.state == State::Resting) return kFadeUp;
-  const bool at_lap_end = f.state == State::Following && !at_once;
+  const bool at_lap_end = f.state == State::Following && waits(f);
   const PathPlace place =
       nearest_place(path, at_lap_end ? f.motion.lap_end() : f.motion.position());
   return f.motion.reaches(path, place) ? place.distance : kFadeBoth;

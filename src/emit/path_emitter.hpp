@@ -12,19 +12,21 @@
 namespace prostm {
 
 struct EmitSettings {
-  int foci = 4;  ///< focal points, 1..8
-  double full_scale_pressure =
-      0.0;  ///< rendered pressure that maps to intensity 1 [unit of the target]; > 0
-  double silent_below = 0.01;  ///< share of full scale under which a sample is silent, in [0, 1)
-  double power_limit = 4.0;    ///< largest Σ intensity² over simultaneous focal points, > 0
-  std::string switch_at =
-      "lap";  ///< a new plan takes over at each path's lap end ("lap") or at once ("now")
+  int foci = 4;                      ///< focal points, 1..8
+  double full_scale_pressure = 0.0;  ///< that maps to intensity 1 [unit of the target]; > 0
+  double silent_below = 0.01;        ///< share of full scale under which a sample is silent
+  double power_limit = 4.0;          ///< largest Σ intensity² over simultaneous focal points, > 0
+  std::string switch_at = "lap";  ///< take-over at each path's lap end, or "now": at the next block
   double fade_time = 1e-3;    ///< of a fade down or up over the full range [s], at least 40 samples
   double stall_time = 0.100;  ///< without a new plan for this long, the output fades [s]
   double stall_fade_time = 0.010;  ///< that fade, and the one after lose() [s], at most 40 ms
 
   void visit(SettingsVisitor& v);
 };
+
+/// @throws std::invalid_argument with a sentence that names the setting, its value and its bound;
+/// the sample rate [Hz] must be 1 kHz to 1 MHz.
+void validate(const EmitSettings& settings, double sample_rate);
 
 /// The drive law, (E4): intensity = sqrt(pressure / full scale), since radiation pressure goes with
 /// the square of acoustic pressure; clipped to 1, 0 below the silent share and for negative
@@ -33,10 +35,9 @@ double drive_intensity(double pressure, double full_scale, double silent_below, 
 
 /// Something that the pipeline wants to know of the emission, in sample counts.
 struct TakeOver {
-  std::int64_t plan = 0;          ///< id of the plan
-  std::int64_t first_sample = 0;  ///< first sample that follows it
-  std::int64_t redrawn_sample =
-      -1;  ///< when 90 % of its path length had been drawn; −1 if it never was
+  std::int64_t plan = 0;             ///< id of the plan
+  std::int64_t first_sample = 0;     ///< first sample that follows it
+  std::int64_t redrawn_sample = -1;  ///< when 90 % of its path length was drawn; −1: never
 };
 
 struct EmitStats {
@@ -45,9 +46,8 @@ struct EmitStats {
   std::int64_t limited = 0;    ///< scaled down by the power limit
   std::int64_t faded = 0;      ///< in a fade of a transition
   std::int64_t laps_started = 0, laps_cut = 0;
-  std::int64_t stalls = 0;  ///< fade-outs because no plan came
-  std::int64_t refused_plans =
-      0;  ///< plans with a number that is not finite or out of bounds: faded out as by lose()
+  std::int64_t stalls = 0;         ///< fade-outs because no plan came
+  std::int64_t refused_plans = 0;  ///< with a number that is not finite or out of bounds
   std::int64_t dropped_paths = 0;  ///< paths beyond the number of focal points, not drawn
   double max_focus_step = 0.0;     ///< between samples while intensity > 1 % [m]
 };
@@ -60,13 +60,12 @@ struct EmitStats {
 /// intensities lie in [0, 1], Σ intensity² is within the limit, and every number is finite.
 ///
 /// A new plan's paths are matched to the focal points, (E5). Each focal point goes over at the end
-/// of its lap (or at the next block): by moving, when the new path is near, (E3), else by fading
-/// down, jumping while silent, and fading up. A focal point that no path needs fades down and rests
-/// where it is. docs/design.md, section 7.
+/// of its lap (at the next block with switch_at = "now", or when a lap takes over 1 s): by moving,
+/// when the new path is near, (E3), else by fading down, jumping while silent, and fading up. A
+/// focal point that no path needs fades down and rests where it is. docs/design.md, section 7.
 class PathEmitter final : public SampleSource {
  public:
-  /// @param sample_rate of the device [Hz], 1 kHz to 1 MHz. @throws std::invalid_argument with a
-  /// sentence.
+  /// @param sample_rate of the device [Hz]. @throws as validate() does.
   PathEmitter(const EmitSettings& settings, double sample_rate);
   ~PathEmitter() override;
 

@@ -166,6 +166,17 @@ TEST(PathEmitter, SwitchNowTakesOverAtTheNextBlock) {
   EXPECT_TRUE(player.watch.holds());
 }
 
+TEST(PathEmitter, VerySlowLapsAreNotWaitedFor) {
+  Player player(settings_for(1));
+  player.submit({ring(kCentre, 0.140, 50, 1.0, 1e-3)});
+  player.play(40);
+  const LiftedPath next = ring(kCentre + Vec3(0.002, 0, 0), 0.140, 50, 1.0);
+  player.submit({next});
+  const auto last = player.play(10);
+  EXPECT_LT(nearest_place(next, last[39].p_D.cast<double>()).distance, 1e-6);
+  EXPECT_EQ(player.emitter.stats().laps_cut, 1);
+}
+
 TEST(PathEmitter, NewPathIsDrawnInTheDirectionOfTravel) {
   LiftedPath forth = ring(kCentre, 0.140, 50, 1.0), back = forth;
   std::reverse(back.p_D.begin(), back.p_D.end());
