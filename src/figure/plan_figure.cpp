@@ -1,0 +1,200 @@
+/// The six panels of the paper's Fig. 2, and a table.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "figure/figures.hpp"
+#include "figure/panel.hpp"
+
+namespace prostm {
+namespace {
+
+using figure::Align;
+using figure::Box;
+using figure::Canvas;
+using figure::Colour;
+using figure::Panel;
+
+// the page in points: panels of at most 340 x 330 with room for axes and titles around them
+constexpr double kPanelWidth = 340.0, kPanelHeight = 330.0, kColumn = 400.0;
+constexpr double kLeft = 62.0, kTop = 84.0, kBelowPanel = 84.0, kRowHeight = 21.0;
+constexpr double kPageWidth = kLeft + 3.0 * kColumn + 34.0;
+
+void check(const PlanFigure& f) {
+  if (f.target == nullptr || f.plan == nullptr || f.trace == nullptr) {
+    throw std::invalid_argument("a plan's figure must have a target, a plan and a trace");
+  }
+  if (f.reconstruction.size() != f.target->size()) {
+    throw std::invalid_argument(
+        fmt::format("the reconstruction has {} cells and must have the target's {}",
+                    f.reconstruction.size(), f.target->size()));
+  }
+}
+
+std::vector<Vec2> tour_points(const std::vector<Vec2>& clusters, const std::vector<int>& tour) {
+  std::vector<Vec2> points;
+  for (const int i : tour) points.push_back(clusters.at(static_cast<std::size_t>(i)));
+  return points;
+}
+
+void draw_clusters(Panel& panel, const PlanTrace& trace) {
+  const double heaviest = trace.cluster_mass.empty() ? 0.0
+                                                     : *std::max_element(trace.cluster_mass.begin(),
+                                                                         trace.cluster_mass.end());
+  for (std::size_t i = 0; i < trace.clusters.size(); ++i) {
+    const double share = heaviest > 0.0 ? trace.cluster_mass[i] / heaviest : 0.0;
+    panel.disc(trace.clusters[i], 2.0 + 5.0 * std::sqrt(share), figure::kPaper);
+    panel.disc(trace.clusters[i], 1.2 + 5.0 * std::sqrt(share), figure::field_colour(share));
+  }
+}
+
+void draw_tour(Panel& panel, const PlanTrace& trace, const std::vector<int>& tour,
+               const Colour& colour) {
+  const std::vector<Vec2> points = tour_points(trace.clusters, tour);
+  panel.closed_line(points, colour, 1.6);
+  for (const Vec2& x : points) panel.disc(x, 2.4, colour);
+}
+
+/// The lengths of the paths in their colours, under the panel that shows them.
+void write_lengths(Canvas& canvas, const Panel& panel, const Plan& plan) {
+  const figure::TextStyle plain{.size = 11.0, .bold = true};
+  std::vector<std::string> texts;
+  double width = 0.0;
+  for (std::size_t i = 0; i < plan.paths.size(); ++i) {
+    texts.push_back(fmt::format("{:.1f}", 1e3 * plan.paths[i].length) +
+                    (i + 1 < plan.paths.size() ? " · " : " mm"));
+    width += canvas.text_width(texts.back(), plain);
+  }
+  const Box& box = panel.box();
+  Vec2 at(box.x + 0.5 * (box.width - width), box.y + box.height + 50.0);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    figure::TextStyle style = plain;
+    style.colour = figure::path_colour(i);
+    canvas.text(at, texts[i], style);
+    at.x() += canvas.text_width(texts[i], plain);
+  }
+}
+
+/// Panel `index` of three columns and two rows.
+Panel panel_at(Canvas& canvas, const TargetField& target, int index) {
+  const figure::Extent extent = figure::extent_of(target);
+  const double x = kLeft + kColumn * (index % 3);
+  const double height = figure::fitted({0.0, 0.0, kPanelWidth, kPanelHeight}, extent).height;
+  const double y = kTop + (index / 3) * (height + kBelowPanel);
+  return {canvas, {x, y, kPanelWidth, kPanelHeight}, extent};
+}
+
+/// The panels that show fields: (a) and (f), on one scale.
+void draw_field_panels(Canvas& canvas, const PlanFigure& f, double full) {
+  Panel target = panel_at(canvas, *f.target, 0);
+  target.heat_map(*f.target, f.target->pressure, full);
+  target.axes({.title = "(a) target pressure"});
+  Panel reconstruction = panel_at(canvas, *f.target, 5);
+  reconstruction.heat_map(*f.target, f.reconstruction, full);
+  reconstruction.axes({.title = "(f) reconstruction, Eq. (1)"});
+  for (const Panel* panel : {&target, &reconstruction}) {
+    const Box& box = panel->box();
+    figure::colour_bar(canvas, {box.x + box.width + 9.0, box.y, 11.0, box.height}, "p / max p*");
+  }
+}
+
+/// The panels that show how the paths come about: (b) to (e).
+void draw_step_panels(Canvas& canvas, const PlanFigure& f) {
+  const PlanTrace& trace = *f.trace;
+  for (int index = 1; index <= 4; ++index) {
+    Panel panel = panel_at(canvas, *f.target, index);
+    panel.silhouette(*f.target);
+    if (index == 1) {
+      draw_clusters(panel, trace);
+      panel.axes({.title = fmt::format("(b) {} clusters", trace.clusters.size())});
+    } else if (index == 2) {
+      draw_tour(panel, trace, trace.tour, figure::kInk);
+      panel.axes({.title = "(c) initial tour"});
+    } else if (index == 3) {
+      for (std::size_t i = 0; i < trace.split.size(); ++i) {
+        draw_tour(panel, trace, trace.split[i], figure::path_colour(i));
+      }
+      panel.axes({.title = "(d) split tours"});
+    } else {
+      for (std::size_t i = 0; i < f.plan->paths.size(); ++i) {
+        const auto& points = f.plan->paths[i].points;
+        panel.closed_line({points.data(), points.size()}, figure::path_colour(i), 2.4);
+      }
+      panel.axes({.title = "(e) refined paths"});
+      write_lengths(canvas, panel, *f.plan);
+    }
+  }
+}
+
+struct MetricColumn {
+  const char* name;
+  double Metrics::*value;
+  bool less_is_better;
+};
+constexpr std::array<MetricColumn, 7> kColumns{{{"RMSE ↓", &Metrics::rmse, true},
+                                                {"correlation ↑", &Metrics::correlation, false},
+                                                {"coverage ↑", &Metrics::coverage, false},
+                                                {"skill S₀ ↑", &Metrics::skill_0, false},
+                                                {"skill S₈.₅ ↑", &Metrics::skill_8, false},
+                                                {"overlap ↑", &Metrics::overlap, false},
+                                                {"spill ↓", &Metrics::spill, true}}};
+
+/// The plan's metrics above those of its controls; where a control does not lose, in the colour of
+/// a warning.
+void draw_table(Canvas& canvas, const PlanFigure& f, double top) {
+  const double first = kLeft + 330.0, step = 112.0;
+  const double right = first + step * (static_cast<double>(kColumns.size()) - 0.15);
+  const auto rule = [&](double y, double width) {
+    const std::array<Vec2, 2> ends{Vec2(kLeft - 30.0, y), Vec2(right, y)};
+    canvas.line(ends, false, figure::kInk, width);
+  };
+  rule(top, 1.2);
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    canvas.text(Vec2(first + step * (static_cast<double>(c) + 0.5), top + 16.0), kColumns[c].name,
+                {.size = 11.5, .colour = figure::kFaintInk, .align = Align::Right});
+  }
+  rule(top + 23.0, 0.6);
+
+  for (std::size_t r = 0; r <= f.controls.size(); ++r) {
+    const bool is_plan = r == 0;
+    const Metrics& metrics = is_plan ? f.metrics : f.controls[r - 1].metrics;
+    const double y = top + 40.0 + kRowHeight * static_cast<double>(r);
+    canvas.text(Vec2(kLeft - 24.0, y), is_plan ? "this plan" : "control: " + f.controls[r - 1].name,
+                {.size = 12.0, .bold = is_plan});
+    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+      const double value = metrics.*kColumns[c].value, own = f.metrics.*kColumns[c].value;
+      const bool wins = !is_plan && (kColumns[c].less_is_better ? value < own : value > own);
+      canvas.text(Vec2(first + step * (static_cast<double>(c) + 0.5), y),
+                  std::isfinite(value) ? figure::number_text(value, 3) : "–",
+                  {.size = 12.0,
+                   .colour = wins ? figure::kWarning : figure::kInk,
+                   .align = Align::Right,
+                   .bold = is_plan});
+    }
+  }
+  rule(top + 47.0 + kRowHeight * static_cast<double>(f.controls.size()), 1.2);
+}
+
+}  // namespace
+
+void draw_plan(const PlanFigure& f, const std::string& path) {
+  check(f);
+  const double full = max_pressure(*f.target);
+
+  // the page is as high as its panels and its table need
+  const Box panel =
+      figure::fitted({0.0, 0.0, kPanelWidth, kPanelHeight}, figure::extent_of(*f.target));
+  const double table_top = kTop + 2.0 * (panel.height + kBelowPanel) - 6.0;
+  const double height = table_top + 70.0 + kRowHeight * static_cast<double>(f.controls.size());
+  Canvas canvas(path, kPageWidth, height);
+  canvas.text(Vec2(kLeft - 30.0, 38.0), f.title, {.size = 19.0, .bold = true});
+  draw_field_panels(canvas, f, full);
+  draw_step_panels(canvas, f);
+  draw_table(canvas, f, table_top);
+  canvas.save();
+}
+
+}  // namespace prostm
