@@ -1,0 +1,191 @@
+/// What a step of the smoke costs with a moving hand in it, and how far its pressure on the hand is
+/// from a converged solve.
+///
+/// usage: fluid_bench [--json FILE]
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/distribution.hpp"
+#include "core/stage_timer.hpp"
+#include "core/worker_pool.hpp"
+#include "fluid/fluid.hpp"
+#include "hand/hand_raster.hpp"
+#include "report.hpp"
+#include "track/hand_source.hpp"
+
+namespace {
+
+using prostm::Distribution;
+using prostm::Fluid;
+using prostm::FluidSettings;
+using prostm::HandRaster;
+using prostm::Summary;
+using prostm::bench::Row;
+
+constexpr int kThreads = 2;
+constexpr double kStep = 0.02;  // [s]
+constexpr int kHistory = 200;   // steps whose pressure is compared
+constexpr int kWarmUp = 50;     // steps before anything is measured
+constexpr int kTimedSteps = 300;
+constexpr double kHandStart = 4.0;  // [s] into the scripted hand's cycle: it hovers, then lowers
+constexpr int kExactCycles = 25;
+
+// what a step must move per cell, each array read or written once a pass [bytes]: centred velocity
+// 24, trace 24, four fields 44, divergence 16, two V-cycles 2 · 64 · 8/7, projection 28, publishing
+// 40
+constexpr double kBytesPerCell = 322;
+
+/// The scripted hand on a fluid's grid, step by step.
+class MovingHand {
+ public:
+  MovingHand(const prostm::GridShape& grid, prostm::WorkerPool& pool)
+      : source_(prostm::make_scripted_hand({}, {})), rasteriser_(grid), pool_(pool) {}
+  const HandRaster& at(int step) {
+    source_->sample(kHandStart + kStep * step, frame_);
+    to_device(prostm::default_tracker_pose(), frame_);
+    rasteriser_.rasterise(frame_, pool_);
+    return rasteriser_.raster();
+  }
+
+ private:
+  std::unique_ptr<prostm::HandSource> source_;
+  prostm::HandRasteriser rasteriser_;
+  prostm::WorkerPool& pool_;
+  prostm::HandFrame frame_;
+};
+
+FluidSettings multigrid(int cells, int cycles) {
+  FluidSettings settings;
+  settings.cells = cells;
+  settings.cycles = cycles;
+  return settings;
+}
+
+FluidSettings jacobi(int cells, bool warm) {
+  FluidSettings settings;
+  settings.cells = cells;
+  settings.solver = "jacobi";
+  settings.jacobi_sweeps = 40;
+  settings.jacobi_warm = warm;
+  return settings;
+}
+
+/// Relative L2 error of a's pressure against b's on the fluid cells beside the hand [%]; negative
+/// without a hand.
+double hand_pressure_error(const Fluid& a, const Fluid& b) {
+  const prostm::GridShape& g = a.grid();
+  const auto fluid = a.fluid_cells();
+  const auto row = static_cast<std::size_t>(g.nx), plane = row * static_cast<std::size_t>(g.ny);
+  double error = 0.0, norm = 0.0;
+  for (int k = 1; k < g.nz - 1; ++k) {
+    for (int j = 1; j < g.ny - 1; ++j) {
+      for (int i = 1; i < g.nx - 1; ++i) {
+        const std::size_t c = g.cell_index(i, j, k);
+        const bool inner = fluid[c - 1] != 0 && fluid[c + 1] != 0 && fluid[c - row] != 0 &&
+                           fluid[c + row] != 0 && fluid[c - plane] != 0 && fluid[c + plane] != 0;
+        if (fluid[c] == 0 || inner) continue;
+        const auto p = static_cast<double>(a.pressure()[c]),
+                   exact = static_cast<double>(b.pressure()[c]);
+        error += (p - exact) * (p - exact);
+        norm += exact * exact;
+      }
+    }
+  }
+  return norm > 0.0 ? 100.0 * std::sqrt(error / norm) : -1.0;
+}
+
+/// A fluid's own history, each step compared with a converged solve from the same state.
+Summary accuracy(const FluidSettings& settings, const std::string& scene) {
+  prostm::WorkerPool pool(kThreads);
+  Fluid fluid(settings, prostm::scene_from_name(scene), pool);
+  Fluid exact(multigrid(settings.cells, kExactCycles), prostm::scene_from_name(scene), pool);
+  MovingHand hand(fluid.grid(), pool);
+  Distribution errors;
+  for (int t = 0; t < kWarmUp + kHistory; ++t) {
+    const HandRaster& raster = hand.at(t);
+    if (t < kWarmUp) {
+      fluid.step(kStep, raster);
+      continue;
+    }
+    exact.copy_state(fluid);
+    exact.step(kStep, raster);
+    fluid.step(kStep, raster);
+    const double error = hand_pressure_error(fluid, exact);
+    if (error >= 0.0) errors.add(error);
+  }
+  return errors.summary();
+}
+
+struct StepTimes {
+  Summary ours, paper;  // [ms]
+};
+
+/// Steps of both solvers, one of each in turn.
+StepTimes step_times(int cells, int steps) {
+  prostm::WorkerPool pool(kThreads);
+  const prostm::Scene scene = prostm::scene_from_name("one-plume");
+  Fluid ours(multigrid(cells, FluidSettings{}.cycles), scene, pool),
+      paper(jacobi(cells, false), scene, pool);
+  MovingHand hand(ours.grid(), pool);
+  Distribution ours_ms, paper_ms;
+  for (int t = 0; t < kWarmUp + steps; ++t) {
+    const HandRaster& raster = hand.at(t);
+    const double a = ours.step(kStep, raster).total, b = paper.step(kStep, raster).total;
+    if (t < kWarmUp) continue;
+    ours_ms.add(1e3 * a);
+    paper_ms.add(1e3 * b);
+  }
+  return {ours_ms.summary(), paper_ms.summary()};
+}
+
+/// Bytes a second of y = a·x + z over arrays as large as the fluid's state at 64³.
+double triad_rate() {
+  prostm::WorkerPool pool(kThreads);
+  constexpr int kTasks = 64, kPerTask = 1 << 14;
+  std::vector<float> x(kTasks * kPerTask, 1.0F), y(x.size(), 2.0F), z(x.size(), 3.0F);
+  double best = 1e9;
+  for (int repeat = 0; repeat < 30; ++repeat) {
+    const prostm::StageTimer timer;
+    pool.run(kTasks, [&](int task) {
+      const auto begin = static_cast<std::size_t>(task) * kPerTask;
+      for (std::size_t i = begin; i < begin + kPerTask; ++i) y[i] = 0.5F * x[i] + z[i];
+    });
+    best = std::min(best, timer.seconds());
+  }
+  return 3.0 * sizeof(float) * static_cast<double>(x.size()) / best;
+}
+
+std::vector<Row> measure() {
+  std::vector<Row> rows;
+  const double rate = triad_rate();
+  for (const int cells : {64, 96}) {
+    const std::string size = std::to_string(cells) + "^3";
+    const StepTimes times = step_times(cells, cells == 64 ? kTimedSteps : kTimedSteps / 5);
+    const double floor = 1e3 * kBytesPerCell * std::pow(cells, 3) / rate;
+    rows.push_back({"step " + size + " with a hand, multigrid", "ms", times.ours,
+                    "40 Jacobi sweeps", times.paper.p50});
+    rows.push_back(
+        {"step " + size + " against its memory traffic", "ms", times.ours, "traffic alone", floor});
+  }
+  const Summary cold = accuracy(jacobi(64, false), "one-plume");
+  rows.push_back({"hand pressure, 40 Jacobi sweeps cold", "%", cold, "", 0.0});
+  rows.push_back({"hand pressure, 40 Jacobi sweeps warm", "%",
+                  accuracy(jacobi(64, true), "one-plume"), "", 0.0});
+  for (const int cycles : {1, 2, 3}) {
+    rows.push_back({"hand pressure, " + std::to_string(cycles) + " V-cycles", "%",
+                    accuracy(multigrid(64, cycles), "one-plume"), "40 Jacobi sweeps cold",
+                    cold.p50});
+  }
+  rows.push_back({"hand pressure, default, four plumes", "%",
+                  accuracy(FluidSettings{}, "four-plumes"), "", 0.0});
+  return rows;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return prostm::bench::run(argc, argv, measure);
+}
