@@ -4,7 +4,6 @@ namespace prostm {
 
 BlockClock::BlockClock(Time start, Duration period, int queue_blocks)
     : period_(period), queue_(queue_blocks * period) {
-  shifts_.reserve(kShifts);
   shifts_.push_back({0, start});
 }
 

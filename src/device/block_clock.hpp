@@ -1,9 +1,9 @@
 #pragma once
 /// When the blocks of a stream are asked for, due, and played.
 
+#include <boost/container/static_vector.hpp>
 #include <chrono>
 #include <cstdint>
-#include <vector>
 
 namespace prostm {
 
@@ -40,7 +40,7 @@ class BlockClock {
   static constexpr std::size_t kShifts = 64;
 
   Duration period_, queue_;
-  std::vector<Shift> shifts_;  // oldest first, never empty
+  boost::container::static_vector<Shift, kShifts> shifts_;  // oldest first, never empty
 };
 
 }  // namespace prostm

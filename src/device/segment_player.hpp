@@ -2,11 +2,15 @@
 /// A segment as an endless stream.
 
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "emit/focus_sample.hpp"
 
 namespace prostm {
+
+/// One sentence on what is wrong with a segment; empty when nothing is.
+std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci);
 
 /// Repeats a segment. A new one takes over when the one that plays has come to its end, so that
 /// laps stay whole.

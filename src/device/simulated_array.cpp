@@ -1,7 +1,7 @@
 #include "device/simulated_array.hpp"
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <mutex>
@@ -21,6 +21,7 @@ using SteadyClock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr int kMostFoci = 8;
+constexpr std::int64_t kMostWaiting = 64;  // blocks, while a reader holds the lock
 
 void require(double value, double low, double high, const char* name) {
   if (std::isfinite(value) && value >= low && value <= high) return;
@@ -42,30 +43,15 @@ SteadyClock::duration to_duration(double seconds) {
   return std::chrono::round<SteadyClock::duration>(Seconds(seconds));
 }
 
-/// What is wrong with a segment; empty when nothing is.
-std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci) {
-  std::ostringstream text;
-  if (foci < 1 || foci > max_foci) {
-    text << "The segment has " << foci << " focal points a sample; the simulated array plays 1 to "
-         << max_foci << ".";
-  } else if (samples.empty() || samples.size() % static_cast<std::size_t>(foci) != 0) {
-    text << "The segment holds " << samples.size()
-         << " focal points, which is not a whole number of "
-         << "samples of " << foci << "; it must hold at least one sample.";
-  } else {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const FocusSample& s = samples[i];
-      if (s.p_D.allFinite() && std::isfinite(s.intensity) && s.intensity >= 0.0F &&
-          s.intensity <= 1.0F) {
-        continue;
-      }
-      text << "Sample " << i / static_cast<std::size_t>(foci)
-           << " of the segment has a number that is not finite or an intensity outside of 0 to 1.";
-      break;
-    }
-  }
-  return text.str();
-}
+/// What the thread that pulls works on; no other thread looks at it while it runs.
+struct Stream {
+  SampleSource* source = nullptr;
+  std::optional<BlockClock> clock;  // in real time
+  DeviceStats stats;
+  std::int64_t filled = 0;           // samples
+  std::vector<FocusSample> waiting;  // blocks that are not published yet
+  std::int64_t waiting_blocks = 0;
+};
 
 }  // namespace
 
@@ -88,29 +74,30 @@ struct SimulatedArray::Impl {
   DeviceInfo info;
   const std::int64_t history_samples;
 
-  // shared, under the mutex
+  // faults
+  std::atomic<double> delay{0.0};
+  std::atomic<bool> refuses{false};
+  std::atomic<std::int64_t> vanish_after{-1};
+
+  // published by the thread that pulls, under the mutex
   mutable std::mutex mutex;
   DeviceStatus status = DeviceStatus::Idle;
   std::string problem;
-  SimulatedFaults faults;
   DeviceStats stats;
-  std::optional<BlockClock> clock;  // in real time, once started
+  std::optional<BlockClock> clock;
   int foci = 0;
   std::vector<FocusSample> ring;  // sample i lies at (i mod its size in samples)
-  std::int64_t filled = 0;        // samples in all
+  std::int64_t filled = 0;        // samples
 
-  // one thread's
+  Stream stream;
   SegmentPlayer segment;
-  SampleSource* source = nullptr;
-  std::vector<FocusSample> block;
   std::jthread thread;
 
   DeviceStatus refuse(const std::string& sentence);
   DeviceStatus begin(SampleSource& s);
   void run(const std::stop_token& stop);
-  SteadyClock::time_point next_wake() const;
   bool pull_block();
-  void store_block();
+  void publish();
   std::int64_t played() const;
 };
 
@@ -134,25 +121,26 @@ DeviceStatus SimulatedArray::Impl::refuse(const std::string& sentence) {
 /// Starts to pull. @pre not running, the source fits.
 DeviceStatus SimulatedArray::Impl::begin(SampleSource& s) {
   if (thread.joinable()) thread.join();  // of a stream that vanished
-  source = &s;
+  const auto width = static_cast<std::size_t>(s.foci());
+  stream = Stream();
+  stream.source = &s;
+  stream.stats.queue_blocks = settings.queue_blocks;
+  stream.waiting.resize(static_cast<std::size_t>(kMostWaiting * settings.block_samples) * width);
+  if (settings.realtime) {
+    const double period = settings.block_samples / settings.sample_rate;
+    stream.clock.emplace(SteadyClock::now(), to_duration(period), settings.queue_blocks);
+  }
   {
     const std::lock_guard lock(mutex);
     foci = s.foci();
     // what is queued is filled and not yet played, so it comes on top of the history
     const auto capacity = static_cast<std::size_t>(
         history_samples + std::int64_t{settings.queue_blocks + 1} * settings.block_samples);
-    ring.assign(capacity * static_cast<std::size_t>(foci), FocusSample());
-    block.assign(static_cast<std::size_t>(settings.block_samples * foci), FocusSample());
-    filled = 0;
-    stats = {};
-    stats.queue_blocks = settings.queue_blocks;
+    ring.assign(capacity * width, FocusSample());
     status = DeviceStatus::Running;
     problem.clear();
-    clock.reset();
-    if (settings.realtime) {
-      const double period = settings.block_samples / settings.sample_rate;
-      clock.emplace(SteadyClock::now(), to_duration(period), settings.queue_blocks);
-    }
+    filled = 0;
+    publish();
   }
   if (settings.realtime) {
     thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -160,54 +148,68 @@ DeviceStatus SimulatedArray::Impl::begin(SampleSource& s) {
   return DeviceStatus::Running;
 }
 
-SteadyClock::time_point SimulatedArray::Impl::next_wake() const {
-  const std::lock_guard lock(mutex);
-  return clock->ask_time(stats.blocks) + to_duration(faults.delay);
-}
-
 void SimulatedArray::Impl::run(const std::stop_token& stop) {
   raise_thread_priority();
   while (!stop.stop_requested()) {
-    std::this_thread::sleep_until(next_wake());
+    std::this_thread::sleep_until(stream.clock->ask_time(stream.stats.blocks) +
+                                  to_duration(delay.load()));
     if (stop.stop_requested() || !pull_block()) return;
   }
 }
 
 /// Pulls the next block; false when the array has vanished.
 bool SimulatedArray::Impl::pull_block() {
-  std::int64_t first = 0;
-  {
+  const std::int64_t vanishes = vanish_after.load();
+  if (vanishes >= 0 && stream.stats.blocks >= vanishes) {
     const std::lock_guard lock(mutex);
-    if (faults.vanish_after >= 0 && stats.blocks >= faults.vanish_after) {
-      status = DeviceStatus::Vanished;
-      problem = "The simulated array vanished after " + std::to_string(stats.blocks) +
-                " blocks, as it was told to; start it again.";
-      return false;
-    }
-    first = filled;
+    publish();
+    status = DeviceStatus::Vanished;
+    problem = "The simulated array vanished after " + std::to_string(stats.blocks) +
+              " blocks, as it was told to; start it again.";
+    return false;
   }
-  source->fill(first, block);
-  const std::lock_guard lock(mutex);
-  store_block();
+
+  // fill, then look at the clock
+  const std::size_t size = stream.waiting.size() / static_cast<std::size_t>(kMostWaiting);
+  stream.source->fill(stream.filled,
+                      std::span(stream.waiting)
+                          .subspan(static_cast<std::size_t>(stream.waiting_blocks) * size, size));
+  ++stream.waiting_blocks;
+  stream.filled += settings.block_samples;
+  if (stream.clock) {
+    const BlockClock::Filled result = stream.clock->fill(stream.stats.blocks, SteadyClock::now());
+    stream.stats.late_blocks += result.late ? 1 : 0;
+    stream.stats.missed_blocks += result.missed;
+  }
+  ++stream.stats.blocks;
+
+  // a reader that holds the lock may have been put to sleep: in real time do not wait for it while
+  // there is room
+  std::unique_lock lock(mutex, std::defer_lock);
+  if (settings.realtime && stream.waiting_blocks < kMostWaiting) {
+    if (!lock.try_lock()) return true;
+  } else {
+    lock.lock();
+  }
+  publish();
   return true;
 }
 
-/// Puts the block in the ring and in the books. @pre the mutex is held.
-void SimulatedArray::Impl::store_block() {
+/// Makes the blocks that wait readable. @pre the mutex is held, by the thread that pulls or while
+/// there is none.
+void SimulatedArray::Impl::publish() {
   const auto width = static_cast<std::size_t>(foci);
   const std::size_t capacity = ring.size() / width;
-  for (std::size_t i = 0; i * width < block.size(); ++i) {
-    const std::size_t slot = (static_cast<std::size_t>(filled) + i) % capacity;
-    std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+  const std::int64_t samples = stream.waiting_blocks * settings.block_samples;
+  for (std::int64_t i = 0; i < samples; ++i) {
+    const std::size_t slot = static_cast<std::size_t>(filled + i) % capacity;
+    std::copy_n(stream.waiting.begin() + static_cast<std::ptrdiff_t>(i) * foci, width,
                 ring.begin() + static_cast<std::ptrdiff_t>(slot * width));
   }
-  filled += settings.block_samples;
-  if (clock) {
-    const BlockClock::Filled result = clock->fill(stats.blocks, SteadyClock::now());
-    stats.late_blocks += result.late ? 1 : 0;
-    stats.missed_blocks += result.missed;
-  }
-  ++stats.blocks;
+  stream.waiting_blocks = 0;
+  filled = stream.filled;
+  stats = stream.stats;
+  clock = stream.clock;
 }
 
 /// Samples that have left the array. @pre the mutex is held.
@@ -249,12 +251,9 @@ std::string SimulatedArray::problem() const {
 }
 
 DeviceStatus SimulatedArray::start(SampleSource& source) {
-  bool refuse = false;
-  {
-    const std::lock_guard lock(impl_->mutex);
-    refuse = impl_->faults.refuse;
+  if (impl_->refuses) {
+    return impl_->refuse("The simulated array refuses to start, as it was told to.");
   }
-  if (refuse) return impl_->refuse("The simulated array refuses to start, as it was told to.");
   if (status() == DeviceStatus::Running) {
     return impl_->refuse("The simulated array is running already; stop it first.");
   }
@@ -271,23 +270,21 @@ void SimulatedArray::stop() {
     impl_->thread.request_stop();
     impl_->thread.join();
   }
-  impl_->source = nullptr;
   const std::lock_guard lock(impl_->mutex);
+  if (impl_->stream.waiting_blocks > 0) impl_->publish();
+  impl_->stream.source = nullptr;
   impl_->status = DeviceStatus::Idle;
 }
 
 DeviceStatus SimulatedArray::load_segment(std::span<const FocusSample> samples, int foci) {
   Impl& impl = *impl_;
-  bool refuse = false, running = false;
-  {
-    const std::lock_guard lock(impl.mutex);
-    refuse = impl.faults.refuse;
-    running = impl.status == DeviceStatus::Running;
+  if (impl.refuses) {
+    return impl.refuse("The simulated array refuses the segment, as it was told to.");
   }
-  if (refuse) return impl.refuse("The simulated array refuses the segment, as it was told to.");
+  const bool running = status() == DeviceStatus::Running;
   const std::string problem = segment_problem(samples, foci, impl.settings.max_foci);
   if (!problem.empty()) return impl.refuse(problem);
-  if (running && (impl.source != &impl.segment || impl.segment.foci() != foci)) {
+  if (running && (impl.stream.source != &impl.segment || impl.segment.foci() != foci)) {
     return impl.refuse(
         "The simulated array is playing a stream, or a segment with another number of focal "
         "points; "
@@ -313,8 +310,9 @@ double SimulatedArray::play_time(std::int64_t sample) const {
 }
 
 void SimulatedArray::set_faults(const SimulatedFaults& faults) {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->faults = faults;
+  impl_->delay = faults.delay;
+  impl_->refuses = faults.refuse;
+  impl_->vanish_after = faults.vanish_after;
 }
 
 void SimulatedArray::pull(int n) {
