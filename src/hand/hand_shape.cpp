@@ -6,9 +6,9 @@ namespace prostm {
 namespace {
 
 // least radii in the palm as shares of the palm's own radius (H12)
-constexpr double kFleshAtMetacarpal = 0.95;  // base of the metacarpals
+constexpr double kFleshAtMetacarpal = 0.85;  // base of the metacarpals
 constexpr double kFleshAtKnuckle = 0.80;     // seen from the palm
-constexpr double kFleshAtThumbRoot = 1.00;   // ball of the thumb
+constexpr double kFleshAtThumbRoot = 0.95;   // ball of the thumb
 constexpr double kFleshAtThumbKnuckle = 0.75;
 constexpr double kFleshOfWeb = 0.60;  // skin between thumb and index finger
 constexpr double kWebReach = 0.65;    // where it joins the index metacarpal, from its base

@@ -31,7 +31,7 @@ constexpr FingerShape kFingers[4] = {{kIndexMetacarpal,
                                       degrees(10.0),
                                       degrees(2.0),
                                       {68.12_mm, 39.78_mm, 22.38_mm, 15.82_mm},
-                                      {21.2_mm, 10.3_mm, 8.5_mm, 7.6_mm, 6.6_mm}},
+                                      {18.2_mm, 10.3_mm, 8.5_mm, 7.6_mm, 6.6_mm}},
                                      {kMiddleMetacarpal,
                                       0.0_mm,
                                       0.0_mm,
@@ -39,7 +39,7 @@ constexpr FingerShape kFingers[4] = {{kIndexMetacarpal,
                                       degrees(0.0),
                                       degrees(0.0),
                                       {64.60_mm, 44.63_mm, 26.33_mm, 17.40_mm},
-                                      {21.2_mm, 11.2_mm, 8.0_mm, 7.6_mm, 6.6_mm}},
+                                      {18.2_mm, 11.2_mm, 8.0_mm, 7.6_mm, 6.6_mm}},
                                      {kRingMetacarpal,
                                       9.5_mm,
                                       -0.5_mm,
@@ -47,7 +47,7 @@ constexpr FingerShape kFingers[4] = {{kIndexMetacarpal,
                                       degrees(-8.5),
                                       degrees(-1.0),
                                       {57.95_mm, 41.37_mm, 25.65_mm, 17.30_mm},
-                                      {19.1_mm, 9.9_mm, 7.6_mm, 7.2_mm, 6.2_mm}},
+                                      {16.6_mm, 9.9_mm, 7.6_mm, 7.2_mm, 6.2_mm}},
                                      {kLittleMetacarpal,
                                       18.0_mm,
                                       -3.5_mm,
@@ -55,11 +55,11 @@ constexpr FingerShape kFingers[4] = {{kIndexMetacarpal,
                                       degrees(-17.0),
                                       degrees(-4.0),
                                       {53.69_mm, 32.74_mm, 18.11_mm, 15.96_mm},
-                                      {18.1_mm, 8.5_mm, 6.8_mm, 6.4_mm, 5.4_mm}}};
+                                      {15.6_mm, 8.5_mm, 6.8_mm, 6.4_mm, 5.4_mm}}};
 
 constexpr double kThumbLength[3] = {46.22_mm, 31.57_mm, 21.67_mm};
-constexpr double kThumbRadius[4] = {19.4_mm, 12.3_mm, 9.8_mm, 8.8_mm};
-constexpr double kPalmRadius = 15.0_mm, kWristRadius = 21.5_mm;
+constexpr double kThumbRadius[4] = {17.0_mm, 12.3_mm, 9.8_mm, 8.8_mm};
+constexpr double kPalmRadius = 15.0_mm, kWristRadius = 20.0_mm;
 
 // flexion of knuckle, middle and last joint, open and at closure 1
 constexpr double kOpen[3] = {degrees(6.0), degrees(10.0), degrees(6.0)};

@@ -1,0 +1,276 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/random.hpp"
+#include "io/hand_file.hpp"
+#include "support/heap_guard.hpp"
+#include "support/shared.hpp"
+#include "track/hand_source.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kStep = 0.02;
+
+Hand hand_at(std::int64_t id, const Vec3& p) {
+  Hand hand;
+  hand.id = id;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    hand.position[j] = p + 0.001 * static_cast<double>(j) * Vec3::UnitX();
+    hand.orientation[j] = Quat::Identity();
+    hand.radius[j] = 0.01;
+    hand.velocity[j] = Vec3::Constant(1e9);  // must not be used
+  }
+  return hand;
+}
+
+/// A hand in linear motion, seen at irregular times.
+HandRecording linear_recording(const Vec3& start, const Vec3& velocity, int frames,
+                               std::uint64_t seed) {
+  Random random(seed);
+  HandRecording recording;
+  double t = 0.0;
+  for (int i = 0; i < frames; ++i) {
+    HandFrame frame;
+    frame.time = t;
+    frame.hands.push_back(hand_at(7, start + t * velocity));
+    recording.frames.push_back(frame);
+    t += random.uniform(0.0004, 0.027);
+  }
+  return recording;
+}
+
+TEST(RecordedHand, LinearMotionAtIrregularTimesIsExact) {
+  const Vec3 start(0.1, 0.2, -0.05), velocity(0.3, -0.2, 0.5);
+  const auto source =
+      make_recorded_hand(linear_recording(start, velocity, 200, 1), {}, false, kStep);
+  HandFrame frame;
+  Random random(2);
+  double t = 0.0;
+  for (int n = 0; t < source->duration(); ++n, t += random.uniform(0.0, 0.01)) {
+    source->sample(t, frame);
+    ASSERT_EQ(frame.hands.size(), 1u);
+    EXPECT_EQ(frame.time, t);
+    EXPECT_LT((frame.hands[0].position[kPalm] - start - t * velocity).norm(), 1e-14);
+    EXPECT_LT((frame.hands[0].velocity[kIndexTip] - velocity).norm(), 1e-9) << t;
+  }
+}
+
+TEST(RecordedHand, OrientationsTurnEvenly) {
+  HandRecording recording;
+  for (const double t : {0.0, 0.03}) {
+    HandFrame frame;
+    frame.time = t;
+    frame.hands.push_back(hand_at(1, Vec3::Zero()));
+    frame.hands[0].orientation.fill(Quat(Eigen::AngleAxisd(t / 0.03, Vec3::UnitY())));
+    recording.frames.push_back(frame);
+  }
+  const auto source = make_recorded_hand(recording, {}, false, kStep);
+  HandFrame frame;
+  source->sample(0.009, frame);
+  EXPECT_NEAR(frame.hands[0].orientation[kWrist].angularDistance(
+                  Quat(Eigen::AngleAxisd(0.3, Vec3::UnitY()))),
+              0.0, 1e-7);
+}
+
+TEST(RecordedHand, VelocityOfASineIsThatOfTheSmoothedSine) {
+  // both smoothings of (H1), the means and the difference, multiply a sine's derivative by one sinc
+  // each
+  constexpr double kOmega = 20.0, kAmplitude = 0.03;
+  HandRecording recording;
+  for (int i = 0; i < 1000; ++i) {
+    HandFrame frame;
+    frame.time = 0.001 * i;
+    frame.hands.push_back(hand_at(1, Vec3(kAmplitude * std::sin(kOmega * frame.time), 0, 0)));
+    recording.frames.push_back(frame);
+  }
+  const TrackSettings settings;
+  const auto source = make_recorded_hand(recording, settings, false, kStep);
+  const double half = 0.5 * kOmega * settings.smoothing_time, sinc = std::sin(half) / half;
+  HandFrame frame;
+  for (double t = 0.1; t < 0.9; t += 0.0137) {
+    source->sample(t, frame);
+    EXPECT_NEAR(frame.hands[0].velocity[kPalm].x(),
+                kAmplitude * kOmega * std::cos(kOmega * t) * sinc * sinc, 2e-4);
+  }
+}
+
+TEST(RecordedHand, SpeedIsClampedAndKeepsItsDirection) {
+  TrackSettings settings;
+  settings.max_speed = 2.0;
+  HandRecording recording = linear_recording(Vec3::Zero(), Vec3(0.1, 0, 0), 100, 3);
+  // a glitch: one frame half a metre away
+  for (Vec3& p : recording.frames[50].hands[0].position) p += Vec3(0.3, 0.4, 0.0);
+  const double glitch = recording.frames[50].time;
+  const auto source = make_recorded_hand(recording, settings, false, kStep);
+  HandFrame frame;
+  double fastest = 0.0;
+  for (double t = 0.0; t < source->duration(); t += 0.002) {
+    source->sample(t, frame);
+    const Vec3 v = frame.hands[0].velocity[kPalm];
+    fastest = std::max(fastest, v.norm());
+    if (v.norm() > 1.99) {
+      EXPECT_GT(std::abs(v.normalized().dot(Vec3(0.6, 0.8, 0.0))), 0.99);
+      EXPECT_LT(std::abs(t - glitch), 0.06);
+    }
+  }
+  EXPECT_NEAR(fastest, 2.0, 1e-12);
+}
+
+TEST(RecordedHand, HandsComeAndGoAndShortGapsAreBridged) {
+  HandRecording recording;
+  for (int i = 0; i <= 100; ++i) {
+    HandFrame frame;
+    frame.time = 0.01 * i;
+    const bool short_gap = i > 20 && i<25, long_gap = i> 40 && i < 60;
+    if (!short_gap && !long_gap) frame.hands.push_back(hand_at(1, Vec3(frame.time, 0, 0)));
+    if (i >= 30) frame.hands.push_back(hand_at(2, Vec3(0, 0, 1)));
+    recording.frames.push_back(frame);
+  }
+  const auto source = make_recorded_hand(recording, {}, false, kStep);
+  HandFrame frame;
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.001 * i + 0.0003;
+    source->sample(t, frame);
+    bool first = false, second = false;
+    for (const Hand& hand : frame.hands) {
+      (hand.id == 1 ? first : second) = true;
+      if (hand.id == 1) {
+        EXPECT_NEAR(hand.position[kPalm].x(), t, 1e-12);
+        EXPECT_LT((hand.velocity[kPalm] - Vec3(1, 0, 0)).norm(), 1e-9);
+      }
+    }
+    EXPECT_EQ(first, t <= 0.40 || t >= 0.60) << t;
+    EXPECT_EQ(second, t >= 0.30) << t;
+  }
+}
+
+TEST(RecordedHand, ALoopIsAHandThatLeavesAndComesBack) {
+  const HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1.0, 0, 0), 40, 5);
+  const double length = recording.frames.back().time;
+  const auto source = make_recorded_hand(recording, {}, true, kStep);
+  EXPECT_TRUE(std::isinf(source->duration()));
+  HandFrame frame;
+  int without = 0, seams = 0;
+  double last_x = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    source->sample(kStep * i, frame);
+    if (frame.hands.empty()) {
+      ++without;
+      continue;
+    }
+    const double x = frame.hands[0].position[kPalm].x();
+    if (x < last_x) {
+      ++seams;
+      EXPECT_GE(without, 1) << "the hand jumped back without leaving";
+    }
+    EXPECT_LT((frame.hands[0].velocity[kPalm] - Vec3(1.0, 0, 0)).norm(), 1e-9)
+        << "a velocity crossed the seam";
+    last_x = x;
+    without = 0;
+  }
+  EXPECT_GE(seams, static_cast<int>(20.0 / (length + 2 * kStep)) - 1);
+}
+
+TEST(RecordedHand, EndsWithoutLoopAndSaysNothingBeforeTheStart) {
+  const HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1.0, 0, 0), 10, 6);
+  const auto source = make_recorded_hand(recording, {}, false, kStep);
+  EXPECT_EQ(source->duration(), recording.frames.back().time);
+  HandFrame frame;
+  source->sample(-0.01, frame);
+  EXPECT_TRUE(frame.hands.empty());
+  source->sample(source->duration(), frame);
+  EXPECT_EQ(frame.hands.size(), 1u);
+  source->sample(source->duration() + 1e-6, frame);
+  EXPECT_TRUE(frame.hands.empty());
+}
+
+TEST(RecordedHand, ASingleFrameRests) {
+  const auto source =
+      make_recorded_hand(linear_recording(Vec3(1, 2, 3), Vec3(1, 0, 0), 1, 1), {}, false, kStep);
+  HandFrame frame;
+  source->sample(0.0, frame);
+  ASSERT_EQ(frame.hands.size(), 1u);
+  EXPECT_EQ(frame.hands[0].velocity[kPalm], Vec3::Zero());
+}
+
+TEST(RecordedHand, SamplingAllocatesNothing) {
+  const auto source =
+      make_recorded_hand(linear_recording(Vec3::Zero(), Vec3(1, 0, 0), 100, 8), {}, true, kStep);
+  HandFrame frame;
+  test::HeapGuard guard;
+  for (int i = 0; i < 200; ++i) source->sample(kStep * i, frame);
+  EXPECT_EQ(guard.allocations(), 0u);
+}
+
+TEST(RecordedHand, RefusesWhatItCannotPlay) {
+  EXPECT_THROW(make_recorded_hand({}, {}, false, kStep), std::invalid_argument);
+  EXPECT_THROW(
+      make_recorded_hand(linear_recording(Vec3::Zero(), Vec3::Zero(), 3, 1), {}, true, 0.0),
+      std::invalid_argument);
+  HandRecording backwards = linear_recording(Vec3::Zero(), Vec3::Zero(), 3, 1);
+  backwards.frames[2].time = backwards.frames[1].time;
+  EXPECT_THROW(make_recorded_hand(backwards, {}, false, kStep), std::invalid_argument);
+  HandRecording twice = linear_recording(Vec3::Zero(), Vec3::Zero(), 3, 1);
+  twice.frames[1].hands.push_back(twice.frames[1].hands[0]);
+  EXPECT_THROW(make_recorded_hand(twice, {}, false, kStep), std::invalid_argument);
+  TrackSettings settings;
+  settings.smoothing_time = 0.0;
+  try {
+    make_recorded_hand(linear_recording(Vec3::Zero(), Vec3::Zero(), 3, 1), settings, false, kStep);
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "smoothing_time = 0 s must be between 0.001 s and 0.5 s");
+  }
+}
+
+TEST(RecordedHand, RealRecordingsPlayWithFiniteClampedVelocities) {
+  for (const char* name :
+       {"flapping", "rollAndPitchWithEntry", "HandSplay-110fps", "pinch-57fps"}) {
+    const std::string file = std::string("data/hands/") + name + ".hands.jsonl";
+    PROSTM_NEEDS_SHARED(file);
+    const TrackSettings settings;
+    const auto source =
+        make_recorded_hand(read_hand_recording(test::shared_file(file)), settings, false, kStep);
+    HandFrame frame;
+    for (double t = 0.0; t < source->duration(); t += 0.005) {
+      source->sample(t, frame);
+      for (const Hand& hand : frame.hands) {
+        for (const Vec3& v : hand.velocity) {
+          ASSERT_TRUE(v.allFinite());
+          EXPECT_LE(v.norm(), settings.max_speed * (1 + 1e-12));
+        }
+        for (const Quat& q : hand.orientation) EXPECT_NEAR(q.norm(), 1.0, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(RecordedHand, ARecordingThinnedToHalfTellsNearlyTheSame) {
+  PROSTM_NEEDS_SHARED("data/hands/rollAndPitchWithEntry.hands.jsonl");
+  const HandRecording full =
+      read_hand_recording(test::shared_file("data/hands/rollAndPitchWithEntry.hands.jsonl"));
+  HandRecording half;
+  for (std::size_t i = 0; i < full.frames.size(); i += 2) half.frames.push_back(full.frames[i]);
+  const auto a = make_recorded_hand(full, {}, false, kStep),
+             b = make_recorded_hand(half, {}, false, kStep);
+  HandFrame at_full, at_half;
+  double position = 0.0, velocity = 0.0, speed = 0.0;
+  int count = 0;
+  for (double t = 0.1; t < b->duration() - 0.1; t += kStep, ++count) {
+    a->sample(t, at_full);
+    b->sample(t, at_half);
+    ASSERT_EQ(at_full.hands.size(), at_half.hands.size());
+    if (at_full.hands.empty()) continue;
+    position += (at_full.hands[0].position[kPalm] - at_half.hands[0].position[kPalm]).norm();
+    velocity += (at_full.hands[0].velocity[kPalm] - at_half.hands[0].velocity[kPalm]).norm();
+    speed += at_full.hands[0].velocity[kPalm].norm();
+  }
+  EXPECT_LT(position / count, 2e-4);
+  EXPECT_LT(velocity, 0.1 * speed);
+}
+
+}  // namespace
+}  // namespace prostm
