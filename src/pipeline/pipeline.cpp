@@ -136,9 +136,10 @@ Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource>
 bool Pipeline::step(double dt) {
   ++steps_;
   time_ += dt;
+  // what was planned before plays up to the moment that these hands were seen
+  play_until(device_, time_);
   smoke_.run(steps_, time_, dt, contact_frame_);
   if (contact_frame_.targeted) plans_.run(contact_frame_, plan_frame_);
-  play_until(device_, time_);
   return contact_frame_.targeted;
 }
 

@@ -99,7 +99,6 @@ class Run {
   Run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
       RunObserver& observer)
       : pipeline_(pipeline),
-        settings_(settings),
         observer_(observer),
         realtime_(options.mode == RunMode::RealTime),
         dt_(1.0 / settings.fluid_rate),
@@ -195,11 +194,8 @@ class Run {
     for (;;) {
       const bool last = smoke_ended_.load(std::memory_order_acquire);
       if (ContactFrame* frame = targets_.front()) {
-        // the device plays the fluid steps that came since the last plan, as in Pipeline::step
-        if (settings_.fluid_steps_per_plan > 1)
-          play_until(pipeline_.device(), frame->arrival - dt_);
-        plan_one(*frame);
         play_until(pipeline_.device(), frame->arrival);
+        plan_one(*frame);
         targets_.pop();
       } else if (last) {
         play_until(pipeline_.device(), run_time_.load(std::memory_order_relaxed));
@@ -247,7 +243,6 @@ class Run {
   }
 
   Pipeline& pipeline_;
-  const PipelineSettings& settings_;
   RunObserver& observer_;
   const bool realtime_;
   const double dt_;
