@@ -7,14 +7,14 @@ namespace prostm {
 using namespace literals;
 
 Scene scene_from_name(const std::string& name) {
-  // radii and speeds are tuned on the open hand 0.2 m above the array (docs/design.md, section 3.6)
+  // radii and speeds are tuned on a flat palm 0.2 m above the array (docs/design.md, section 3.6)
   if (name == "one-plume") {
-    return {name, {SmokeJet{Vec2(0, 0), 50_mm, 0.60}}, 0.20};
+    return {name, {SmokeJet{Vec2(0, 0), 74_mm, 0.50}}, 0.14};
   }
   if (name == "four-plumes") {
-    Scene scene{name, {}, 0.20};
-    for (const double x : {-32.5_mm, 32.5_mm}) {
-      for (const double y : {-32.5_mm, 32.5_mm}) scene.jets.push_back({Vec2(x, y), 20_mm, 0.80});
+    Scene scene{name, {}, 0.28};
+    for (const double x : {-27.0_mm, 27.0_mm}) {
+      for (const double y : {-27.0_mm, 27.0_mm}) scene.jets.push_back({Vec2(x, y), 28_mm, 1.20});
     }
     return scene;
   }
