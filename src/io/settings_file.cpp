@@ -158,8 +158,9 @@ void settings_from_toml(std::string_view text, const std::string& name,
   std::vector<std::string> known(groups.size());
   std::transform(groups.begin(), groups.end(), known.begin(), [](const auto& g) { return g.name; });
   for (const auto& [key, node] : document) {
+    const std::string_view typed = key.str();
     const auto group = std::find_if(groups.begin(), groups.end(),
-                                    [&](const auto& g) { return g.name == key.str(); });
+                                    [typed](const auto& g) { return g.name == typed; });
     if (group == groups.end()) {
       throw InputError(fmt::format("{}, line {}: there is no group of settings \"{}\"; {}", name,
                                    key.source().begin.line, shown(key.str()),

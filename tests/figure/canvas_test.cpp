@@ -21,8 +21,13 @@ TargetField pixels_of(Canvas& canvas, const std::string& path) {
   return read_field(path, {.cell_mm = 1.0});
 }
 
+/// CIE L*, 0 black to 100 white.
 double lightness(const Colour& c) {
-  return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+  const auto linear = [](double x) {
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  };
+  const double y = 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+  return y > 0.008856 ? 116.0 * std::cbrt(y) - 16.0 : 903.3 * y;
 }
 
 TEST(Canvas, PutsTheFirstRowOfCellsAtTheBottom) {

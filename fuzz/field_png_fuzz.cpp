@@ -1,0 +1,15 @@
+/// PNG fields: any bytes are a valid field or an InputError.
+#include <cstdint>
+
+#include "core/input_error.hpp"
+#include "io/field_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace prostm;
+  try {
+    validate(field_from_png({reinterpret_cast<const char*>(data), size}, "fuzz.png", 5.0));
+  } catch (const InputError&) {
+    // what bad input must answer
+  }
+  return 0;
+}

@@ -1,0 +1,26 @@
+/// Settings: any text sets fields of every type, or is an InputError.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+#include "core/input_error.hpp"
+#include "io/settings_file.hpp"
+#include "plan/planner.hpp"
+#include "track/hand_source.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace prostm;
+  PlanSettings plan;
+  ScriptedHandSettings hand;
+  const std::vector<SettingsGroup> groups = {
+      {"plan", [&](SettingsVisitor& v) { plan.visit(v); }},
+      {"scripted_hand", [&](SettingsVisitor& v) { hand.visit(v); }}};
+  try {
+    settings_from_toml({reinterpret_cast<const char*>(data), size}, "fuzz.toml", groups);
+    if (!std::isfinite(plan.sigma)) std::abort();
+    static_cast<void>(settings_to_json(groups));
+  } catch (const InputError&) {
+    // what bad input must answer
+  }
+  return 0;
+}
