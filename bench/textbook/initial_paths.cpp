@@ -195,8 +195,10 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
       open.push_back(*part);
     }
   }
-  std::stable_sort(leaves.begin(), leaves.end(),
-                   [&](const Tour& a, const Tour& b) { return mass(points, a) > mass(points, b); });
+  // of equally heavy tours the one with the lower first cluster comes first
+  std::sort(leaves.begin(), leaves.end(), [&](const Tour& a, const Tour& b) {
+    return std::pair(-mass(points, a), a.front()) < std::pair(-mass(points, b), b.front());
+  });
   return leaves;
 }
 
