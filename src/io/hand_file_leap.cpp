@@ -167,7 +167,7 @@ Side read_side(const JsonNode& hand, const std::array<Finger, kFingers>& fingers
   return (fingers[1].mcp - fingers[4].mcp).dot(thumb_side) > 0.0 ? Side::Right : Side::Left;
 }
 
-/// R turned by the smallest rotation that brings its −z axis to `bone` (parallel transport, H15).
+/// R turned by the smallest rotation that brings its −z axis to `bone`.
 Eigen::Matrix3d transported(const Eigen::Matrix3d& R, const Vec3& bone) {
   return Quat::FromTwoVectors(-R.col(2), bone).toRotationMatrix() * R;
 }
@@ -201,7 +201,8 @@ void set_finger(const JsonNode& node, const Palm& palm, const std::array<Finger,
     if (finger.bases) {
       R_TB = (*finger.bases)[4 - bones + b];
     } else if (bone.norm() > 1e-6) {
-      R_TB = transported(R_TB, bone.normalized());
+      const bool knuckle = b + 3 == bones;
+      R_TB = knuckle ? frame_from(node, R_TB.col(1), -bone) : transported(R_TB, bone.normalized());
     }
     hand.orientation[first + b] = Quat(R_TB);
   }
