@@ -1,6 +1,7 @@
 #include "hand/hand_raster.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -9,7 +10,9 @@ namespace prostm {
 namespace {
 
 constexpr int kMaxSubPoses = 16;
-constexpr int kSlab = 4;  // planes of nodes in one task
+constexpr double kVelocityReach = 2.0;   // how far from the skin its velocity is told [cells]
+constexpr float kDiagonal = 1.7320509F;  // of a cell [cells], rounded up
+constexpr int kSlab = 4;                 // planes in one task
 static_assert(BodySet::kCapacity < 255, "a node's owner is one byte");
 
 bool is_finite(const Hand& hand) {
@@ -78,8 +81,14 @@ void descend(const BodySet& bodies, const BodySet::List& from, const Vec3& origi
     }
     return;
   }
+  // the longest axes are cut, at powers of two, so that blocks become cubes and the last ones are
+  // whole
+  const auto size = [&](int a) { return static_cast<unsigned>(up[a] - lo[a]); };
+  const unsigned longest = std::bit_ceil(std::max({size(0), size(1), size(2)}));
   int middle[3];
-  for (int a = 0; a < 3; ++a) middle[a] = lo[a] + (up[a] - lo[a] + 1) / 2;
+  for (int a = 0; a < 3; ++a) {
+    middle[a] = std::bit_ceil(size(a)) == longest ? lo[a] + static_cast<int>(longest / 2) : up[a];
+  }
   for (unsigned octant = 0; octant < 8; ++octant) {
     CellBox part = block;
     for (int a = 0; a < 3; ++a)
@@ -125,7 +134,9 @@ void HandRasteriser::rasterise(const HandFrame& frame, WorkerPool& pool) noexcep
   pool.run((nodes + kSlab - 1) / kSlab, [&](int task) {
     fill_nodes(old, first + task * kSlab, std::min(first + (task + 1) * kSlab, first + nodes));
   });
-  pool.run(planes, [&](int task) { fill_cells(old, first + task); });
+  pool.run((planes + kSlab - 1) / kSlab, [&](int task) {
+    fill_cells(old, first + task * kSlab, std::min(first + (task + 1) * kSlab, first + planes));
+  });
 }
 
 void HandRasteriser::set_shapes(const HandFrame& frame) noexcept {
@@ -235,60 +246,84 @@ void HandRasteriser::fill_nodes(const CellBox& old, int first, int last) noexcep
   }
 }
 
-void HandRasteriser::fill_cells(const CellBox& old, int k) noexcept {
+void HandRasteriser::fill_cells(const CellBox& old, int first, int last) noexcept {
   const GridShape& grid = raster_.grid;
-  if (has_plane(old, k)) {
+  for (int k = first; k < last; ++k) {
+    if (!has_plane(old, k)) continue;
     for (int j = old.lower[1]; j < old.upper[1]; ++j) {
       const auto row = static_cast<std::ptrdiff_t>(grid.cell_index(old.lower[0], j, k));
       const auto count = static_cast<std::size_t>(old.upper[0] - old.lower[0]);
-      for (std::vector<float>& component : raster_.velocity)
+      for (std::vector<float>& component : raster_.velocity) {
         std::fill_n(component.begin() + row, count, 0.0F);
+      }
       std::fill_n(raster_.swept.begin() + row, count, std::uint8_t{0});
     }
   }
-  for (CellBox range : node_ranges_) {
-    if (!has_plane(range, k) && !has_plane(range, k + 1)) continue;
-    for (int j = std::max(range.lower[1] - 1, 0); j < std::min(range.upper[1], grid.ny); ++j) {
-      for (int i = std::max(range.lower[0] - 1, 0); i < std::min(range.upper[0], grid.nx); ++i)
-        find_velocity(i, j, k);
+  // the cells around a node lie from one below it to itself
+  for (const CellBox& nodes : node_ranges_) {
+    if (nodes.empty()) continue;
+    for (int k = std::max(nodes.lower[2] - 1, first); k < std::min({nodes.upper[2], grid.nz, last});
+         ++k) {
+      for (int j = std::max(nodes.lower[1] - 1, 0); j < std::min(nodes.upper[1], grid.ny); ++j) {
+        for (int i = std::max(nodes.lower[0] - 1, 0); i < std::min(nodes.upper[0], grid.nx); ++i) {
+          find_velocity(i, j, k);
+        }
+      }
     }
   }
-  for (std::size_t n = 0; n < sub_pose_count_; ++n) sweep(sub_poses_[n], k);
+  for (std::size_t n = 0; n < sub_pose_count_; ++n) sweep(sub_poses_[n], first, last);
+}
+
+std::array<std::size_t, 8> HandRasteriser::corners(int i, int j, int k) const noexcept {
+  const GridShape& grid = raster_.grid;
+  const std::size_t row = static_cast<std::size_t>(grid.nx) + 1;
+  const std::size_t plane = row * (static_cast<std::size_t>(grid.ny) + 1);
+  const std::size_t first = grid.node_index(i, j, k);
+  return {first,         first + 1,         first + row,         first + row + 1,
+          first + plane, first + plane + 1, first + plane + row, first + plane + row + 1};
 }
 
 void HandRasteriser::find_velocity(int i, int j, int k) noexcept {
   // the body that is nearest at the corner nearest to a hand is taken for the one nearest to the
   // cell
   const GridShape& grid = raster_.grid;
-  const std::size_t row = static_cast<std::size_t>(grid.nx) + 1,
-                    plane = row * (static_cast<std::size_t>(grid.ny) + 1);
-  const std::size_t corner = grid.node_index(i, j, k);
-  std::size_t nearest = corner;
-  for (const std::size_t node :
-       {corner + 1, corner + row, corner + row + 1, corner + plane, corner + plane + 1,
-        corner + plane + row, corner + plane + row + 1}) {
+  const float reach = static_cast<float>(kVelocityReach * grid.cell);
+  if (raster_.node_distance[grid.node_index(i, j, k)] >
+      reach + kDiagonal * static_cast<float>(grid.cell))
+    return;
+  std::size_t nearest = grid.node_index(i, j, k);
+  for (const std::size_t node : corners(i, j, k)) {
     if (raster_.node_distance[node] < raster_.node_distance[nearest]) nearest = node;
   }
-  if (owner_[nearest] == 0) return;
+  if (raster_.node_distance[nearest] > reach || owner_[nearest] == 0) return;
   const Vec3 velocity = bodies_.query(owner_[nearest] - 1U, grid.cell_centre(i, j, k)).velocity;
   const std::size_t cell = grid.cell_index(i, j, k);
   for (int a = 0; a < 3; ++a) raster_.velocity[a][cell] = static_cast<float>(velocity[a]);
 }
 
-void HandRasteriser::sweep(const SubPose& pose, int k) noexcept {
+bool HandRasteriser::is_solid(int i, int j, int k) const noexcept {
+  // a centre is half a diagonal from its corners, and distances change at most as fast
+  const float half_diagonal = 0.5F * kDiagonal * static_cast<float>(raster_.grid.cell);
+  for (const std::size_t node : corners(i, j, k)) {
+    if (raster_.node_distance[node] < -half_diagonal) return true;
+    if (raster_.node_distance[node] > half_diagonal) return false;
+  }
+  const Vec3 centre = raster_.grid.cell_centre(i, j, k);
+  return std::any_of(shapes_.begin(), shapes_.end(),
+                     [&](const HandShape& shape) { return shape.distance(centre) <= 0.0; });
+}
+
+void HandRasteriser::sweep(const SubPose& pose, int first, int last) noexcept {
   const GridShape& grid = raster_.grid;
   CellBox range = pose.cells;
-  range.lower[2] = std::max(range.lower[2], k);
-  range.upper[2] = std::min(range.upper[2], k + 1);
+  range.lower[2] = std::max(range.lower[2], first);
+  range.upper[2] = std::min(range.upper[2], last);
   if (range.empty()) return;
   descend(pose.bodies, pose.bodies.all(), Vec3::Zero(), Points{grid, 0.5}, range, pose.margin,
-          [&](int i, int j, int kk, const Vec3& centre, const BodySet::Candidate& touch) {
+          [&](int i, int j, int k, const Vec3& centre, const BodySet::Candidate& touch) {
             // not yet marked by a newer pose, and free now
-            const std::size_t cell = grid.cell_index(i, j, kk);
-            if (raster_.swept[cell] != 0) return;
-            for (const HandShape& shape : shapes_) {
-              if (shape.distance(centre) <= 0.0) return;
-            }
+            const std::size_t cell = grid.cell_index(i, j, k);
+            if (raster_.swept[cell] != 0 || is_solid(i, j, k)) return;
             raster_.swept[cell] = 1;
             const Vec3 velocity = pose.bodies.query(touch.body, centre).velocity;
             for (int a = 0; a < 3; ++a) raster_.velocity[a][cell] = static_cast<float>(velocity[a]);

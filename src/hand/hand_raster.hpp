@@ -1,6 +1,7 @@
 #pragma once
 /// Hands on the fluid's grid.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -27,8 +28,8 @@ struct HandRaster {
   CellBox box;  ///< cells that may touch a hand, its band or its sweep, clipped to the grid
   std::vector<float> node_distance;  ///< node_count() [m]; right up to the band's width, at least
                                      ///< that beyond; kFar outside the box
-  std::vector<float>
-      velocity[3];  ///< cell_count() each [m/s], of the nearest skin point; 0 outside band and box
+  std::vector<float> velocity[3];    ///< cell_count() each [m/s], of the nearest skin point; 0
+                                     ///< farther than two cells from the skin
   std::vector<std::uint8_t>
       swept;  ///< cell_count(), 1 where the hand passed since the last raster and is gone now
   static constexpr float kFar = 1.0F;  ///< [m]
@@ -66,9 +67,11 @@ class HandRasteriser {
   CellBox range_of(const HandShape& shape, double margin, double offset) const noexcept;
   void place_box() noexcept;
   void fill_nodes(const CellBox& old, int first, int last) noexcept;
-  void fill_cells(const CellBox& old, int k) noexcept;
+  void fill_cells(const CellBox& old, int first, int last) noexcept;
+  std::array<std::size_t, 8> corners(int i, int j, int k) const noexcept;  ///< nodes of a cell
   void find_velocity(int i, int j, int k) noexcept;
-  void sweep(const SubPose& pose, int k) noexcept;
+  bool is_solid(int i, int j, int k) const noexcept;
+  void sweep(const SubPose& pose, int first, int last) noexcept;
 
   HandRaster raster_;
   double band_;  // [cells]
