@@ -73,7 +73,8 @@ void add_run(CLI::App& app, int& status) {
                       "a picture of the strongest instant (.png or .svg)");
   command->add_option("--seconds", o->seconds,
                       "of run time; default: the recording's length, or 60");
-  auto* realtime = command->add_flag_callback("--realtime", [] {}, "keep the clock's time (default)");
+  auto* realtime = command->add_flag_callback(
+      "--realtime", [] {}, "keep the clock's time (default)");
   auto* fast = command->add_flag("--as-fast-as-possible", o->as_fast_as_possible,
                                  "no clock, nothing dropped");
   auto* stepped = command->add_flag("--stepped", o->stepped, "the same on one thread");

@@ -76,7 +76,7 @@ void Fluid::State::set_jets(const Scene& scene) {
   for (int j = 0; j < grid.ny; ++j) {
     for (int i = 0; i < grid.nx; ++i) {
       const Vec2 p = grid.cell_centre(i, j, 0).head<2>();
-      double speed = 0.0, share = 0.0;
+      double speed = scene.vent_speed, share = 0.0;
       for (const SmokeJet& jet : scene.jets) {
         speed += jet.speed * jet_profile(jet, p);
         share = std::max(share, jet_profile(jet, p));
@@ -164,9 +164,35 @@ void Fluid::State::advect(double dt) {
   });
   for (int axis = 0; axis < 3; ++axis) std::swap(velocity[axis], next_velocity[axis]);
   std::swap(smoke, next_smoke);
+  calm_inflow();
   const Index floor = padded.index(0, 0, 0);
   std::copy_n(obstacle.wall_velocity(2).data() + floor, padded.row() * n,
               velocity[2].data() + floor);
+}
+
+void Fluid::State::calm_inflow() {
+  const int last = padded.n - 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int other[2] = {(axis + 1) % 3, (axis + 2) % 3};
+    for (int side = axis == 2 ? 1 : 0; side < 2; ++side) {  // the floor is no open side
+      for (int b = 0; b <= last; ++b) {
+        for (int a = 0; a <= last; ++a) {
+          int at[3];
+          at[axis] = side * last;
+          at[other[0]] = a;
+          at[other[1]] = b;
+          const Index c = padded.index(at[0], at[1], at[2]);
+          float& inward = velocity[axis][c + side * padded.stride(axis)];
+          if (side == 0 ? inward <= 0.0F : inward >= 0.0F) continue;
+          inward = 0.0F;
+          for (const int t : other) {
+            if (t != 2 || at[2] > 0) velocity[t][c] = 0.0F;
+            velocity[t][c + padded.stride(t)] = 0.0F;
+          }
+        }
+      }
+    }
+  }
 }
 
 void Fluid::State::add_forces(double dt) {

@@ -27,6 +27,8 @@ struct Scene {
   std::string name;
   std::vector<SmokeJet> jets;
   double full_scale_pressure = 0.0;  ///< target pressure that maps to full output [Pa]
+  double vent_speed = 0.0;  ///< of clean air let in through the whole floor, so that jets side by
+                            ///< side need not draw each other in [m/s]
 };
 
 /// "one-plume", "four-plumes". @throws std::invalid_argument that lists the names for any other.

@@ -28,6 +28,10 @@ struct Fluid::State {
 
   void set_jets(const Scene& scene);
   void set_smoke_halo();
+  /// Air that enters through an open side was at rest outside (F3a): the side's cells forget their
+  /// momentum where the flow is inward, and the projection alone drives it. Kept momentum would
+  /// feed itself and turn the whole box.
+  void calm_inflow();
   void confine_vorticity(double dt);
   void push_swept(const HandRaster& raster);
   void mark_fluid_cells(const HandRaster& raster);

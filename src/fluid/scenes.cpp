@@ -8,13 +8,11 @@ using namespace literals;
 
 Scene scene_from_name(const std::string& name) {
   // radii and speeds are tuned on a flat palm 0.2 m above the array (docs/design.md, section 3.6)
-  if (name == "one-plume") {
-    return {name, {SmokeJet{Vec2(0, 0), 74_mm, 0.50}}, 0.14};
-  }
+  if (name == "one-plume") return {name, {SmokeJet{Vec2(0, 0), 60_mm, 0.50}}, 0.16, 0.05};
   if (name == "four-plumes") {
-    Scene scene{name, {}, 0.28};
-    for (const double x : {-27.0_mm, 27.0_mm}) {
-      for (const double y : {-27.0_mm, 27.0_mm}) scene.jets.push_back({Vec2(x, y), 28_mm, 1.20});
+    Scene scene{name, {}, 0.35, 0.30};
+    for (const double x : {-18.0_mm, 18.0_mm}) {
+      for (const double y : {-18.0_mm, 18.0_mm}) scene.jets.push_back({Vec2(x, y), 18_mm, 0.90});
     }
     return scene;
   }

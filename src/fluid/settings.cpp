@@ -55,6 +55,7 @@ void validate(const FluidSettings& s) {
 }
 
 void validate(const Scene& scene) {
+  require("vent speed", scene.vent_speed, 0.0, 20.0, "between 0 and 20 m/s");
   for (const SmokeJet& jet : scene.jets) {
     require("jet centre x", jet.centre.x(), -10.0, 10.0, "between -10 and 10 m");
     require("jet centre y", jet.centre.y(), -10.0, 10.0, "between -10 and 10 m");

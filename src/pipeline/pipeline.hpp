@@ -106,8 +106,8 @@ class Pipeline {
   /// @throws std::invalid_argument with a sentence.
   Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands);
 
-  /// One fluid step of dt [s]: the device plays up to it, then the line runs top to bottom. True when
-  /// a plan update came with it: see plan(). @pre settings.simulated_array.realtime is false.
+  /// One fluid step of dt [s]: the device plays up to it, then the line runs top to bottom. True
+  /// when a plan update came with it: see plan(). @pre settings.simulated_array.realtime is false.
   bool step(double dt);
 
   const ContactFrame& contact() const { return contact_frame_; }

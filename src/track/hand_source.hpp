@@ -15,66 +15,79 @@ namespace prostm {
 class HandSource {
  public:
   virtual ~HandSource() = default;
-  /// The hands at `time` [s], counted from 0 at the start of the run; times must not decrease from call to call. No hand
-  /// in sight is an ordinary answer. Allocates nothing.
+  /// The hands at `time` [s], counted from 0 at the start of the run; times must not decrease from
+  /// call to call. No hand in sight is an ordinary answer. Allocates nothing.
   virtual void sample(double time, HandFrame& out) = 0;
   /// Seconds after which sample() has nothing new; infinity for a source without an end.
   virtual double duration() const = 0;
 };
 
 struct TrackSettings {
-  double smoothing_time = 0.030;    ///< width of the window in which joints are smoothed before they are differentiated [s]
-  double max_speed = 3.0;           ///< joint velocities are clamped to this magnitude: trackers glitch [m/s]
-  double max_gap = 0.060;           ///< a hand missing for longer than this between two frames is gone [s]
-  double filter_position = 0.3;     ///< α of the filter on still joints at the pipeline's rate, (0, 1]; 1 = no filter
-  double filter_velocity = 0.2;     ///< low-pass of steady velocities at the pipeline's rate, (0, 1]; 1 = no filter
-  double filter_position_scale = 0.003;  ///< innovation of a position at which the filter is half open [m]
-  double filter_velocity_scale = 0.100;  ///< innovation of a velocity at which the low-pass is half open [m/s]
+  double smoothing_time = 0.030;  ///< width of the window in which joints are smoothed before they
+                                  ///< are differentiated [s]
+  double max_speed =
+      3.0;  ///< joint velocities are clamped to this magnitude: trackers glitch [m/s]
+  double max_gap = 0.060;  ///< a hand missing for longer than this between two frames is gone [s]
+  double filter_position =
+      0.3;  ///< α of the filter on still joints at the pipeline's rate, (0, 1]; 1 = no filter
+  double filter_velocity =
+      0.2;  ///< low-pass of steady velocities at the pipeline's rate, (0, 1]; 1 = no filter
+  double filter_position_scale =
+      0.003;  ///< innovation of a position at which the filter is half open [m]
+  double filter_velocity_scale =
+      0.100;  ///< innovation of a velocity at which the low-pass is half open [m/s]
 
   void visit(SettingsVisitor& v);
 };
 
 /// A recording: frames at irregular times, as read by `io`.
 struct HandRecording {
-  std::vector<HandFrame> frames;    ///< times strictly increasing, the first at 0; velocities not set
+  std::vector<HandFrame> frames;  ///< times strictly increasing, the first at 0; velocities not set
   std::string description;
 };
 
-/// Plays a recording. Between frames positions are interpolated linearly and orientations by slerp, hand by hand (by
-/// id and side); velocities are central differences of joints smoothed over `smoothing_time` (H1), clamped. When `loop`,
-/// the recording starts again as a hand that leaves and comes back: for two steps [s] after its end there is no hand, so
-/// that a caller with that step sees at least one frame without; no velocity crosses the seam.
-/// @throws std::invalid_argument: a setting outside its bounds, no frames, times that do not increase from 0, two hands
-/// of the same id and side in one frame.
-std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording, const TrackSettings& settings, bool loop,
+/// Plays a recording. Between frames positions are interpolated linearly and orientations by slerp,
+/// hand by hand (by id and side); velocities are central differences of joints smoothed over
+/// `smoothing_time` (H1), clamped. When `loop`, the recording starts again as a hand that leaves
+/// and comes back: for two steps [s] after its end there is no hand, so that a caller with that
+/// step sees at least one frame without; no velocity crosses the seam.
+/// @throws std::invalid_argument: a setting outside its bounds, no frames, times that do not
+/// increase from 0, two hands of the same id and side in one frame.
+std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording,
+                                               const TrackSettings& settings, bool loop,
                                                double step);
 
-/// A kinematic skeleton with bone lengths and joint angles, endless: an open right hand, palm down, comes in from the
-/// user's side, hovers over the middle of the tracker, lowers and lifts, tilts, closes and opens, leaves, and so on in a
-/// cycle of `period`.
+/// A kinematic skeleton with bone lengths and joint angles, endless: an open right hand, palm down,
+/// comes in from the user's side, hovers over the middle of the tracker, lowers and lifts, tilts,
+/// closes and opens, leaves, and so on in a cycle of `period`.
 struct ScriptedHandSettings {
-  double height = 0.20;        ///< of the hovering palm joint above the tracker [m], 0.10 to 0.60
-  double period = 20.0;        ///< of the cycle [s], 5 to 3600
-  double jitter = 0.0;         ///< standard deviation of white noise on each joint coordinate of each tracker frame [m], 0 to 0.01
-  int seed = 1;                ///< of the jitter
-  bool still = false;          ///< the hovering pose for ever
+  double height = 0.20;  ///< of the hovering palm joint above the tracker [m], 0.10 to 0.60
+  double period = 20.0;  ///< of the cycle [s], 5 to 3600
+  double jitter = 0.0;   ///< standard deviation of white noise on each joint coordinate of each
+                         ///< tracker frame [m], 0 to 0.01
+  int seed = 1;          ///< of the jitter
+  bool still = false;    ///< the hovering pose for ever
 
   void visit(SettingsVisitor& v);
 };
-/// Without jitter velocities are exact (central differences of the motion itself); with jitter the hand is seen as through
-/// a tracker of 110 Hz: joints are interpolated between noisy frames and velocities come from them by (H1).
+/// Without jitter velocities are exact (central differences of the motion itself); with jitter the
+/// hand is seen as through a tracker of 110 Hz: joints are interpolated between noisy frames and
+/// velocities come from them by (H1).
 /// @throws std::invalid_argument for a setting outside its bounds.
-std::unique_ptr<HandSource> make_scripted_hand(const ScriptedHandSettings& settings, const TrackSettings& track);
+std::unique_ptr<HandSource> make_scripted_hand(const ScriptedHandSettings& settings,
+                                               const TrackSettings& track);
 
-/// Takes the tracker's noise out before the fluid sees it: each joint is predicted with its filtered velocity and corrected
-/// by a share of the innovation, its velocity and orientation are low-passed. The shares open with the size of the
-/// innovation, so that noise is damped and real motion passes: (H5) to (H7) of docs/design.md. Without the filter, a hand
-/// that is still but tracked with 0.3 mm of noise makes more pressure than the smoke.
+/// Takes the tracker's noise out before the fluid sees it: each joint is predicted with its
+/// filtered velocity and corrected by a share of the innovation, its velocity and orientation are
+/// low-passed. The shares open with the size of the innovation, so that noise is damped and real
+/// motion passes: (H5) to (H7) of docs/design.md. Without the filter, a hand that is still but
+/// tracked with 0.3 mm of noise makes more pressure than the smoke.
 class HandFilter {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.
   explicit HandFilter(const TrackSettings& settings);
-  /// Filters `frame` in place, dt [s] after the previous one. A hand with a new id starts unfiltered.
+  /// Filters `frame` in place, dt [s] after the previous one. A hand with a new id starts
+  /// unfiltered.
   void apply(double dt, HandFrame& frame) noexcept;
 
  private:

@@ -25,7 +25,7 @@ FluidSettings settings_of(int cells, int cycles = 2) {
 }
 
 Scene still_air() {
-  return {"still", {}, 1.0};
+  return {"still", {}, 1.0, 0.0};
 }
 
 HandRaster hand_at(const GridShape& grid, double z, double speed) {
