@@ -69,8 +69,8 @@ void add_run(CLI::App& app, int& status) {
   auto o = std::make_shared<RunOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand);
   only(*command, "--device", "sim", "autd3 ultraleap stream", "what plays the paths");
-  command->add_option("--figure", o->common.figure,
-                      "a picture of the strongest instant (.png or .svg)");
+  command->add_option("--figure", o->common.figure, "a picture of one instant (.png or .svg)");
+  command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle");
   command->add_option("--seconds", o->seconds,
                       "of run time; default: the recording's length, or 60");
   auto* realtime = command->add_flag_callback(

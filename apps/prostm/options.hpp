@@ -23,7 +23,7 @@ struct RunOptionsGiven {
   CommonOptions common;
   std::optional<std::string> scene;
   std::string hand = "scripted";
-  std::optional<double> seconds;
+  std::optional<double> seconds, figure_at;
   bool as_fast_as_possible = false, stepped = false;
   std::string record;
 };

@@ -1,8 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "common.hpp"
 #include "core/input_error.hpp"
+#include "core/random.hpp"
 #include "figure/figures.hpp"
+#include "io/digitised_figure.hpp"
 #include "io/field_file.hpp"
 #include "io/file.hpp"
 #include "io/plan_file.hpp"
@@ -24,19 +29,73 @@ void print_plan(std::FILE* out, const Plan& plan, const PlanStats& stats, const 
                path.period * 1e3, path.points.size());
   }
   const auto row = [&](const std::string& name, const Metrics& m) {
-    fmt::print(out, "  {:<26} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n",
+    fmt::print(out, "  {:<44} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n",
                name, m.rmse, m.correlation, m.coverage, m.skill_0, m.skill_8, m.overlap, m.spill);
   };
-  fmt::print(out, "  {:<26} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "", "RMSE", "corr",
+  fmt::print(out, "  {:<44} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "", "RMSE", "corr",
              "cover", "S_0", "S_8.5", "overlap", "spill");
   row("this plan", metrics);
   for (const Control& control : controls) row("control: " + control.name, control.metrics);
+}
+
+/// Another target on the same skin, for the control that plays the paths of one: three blobs at
+/// random places.
+TargetField another_target(const TargetField& target, std::uint64_t seed) {
+  constexpr double kWidth = 0.020;  // [m]
+  std::vector<std::size_t> skin;
+  for (std::size_t c = 0; c < target.size(); ++c) {
+    if (target.skin[c] != 0) skin.push_back(c);
+  }
+  Random random(seed);
+  TargetField other = target;
+  std::fill(other.pressure.begin(), other.pressure.end(), 0.0);
+  const auto position = [&](std::size_t c) {
+    const auto cols = static_cast<std::size_t>(target.cols);
+    return target.position(static_cast<int>(c / cols), static_cast<int>(c % cols));
+  };
+  for (int blob = 0; blob < 3; ++blob) {
+    const Vec2 centre =
+        position(skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))]);
+    for (const std::size_t c : skin) {
+      other.pressure[c] +=
+          std::exp(-(position(c) - centre).squaredNorm() / (2.0 * kWidth * kWidth));
+    }
+  }
+  return other;
+}
+
+PlanFigure as_figure(const TargetField& target, const Plan& plan, const PlanTrace& trace,
+                     const PlanSettings& s) {
+  PlanFigure figure;
+  figure.target = &target;
+  figure.plan = &plan;
+  figure.trace = &trace;
+  figure.reconstruction.resize(target.size());
+  quasi_static_field(plan, 0, target, s.sigma, s.gain, figure.reconstruction);
+  return figure;
+}
+
+/// The six panels, and under them those of `--beside`.
+void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given, const PlanSettings& s) {
+  if (given.beside.empty()) {
+    draw_plan(figure, given.common.figure);
+    return;
+  }
+  const DigitisedFigure other = digitised_figure_from_json(read_file(given.beside), given.beside,
+                                                           *figure.target, s.gain, s.speed);
+  PlanFigure beside = as_figure(*figure.target, other.plan, other.trace, s);
+  beside.reconstruction = other.reconstruction;
+  beside.metrics = score_plan(*figure.target, other.plan, 0, s.sigma, s.gain);
+  beside.title = given.beside;
+  draw_plan(figure, given.common.figure, &beside);
 }
 
 }  // namespace
 
 int plan_command(const PlanOptionsGiven& given) {
   PipelineSettings settings = make_settings(given.common, std::nullopt);
+  if (!given.beside.empty() && given.common.figure.empty())
+    throw InputError("--beside needs --figure to draw in");
   FieldFileOptions file_options;
   file_options.cell_mm = given.cell_mm;
   file_options.frame = given.frame;
@@ -61,8 +120,11 @@ int plan_command(const PlanOptionsGiven& given) {
   const Metrics metrics = score_plan(target, plan, 0, s.sigma, s.gain);
   std::vector<Control> control_rows;
   if (status == PlanStatus::Planned) {
-    control_rows = controls(target, s.sigma, s.gain, s.max_length, nullptr,
-                            static_cast<std::uint64_t>(s.seed));
+    const auto seed = static_cast<std::uint64_t>(s.seed);
+    Plan other;
+    PlanStats other_stats;
+    planner.plan(another_target(target, seed), other, other_stats);
+    control_rows = controls(target, s.sigma, s.gain, s.max_length, &other, seed);
   }
 
   if (status == PlanStatus::EmptyTarget) {
@@ -78,16 +140,11 @@ int plan_command(const PlanOptionsGiven& given) {
     write_file(given.common.json, plan_to_json(plan, target, s, extras, settings_json(settings)));
   }
   if (!given.common.figure.empty()) {
-    PlanFigure figure;
-    figure.target = &target;
-    figure.plan = &plan;
-    figure.trace = &trace;
-    figure.reconstruction.resize(target.size());
-    quasi_static_field(plan, 0, target, s.sigma, s.gain, figure.reconstruction);
+    PlanFigure figure = as_figure(target, plan, trace, s);
     figure.metrics = metrics;
     figure.controls = control_rows;
     figure.title = given.field + ", preset " + s.preset;
-    draw_plan(figure, given.common.figure);
+    draw_figure(figure, given, s);
   }
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common.hpp"
 #include "core/input_error.hpp"
@@ -13,11 +14,12 @@
 namespace prostm::app {
 namespace {
 
-/// Records, keeps the strongest instant for the picture, and watches for Ctrl-C.
+/// Records, keeps the instant nearest to one for the picture, and watches for Ctrl-C.
 class Observer final : public RunObserver {
  public:
-  Observer(Recorder* recorder, bool keep_instant, double seconds)
-      : recorder_(recorder), keep_instant_(keep_instant), seconds_(seconds) {}
+  /// @param picture_at time of the picture [s]; negative for none.
+  Observer(Recorder* recorder, double picture_at, double seconds)
+      : recorder_(recorder), picture_at_(picture_at), seconds_(seconds) {}
 
   bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
     if (recorder_ != nullptr) {
@@ -25,16 +27,11 @@ class Observer final : public RunObserver {
       recorder_->append(contact.target, contact.hands, planned ? &plan.plan : nullptr,
                         planned ? &plan.stats : nullptr);
     }
-    if (keep_instant_ && plan.status == PlanStatus::Planned) {
-      double total = 0.0;
-      for (const TargetField& patch : contact.target.patches) {
-        for (const double p : patch.pressure) total += p;
-      }
-      if (total > strongest_) {
-        strongest_ = total;
-        contact_ = contact;
-        plan_ = plan;
-      }
+    const double away = std::abs(contact.target.time - picture_at_);
+    if (picture_at_ >= 0.0 && plan.status == PlanStatus::Planned && away < away_) {
+      away_ = away;
+      contact_ = contact;
+      plan_ = plan;
     }
     return !interrupt_.requested();
   }
@@ -45,14 +42,13 @@ class Observer final : public RunObserver {
   }
 
   bool interrupted() const { return interrupt_.requested(); }
-  bool has_instant() const { return strongest_ > 0.0; }
+  bool has_instant() const { return std::isfinite(away_); }
   const ContactFrame& contact() const { return contact_; }
   const PlanFrame& plan() const { return plan_; }
 
  private:
   Recorder* recorder_;
-  bool keep_instant_;
-  double seconds_, strongest_ = 0.0;
+  double picture_at_, seconds_, away_ = std::numeric_limits<double>::infinity();
   ContactFrame contact_;
   PlanFrame plan_;
   Interrupt interrupt_;
@@ -202,7 +198,9 @@ int run_command(const RunOptionsGiven& given) {
     recorder->set_attribute("scene", settings.scene);
     recorder->set_attribute("hand", given.hand);
   }
-  Observer observer(recorder.get(), settings.side_view, options.seconds);
+  const double picture_at =
+      settings.side_view ? given.figure_at.value_or(0.5 * options.seconds) : -1.0;
+  Observer observer(recorder.get(), picture_at, options.seconds);
   const RunSummary summary = run(pipeline, settings, options, observer);
 
   nlohmann::ordered_json json = summary_json(summary, settings);

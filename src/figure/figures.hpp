@@ -23,8 +23,10 @@ struct PlanFigure {
 };
 /// (a) target, (b) clusters, (c) initial tour, (d) split tours, (e) refined paths, (f)
 /// reconstruction, with axes in mm, one colour bar for (a) and (f), a length for each path, and the
-/// table. @throws InputError when the file cannot be written.
-void draw_plan(const PlanFigure& figure, const std::string& path);
+/// table. The panels of `beside`, a plan for the same target, stand under them and its metrics in
+/// the table. @throws InputError when the file cannot be written.
+void draw_plan(const PlanFigure& figure, const std::string& path,
+               const PlanFigure* beside = nullptr);
 
 /// One instant of the whole pipeline.
 struct SceneFigure {

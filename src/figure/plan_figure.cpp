@@ -22,6 +22,8 @@ using figure::Panel;
 constexpr double kPanelWidth = 340.0, kPanelHeight = 330.0, kColumn = 400.0;
 constexpr double kLeft = 62.0, kTop = 84.0, kBelowPanel = 84.0, kRowHeight = 21.0;
 constexpr double kPageWidth = kLeft + 3.0 * kColumn + 34.0;
+constexpr double kBetween = 56.0;  // two plans, one under the other
+constexpr double kFirstColumn = kLeft + 330.0, kColumnStep = 112.0;  // of the table
 
 void check(const PlanFigure& f) {
   if (f.target == nullptr || f.plan == nullptr || f.trace == nullptr) {
@@ -78,21 +80,22 @@ void write_lengths(Canvas& canvas, const Panel& panel, const Plan& plan) {
   }
 }
 
-/// Panel `index` of three columns and two rows.
-Panel panel_at(Canvas& canvas, const TargetField& target, int index) {
+/// Panel `index` of three columns and two rows, the first row at `top`.
+Panel panel_at(Canvas& canvas, const TargetField& target, int index, double top) {
   const figure::Extent extent = figure::extent_of(target);
   const double x = kLeft + kColumn * (index % 3);
   const double height = figure::fitted({0.0, 0.0, kPanelWidth, kPanelHeight}, extent).height;
-  const double y = kTop + (index / 3) * (height + kBelowPanel);
+  const double y = top + (index / 3) * (height + kBelowPanel);
   return {canvas, {x, y, kPanelWidth, kPanelHeight}, extent};
 }
 
 /// The panels that show fields: (a) and (f), on one scale.
-void draw_field_panels(Canvas& canvas, const PlanFigure& f, double full) {
-  Panel target = panel_at(canvas, *f.target, 0);
+void draw_field_panels(Canvas& canvas, const PlanFigure& f, double top) {
+  const double full = max_pressure(*f.target);
+  Panel target = panel_at(canvas, *f.target, 0, top);
   target.heat_map(*f.target, f.target->pressure, full);
   target.axes({.title = "(a) target pressure"});
-  Panel reconstruction = panel_at(canvas, *f.target, 5);
+  Panel reconstruction = panel_at(canvas, *f.target, 5, top);
   reconstruction.heat_map(*f.target, f.reconstruction, full);
   reconstruction.axes({.title = "(f) reconstruction, Eq. (1)"});
   for (const Panel* panel : {&target, &reconstruction}) {
@@ -102,10 +105,10 @@ void draw_field_panels(Canvas& canvas, const PlanFigure& f, double full) {
 }
 
 /// The panels that show how the paths come about: (b) to (e).
-void draw_step_panels(Canvas& canvas, const PlanFigure& f) {
+void draw_step_panels(Canvas& canvas, const PlanFigure& f, double top) {
   const PlanTrace& trace = *f.trace;
   for (int index = 1; index <= 4; ++index) {
-    Panel panel = panel_at(canvas, *f.target, index);
+    Panel panel = panel_at(canvas, *f.target, index, top);
     panel.silhouette(*f.target);
     if (index == 1) {
       draw_clusters(panel, trace);
@@ -142,58 +145,74 @@ constexpr std::array<MetricColumn, 7> kColumns{{{"RMSE ↓", &Metrics::rmse, tru
                                                 {"overlap ↑", &Metrics::overlap, false},
                                                 {"spill ↓", &Metrics::spill, true}}};
 
-/// The plan's metrics above those of its controls; where a control does not lose, in the colour of
-/// a warning.
-void draw_table(Canvas& canvas, const PlanFigure& f, double top) {
-  const double first = kLeft + 330.0, step = 112.0;
-  const double right = first + step * (static_cast<double>(kColumns.size()) - 0.15);
+struct TableRow {
+  std::string name;
+  const Metrics* metrics;
+  bool is_control;
+};
+
+/// One row; where a control does not lose to `own`, in the colour of a warning.
+void draw_row(Canvas& canvas, const TableRow& row, const Metrics& own, double y) {
+  const bool bold = !row.is_control;
+  canvas.text(Vec2(kLeft - 24.0, y), row.name, {.size = 12.0, .bold = bold});
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    const double value = row.metrics->*kColumns[c].value, best = own.*kColumns[c].value;
+    const bool wins = row.is_control && (kColumns[c].less_is_better ? value < best : value > best);
+    canvas.text(Vec2(kFirstColumn + kColumnStep * (static_cast<double>(c) + 0.5), y),
+                std::isfinite(value) ? figure::number_text(value, 3) : "–",
+                {.size = 12.0,
+                 .colour = wins ? figure::kWarning : figure::kInk,
+                 .align = Align::Right,
+                 .bold = bold});
+  }
+}
+
+/// The plan's metrics above those of what it is compared with.
+void draw_table(Canvas& canvas, const std::vector<TableRow>& rows, double top) {
+  const double right = kFirstColumn + kColumnStep * (static_cast<double>(kColumns.size()) - 0.15);
   const auto rule = [&](double y, double width) {
     const std::array<Vec2, 2> ends{Vec2(kLeft - 30.0, y), Vec2(right, y)};
     canvas.line(ends, false, figure::kInk, width);
   };
   rule(top, 1.2);
   for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    canvas.text(Vec2(first + step * (static_cast<double>(c) + 0.5), top + 16.0), kColumns[c].name,
+    canvas.text(Vec2(kFirstColumn + kColumnStep * (static_cast<double>(c) + 0.5), top + 16.0),
+                kColumns[c].name,
                 {.size = 11.5, .colour = figure::kFaintInk, .align = Align::Right});
   }
   rule(top + 23.0, 0.6);
-
-  for (std::size_t r = 0; r <= f.controls.size(); ++r) {
-    const bool is_plan = r == 0;
-    const Metrics& metrics = is_plan ? f.metrics : f.controls[r - 1].metrics;
-    const double y = top + 40.0 + kRowHeight * static_cast<double>(r);
-    canvas.text(Vec2(kLeft - 24.0, y), is_plan ? "this plan" : "control: " + f.controls[r - 1].name,
-                {.size = 12.0, .bold = is_plan});
-    for (std::size_t c = 0; c < kColumns.size(); ++c) {
-      const double value = metrics.*kColumns[c].value, own = f.metrics.*kColumns[c].value;
-      const bool wins = !is_plan && (kColumns[c].less_is_better ? value < own : value > own);
-      canvas.text(Vec2(first + step * (static_cast<double>(c) + 0.5), y),
-                  std::isfinite(value) ? figure::number_text(value, 3) : "–",
-                  {.size = 12.0,
-                   .colour = wins ? figure::kWarning : figure::kInk,
-                   .align = Align::Right,
-                   .bold = is_plan});
-    }
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    draw_row(canvas, rows[r], *rows[0].metrics, top + 40.0 + kRowHeight * static_cast<double>(r));
   }
-  rule(top + 47.0 + kRowHeight * static_cast<double>(f.controls.size()), 1.2);
+  rule(top + 26.0 + kRowHeight * static_cast<double>(rows.size()), 1.2);
 }
 
 }  // namespace
 
-void draw_plan(const PlanFigure& f, const std::string& path) {
-  check(f);
-  const double full = max_pressure(*f.target);
+void draw_plan(const PlanFigure& f, const std::string& path, const PlanFigure* beside) {
+  std::vector<const PlanFigure*> blocks{&f};
+  if (beside != nullptr) blocks.push_back(beside);
+  std::vector<TableRow> rows;
+  for (const PlanFigure* block : blocks) {
+    check(*block);
+    rows.push_back({block == &f ? "this plan" : block->title, &block->metrics, false});
+  }
+  for (const Control& c : f.controls) rows.push_back({"control: " + c.name, &c.metrics, true});
 
   // the page is as high as its panels and its table need
   const Box panel =
       figure::fitted({0.0, 0.0, kPanelWidth, kPanelHeight}, figure::extent_of(*f.target));
-  const double table_top = kTop + 2.0 * (panel.height + kBelowPanel) - 6.0;
-  const double height = table_top + 70.0 + kRowHeight * static_cast<double>(f.controls.size());
-  Canvas canvas(path, kPageWidth, height);
-  canvas.text(Vec2(kLeft - 30.0, 38.0), f.title, {.size = 19.0, .bold = true});
-  draw_field_panels(canvas, f, full);
-  draw_step_panels(canvas, f);
-  draw_table(canvas, f, table_top);
+  const double block_height = 2.0 * (panel.height + kBelowPanel);
+  const double table_top =
+      kTop - 6.0 + static_cast<double>(blocks.size()) * (block_height + kBetween) - kBetween;
+  Canvas canvas(path, kPageWidth, table_top + 49.0 + kRowHeight * static_cast<double>(rows.size()));
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const double top = kTop + static_cast<double>(b) * (block_height + kBetween);
+    canvas.text(Vec2(kLeft - 30.0, top - 46.0), blocks[b]->title, {.size = 19.0, .bold = true});
+    draw_field_panels(canvas, *blocks[b], top);
+    draw_step_panels(canvas, *blocks[b], top);
+  }
+  draw_table(canvas, rows, table_top);
   canvas.save();
 }
 

@@ -72,6 +72,7 @@ Fluid::State::State(const FluidSettings& s, const Scene& scene, WorkerPool& work
 
 void Fluid::State::set_jets(const Scene& scene) {
   fluid::validate(scene);
+  vented = scene.vent_speed > 0.0;
   inlet.assign(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny), 0.0F);
   for (int j = 0; j < grid.ny; ++j) {
     for (int i = 0; i < grid.nx; ++i) {
@@ -135,7 +136,10 @@ void Fluid::State::set_smoke_halo() {
     const float* share = inlet.data() + grid.cell_index(0, j, 0);
     const float* first = smoke.data() + padded.index(0, j, 0);
     float* below = smoke.data() + padded.index(0, j, -1);
-    for (int i = 0; i < padded.n; ++i) below[i] = share[i] + (1.0F - share[i]) * first[i];
+    for (int i = 0; i < padded.n; ++i) {
+      const float beside = vented ? 0.0F : first[i];  // clean air, or what lies on a solid floor
+      below[i] = share[i] + (1.0F - share[i]) * beside;
+    }
   }
 }
 

@@ -49,6 +49,7 @@ struct Fluid::State {
   fluid::Field smoke;        // at cells, 0..1; the halo holds what would flow in
   fluid::Obstacle obstacle;
   fluid::PressureSolver solver;
+  bool vented = false;       // clean air comes through the floor
   std::vector<float> inlet;  // share of fresh smoke in what the floor's faces let in, 0..1
 
   // scratch

@@ -1,0 +1,14 @@
+#!/bin/bash
+# Draws the README's pictures with the release build: tools/pictures.sh
+set -euo pipefail
+root=$(dirname "$(dirname "$(readlink -f "$0")")")
+prostm=$root/build/release/prostm
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$root/docs/pictures"
+cd "$work"
+for scene in one-plume four-plumes; do
+  "$prostm" run --scene $scene --seconds 6 --as-fast-as-possible --figure-at 4.5 --figure "$root/docs/pictures/$scene.png"
+done
+"$prostm" capture --scene four-plumes --frames 120 --out four-plumes.h5
+"$prostm" plan four-plumes.h5 --frame 100 --preset paper --figure "$root/docs/pictures/plan.png"
