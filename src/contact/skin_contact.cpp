@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+
+#include "core/require.hpp"
 
 namespace prostm {
 namespace {
@@ -60,14 +60,8 @@ void ContactSettings::visit(SettingsVisitor& v) {
 
 SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
     : settings_(settings), grid_(grid), max_side_(2 * std::max({grid.nx, grid.ny, grid.nz})) {
-  if (!(settings.offset_cells >= 0.5 && settings.offset_cells <= 4.0)) {
-    throw std::invalid_argument("offset_cells = " + std::to_string(settings.offset_cells) +
-                                " must be between 0.5 and 4");
-  }
-  if (!(settings.time_constant >= 0.0 && settings.time_constant <= 10.0)) {
-    throw std::invalid_argument("time_constant = " + std::to_string(settings.time_constant) +
-                                " s of the contact must be between 0 and 10");
-  }
+  require_between("offset_cells", settings.offset_cells, 0.5, 4.0);
+  require_between("time_constant", settings.time_constant, 0.0, 10.0, "s");
   visible_.reserve(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
   pressure_.assign(grid.cell_count(), 0.0F);
   fluid_.assign(grid.cell_count(), 0);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "core/require.hpp"
 #include "device/block_clock.hpp"
 #include "device/segment_player.hpp"
 #include "device/thread_priority.hpp"
@@ -23,19 +24,12 @@ using Seconds = std::chrono::duration<double>;
 constexpr int kMostFoci = 8;
 constexpr std::int64_t kMostWaiting = 64;  // blocks, while a reader holds the lock
 
-void require(double value, double low, double high, const char* name) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  std::ostringstream text;
-  text << name << " = " << value << " must be between " << low << " and " << high;
-  throw std::invalid_argument(text.str());
-}
-
 const SimulatedArraySettings& validated(const SimulatedArraySettings& s) {
-  require(s.sample_rate, 1e3, 1e6, "sample_rate");
-  require(s.block_samples, 1, 4096, "block_samples");
-  require(s.max_foci, 1, kMostFoci, "max_foci");
-  require(s.queue_blocks, 1, 10, "queue_blocks");
-  require(s.history, 0.0, 600.0, "history");
+  require_between("sample_rate", s.sample_rate, 1e3, 1e6, "Hz");
+  require_between("block_samples", s.block_samples, 1, 4096);
+  require_between("max_foci", s.max_foci, 1, kMostFoci);
+  require_between("queue_blocks", s.queue_blocks, 1, 10);
+  require_between("history", s.history, 0.0, 600.0, "s");
   return s;
 }
 

@@ -1,22 +1,9 @@
-#include <cmath>
-#include <sstream>
 #include <stdexcept>
 
+#include "core/require.hpp"
 #include "emit/path_emitter.hpp"
 
 namespace prostm {
-namespace {
-
-constexpr double kLongestWait = 1e6;  // [s]
-
-void require(double value, double low, double high, const char* name) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  std::ostringstream text;
-  text << name << " = " << value << " must be between " << low << " and " << high;
-  throw std::invalid_argument(text.str());
-}
-
-}  // namespace
 
 void EmitSettings::visit(SettingsVisitor& v) {
   v.field("foci", foci);
@@ -30,15 +17,17 @@ void EmitSettings::visit(SettingsVisitor& v) {
 }
 
 void validate(const EmitSettings& settings, double sample_rate) {
-  constexpr double kLargest = 1e300, kSmallest = 1e-300;
-  require(settings.foci, 1, kMaxPaths, "foci");
-  require(settings.full_scale_pressure, kSmallest, kLargest, "full_scale_pressure");
-  require(settings.silent_below, 0.0, 0.999, "silent_below");
-  require(settings.power_limit, 1e-6, kMaxPaths, "power_limit");
-  require(settings.fade_time, 1e-6, 0.02, "fade_time");
-  require(settings.stall_time, 1e-3, kLongestWait, "stall_time");
-  require(settings.stall_fade_time, 1e-6, 0.04, "stall_fade_time");
-  require(sample_rate, 1e3, 1e6, "sample_rate");
+  constexpr double kMaxPressure = 1e300, kMinPressure = 1e-300;  // [Pa]
+  constexpr double kMaxWait = 1e6;                               // [s]
+  require_between("foci", settings.foci, 1, kMaxPaths);
+  require_between("full_scale_pressure", settings.full_scale_pressure, kMinPressure, kMaxPressure,
+                  "Pa");
+  require_between("silent_below", settings.silent_below, 0.0, 0.999);
+  require_between("power_limit", settings.power_limit, 1e-6, double{kMaxPaths});
+  require_between("fade_time", settings.fade_time, 1e-6, 0.02, "s");
+  require_between("stall_time", settings.stall_time, 1e-3, kMaxWait, "s");
+  require_between("stall_fade_time", settings.stall_fade_time, 1e-6, 0.04, "s");
+  require_between("sample_rate", sample_rate, 1e3, 1e6, "Hz");
   if (settings.switch_at != "lap" && settings.switch_at != "now") {
     throw std::invalid_argument("switch_at = \"" + settings.switch_at +
                                 "\" must be \"lap\" or \"now\"");

@@ -1,9 +1,9 @@
 #include "fluid/settings.hpp"
 
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
+#include "core/require.hpp"
 #include "fluid/fluid.hpp"
 
 namespace prostm {
@@ -14,11 +14,6 @@ template <class T>
   std::ostringstream text;
   text << name << " = " << value << " must be " << bound;
   throw std::invalid_argument(text.str());
-}
-
-/// NaN is refused before it is compared: the comparison would trap.
-void require(const char* name, double value, double low, double high, const char* bound) {
-  if (!std::isfinite(value) || value < low || value > high) refuse(name, value, bound);
 }
 
 }  // namespace
@@ -44,23 +39,22 @@ void validate(const FluidSettings& s) {
   }
   if (s.solver != "multigrid" && s.solver != "jacobi")
     refuse("solver", s.solver, "multigrid or jacobi");
-  if (s.cycles < 1 || s.cycles > 100) refuse("cycles", s.cycles, "between 1 and 100");
-  if (s.jacobi_sweeps < 1 || s.jacobi_sweeps > 100000)
-    refuse("jacobi_sweeps", s.jacobi_sweeps, "between 1 and 100000");
-  require("width", s.width, 0.05, 5.0, "between 0.05 and 5 m");
-  require("buoyancy", s.buoyancy, 0.0, 100.0, "between 0 and 100 m/s²");
-  require("vorticity", s.vorticity, 0.0, 100.0, "between 0 and 100 1/s");
-  require("density", s.density, 0.01, 2000.0, "between 0.01 and 2000 kg/m³");
-  require("dissipation", s.dissipation, 0.0, 100.0, "between 0 and 100 1/s");
+  require_between("cycles", s.cycles, 1, 100);
+  require_between("jacobi_sweeps", s.jacobi_sweeps, 1, 100000);
+  require_between("width", s.width, 0.05, 5.0, "m");
+  require_between("buoyancy", s.buoyancy, 0.0, 100.0, "m/s²");
+  require_between("vorticity", s.vorticity, 0.0, 100.0, "1/s");
+  require_between("density", s.density, 0.01, 2000.0, "kg/m³");
+  require_between("dissipation", s.dissipation, 0.0, 100.0, "1/s");
 }
 
 void validate(const Scene& scene) {
-  require("vent speed", scene.vent_speed, 0.0, 20.0, "between 0 and 20 m/s");
+  require_between("vent speed", scene.vent_speed, 0.0, 20.0, "m/s");
   for (const SmokeJet& jet : scene.jets) {
-    require("jet centre x", jet.centre.x(), -10.0, 10.0, "between -10 and 10 m");
-    require("jet centre y", jet.centre.y(), -10.0, 10.0, "between -10 and 10 m");
-    require("jet radius", jet.radius, 1e-3, 1.0, "between 0.001 and 1 m");
-    require("jet speed", jet.speed, 0.0, 20.0, "between 0 and 20 m/s");
+    require_between("jet centre x", jet.centre.x(), -10.0, 10.0, "m");
+    require_between("jet centre y", jet.centre.y(), -10.0, 10.0, "m");
+    require_between("jet radius", jet.radius, 1e-3, 1.0, "m");
+    require_between("jet speed", jet.speed, 0.0, 20.0, "m/s");
   }
 }
 

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/require.hpp"
+
 namespace prostm {
 namespace {
 
@@ -100,12 +102,9 @@ void descend(const BodySet& bodies, const BodySet::List& from, const Vec3& origi
 }  // namespace
 
 HandRasteriser::HandRasteriser(const GridShape& grid, double band) : band_(band) {
-  std::ostringstream sentence;
-  if (!(band >= 2.0 && band <= 16.0)) {
-    sentence << "band = " << band << " cells must be between 2 and 16";
-    throw std::invalid_argument(sentence.str());
-  }
+  require_between("band", band, 2.0, 16.0, "cells");
   if (grid.nx < 1 || grid.ny < 1 || grid.nz < 1 || !(grid.cell > 0.0)) {
+    std::ostringstream sentence;
     sentence
         << "a grid of " << grid.nx << " x " << grid.ny << " x " << grid.nz << " cells of "
         << grid.cell

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/require.hpp"
 #include "core/stage_timer.hpp"
 
 namespace prostm {
@@ -17,15 +18,8 @@ Pose tracker_pose(const std::string& name) {
 }
 
 const PipelineSettings& checked(const PipelineSettings& settings) {
-  if (!(settings.fluid_rate >= 10.0 && settings.fluid_rate <= 1000.0)) {
-    throw std::invalid_argument("fluid_rate = " + std::to_string(settings.fluid_rate) +
-                                " Hz must be between 10 and 1000");
-  }
-  if (settings.fluid_steps_per_plan < 1 || settings.fluid_steps_per_plan > 100) {
-    throw std::invalid_argument(
-        "fluid_steps_per_plan = " + std::to_string(settings.fluid_steps_per_plan) +
-        " must be between 1 and 100");
-  }
+  require_between("fluid_rate", settings.fluid_rate, 10.0, 1000.0, "Hz");
+  require_between("fluid_steps_per_plan", settings.fluid_steps_per_plan, 1, 100);
   return settings;
 }
 

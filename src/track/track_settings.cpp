@@ -3,16 +3,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/require.hpp"
+
 namespace prostm {
 namespace {
-
-void require(const char* name, double value, double low, double high, const char* unit) {
-  if (value >= low && value <= high) return;
-  std::ostringstream sentence;
-  sentence << name << " = " << value << unit << " must be between " << low << unit << " and "
-           << high << unit;
-  throw std::invalid_argument(sentence.str());
-}
 
 void require_factor(const char* name, double value) {
   if (value > 0.0 && value <= 1.0) return;
@@ -42,19 +36,19 @@ void ScriptedHandSettings::visit(SettingsVisitor& v) {
 }
 
 void validate(const TrackSettings& settings) {
-  require("smoothing_time", settings.smoothing_time, 0.001, 0.5, " s");
-  require("max_speed", settings.max_speed, 0.01, 100.0, " m/s");
-  require("max_gap", settings.max_gap, 0.001, 10.0, " s");
+  require_between("smoothing_time", settings.smoothing_time, 0.001, 0.5, "s");
+  require_between("max_speed", settings.max_speed, 0.01, 100.0, "m/s");
+  require_between("max_gap", settings.max_gap, 0.001, 10.0, "s");
   require_factor("filter_position", settings.filter_position);
   require_factor("filter_velocity", settings.filter_velocity);
-  require("filter_position_scale", settings.filter_position_scale, 1e-5, 1.0, " m");
-  require("filter_velocity_scale", settings.filter_velocity_scale, 1e-4, 100.0, " m/s");
+  require_between("filter_position_scale", settings.filter_position_scale, 1e-5, 1.0, "m");
+  require_between("filter_velocity_scale", settings.filter_velocity_scale, 1e-4, 100.0, "m/s");
 }
 
 void validate(const ScriptedHandSettings& settings) {
-  require("height", settings.height, 0.10, 0.60, " m");
-  require("period", settings.period, 5.0, 3600.0, " s");
-  require("jitter", settings.jitter, 0.0, 0.01, " m");
+  require_between("height", settings.height, 0.10, 0.60, "m");
+  require_between("period", settings.period, 5.0, 3600.0, "s");
+  require_between("jitter", settings.jitter, 0.0, 0.01, "m");
 }
 
 }  // namespace prostm

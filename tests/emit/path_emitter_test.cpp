@@ -456,7 +456,7 @@ TEST(PathEmitter, SettingsAreChecked) {
   EXPECT_EQ(refused([](EmitSettings&) {}), "accepted");
   EXPECT_EQ(refused([](EmitSettings& s) { s.foci = 9; }), "foci = 9 must be between 1 and 8");
   EXPECT_EQ(refused([](EmitSettings& s) { s.stall_fade_time = 1.0; }),
-            "stall_fade_time = 1 must be between 1e-06 and 0.04");
+            "stall_fade_time = 1 s must be between 1e-06 and 0.04 s");
   EXPECT_EQ(refused([](EmitSettings& s) { s.switch_at = "later"; }),
             "switch_at = \"later\" must be \"lap\" or \"now\"");
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -62,7 +62,7 @@ TEST(Fluid, RefusesSettingsOutOfBounds) {
   EXPECT_THAT(message([](FluidSettings& s) { s.width = std::numeric_limits<double>::quiet_NaN(); }),
               testing::HasSubstr("width"));
   EXPECT_THAT(message([](FluidSettings& s) { s.density = 0; }),
-              testing::HasSubstr("density = 0 must be"));
+              testing::HasSubstr("density = 0 kg/m³ must be"));
   EXPECT_THAT(message([](FluidSettings& s) { s.jacobi_sweeps = 0; }),
               testing::HasSubstr("jacobi_sweeps = 0"));
   EXPECT_THROW(scene_from_name("two-plumes"), std::invalid_argument);

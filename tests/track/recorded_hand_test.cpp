@@ -222,7 +222,7 @@ TEST(RecordedHand, RefusesWhatItCannotPlay) {
     make_recorded_hand(linear_recording(Vec3::Zero(), Vec3::Zero(), 3, 1), settings, false, kStep);
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "smoothing_time = 0 s must be between 0.001 s and 0.5 s");
+    EXPECT_STREQ(e.what(), "smoothing_time = 0 s must be between 0.001 and 0.5 s");
   }
 }
 

@@ -168,7 +168,7 @@ TEST(ScriptedHand, RefusesSettingsOutOfBounds) {
     make_scripted_hand(settings, {});
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "height = 1 m must be between 0.1 m and 0.6 m");
+    EXPECT_STREQ(e.what(), "height = 1 m must be between 0.1 and 0.6 m");
   }
   settings = {};
   settings.jitter = -1e-3;
