@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/distribution.hpp"
+#include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/file.hpp"
 
 namespace prostm::bench {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <csignal>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/file.hpp"
 #include "io/hand_file.hpp"
 
 namespace prostm::app {

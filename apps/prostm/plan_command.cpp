@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "common.hpp"
+#include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "core/random.hpp"
 #include "figure/figures.hpp"
 #include "io/digitised_figure.hpp"
 #include "io/field_file.hpp"
-#include "io/file.hpp"
 #include "io/plan_file.hpp"
 #include "plan/planner.hpp"
 #include "plan/quasi_static.hpp"

@@ -3,15 +3,13 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <system_error>
+#include <iterator>
+#include <vector>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "core/units.hpp"
 
@@ -195,32 +193,17 @@ void Canvas::unclip() {
 }
 
 void Canvas::save() {
-  // the page as bytes
   impl_->context.reset();
-  if (impl_->is_svg) {
-    cairo_surface_finish(impl_->surface.get());
-  } else {
-    cairo_surface_write_to_png_stream(impl_->surface.get(), append_bytes, &impl_->bytes);
+  cairo_surface_t* surface = impl_->surface.get();
+  if (impl_->is_svg) cairo_surface_finish(surface);
+  const cairo_status_t status =
+      impl_->is_svg ? cairo_surface_status(surface)
+                    : cairo_surface_write_to_png_stream(surface, append_bytes, &impl_->bytes);
+  if (status != CAIRO_STATUS_SUCCESS) {
+    throw InputError(
+        fmt::format("{} cannot be drawn ({})", impl_->path, cairo_status_to_string(status)));
   }
-  const cairo_status_t status = cairo_surface_status(impl_->surface.get());
-  const auto fail = [&](const std::string& reason) {
-    throw InputError(fmt::format(
-        "{} cannot be written ({}); name a file in a folder that exists, is writable and has space",
-        impl_->path, reason));
-  };
-  if (status != CAIRO_STATUS_SUCCESS) fail(cairo_status_to_string(status));
-
-  // a temporary file beside it takes its name once it is whole
-  const std::string temporary = fmt::format("{}.{}.tmp", impl_->path, ::getpid());
-  errno = 0;
-  std::ofstream file(temporary, std::ios::binary);
-  file.write(impl_->bytes.data(), static_cast<std::streamsize>(impl_->bytes.size()));
-  file.close();
-  if (!file || std::rename(temporary.c_str(), impl_->path.c_str()) != 0) {
-    const int error = errno;
-    ::unlink(temporary.c_str());
-    fail(std::generic_category().message(error));
-  }
+  write_file(impl_->path, impl_->bytes);
 }
 
 }  // namespace prostm::figure

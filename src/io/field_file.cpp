@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <numeric>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/file.hpp"
 #include "io/json.hpp"
 #include "io/recorder.hpp"
 

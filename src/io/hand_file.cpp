@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/file.hpp"
 #include "io/hand_file_parts.hpp"
 
 namespace prostm {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/file.hpp"
 #include "io/hdf5.hpp"
 #include "io/recorder.hpp"
 

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/file.hpp"
 #include "io/json.hpp"
 
 namespace prostm {

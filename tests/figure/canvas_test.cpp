@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/file.hpp"
 #include "figure/colours.hpp"
 #include "io/field_file.hpp"
-#include "io/file.hpp"
-#include "io/input_errors.hpp"
+#include "support/full_disk.hpp"
+#include "support/input_errors.hpp"
 
 namespace prostm::figure {
 namespace {
@@ -90,8 +91,25 @@ TEST(Canvas, SaysWhyItCannotWrite) {
   }
   std::filesystem::create_directory(folder.file("b.png"));
   Canvas canvas(folder.file("b.png"), 10, 10);
-  EXPECT_THAT(input_error([&] { canvas.save(); }), HasSubstr("b.png cannot be written"));
+  EXPECT_THAT(input_error([&] { canvas.save(); }), HasSubstr("b.png is a folder"));
   EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(Canvas, KeepsTheOldPictureWhenTheDiskIsFull) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.png", "a.svg"}) {
+    const std::string path = folder.file(name);
+    write_file(path, "old");
+    Canvas canvas(path, 100, 100);
+    std::string sentence;
+    {
+      const test::FullDisk disk(50);
+      sentence = input_error([&] { canvas.save(); });
+    }
+    EXPECT_THAT(sentence, AllOf(HasSubstr(name), HasSubstr("File too large")));
+    EXPECT_EQ(read_file(path), "old");
+  }
+  EXPECT_EQ(folder.entries(), 2u);
 }
 
 TEST(Canvas, WritesScalableGraphics) {

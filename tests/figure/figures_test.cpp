@@ -2,10 +2,10 @@
 
 #include <stdexcept>
 
+#include "core/file.hpp"
 #include "figure/example_figures.hpp"
 #include "figure/panel.hpp"
-#include "io/file.hpp"
-#include "io/input_errors.hpp"
+#include "support/input_errors.hpp"
 
 namespace prostm {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "io/field_file.hpp"
-#include "io/input_errors.hpp"
 #include "io/png_writer.hpp"
+#include "support/input_errors.hpp"
 
 namespace prostm {
 namespace {

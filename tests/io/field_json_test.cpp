@@ -1,11 +1,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/file.hpp"
 #include "io/field_file.hpp"
-#include "io/file.hpp"
-#include "io/input_errors.hpp"
 #include "io/json.hpp"
 #include "io/random_field.hpp"
+#include "support/input_errors.hpp"
 #include "support/shared.hpp"
 
 namespace prostm {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/input_errors.hpp"
 #include "io/random_field.hpp"
+#include "support/input_errors.hpp"
 
 namespace prostm {
 namespace {

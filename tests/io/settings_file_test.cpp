@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/file.hpp"
-#include "io/input_errors.hpp"
+#include "core/file.hpp"
+#include "support/input_errors.hpp"
 
 namespace prostm {
 namespace {

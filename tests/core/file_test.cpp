@@ -1,12 +1,11 @@
-#include "io/file.hpp"
+#include "core/file.hpp"
 
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
 #include <fstream>
 
-#include "io/input_errors.hpp"
+#include "support/full_disk.hpp"
+#include "support/input_errors.hpp"
 
 namespace prostm {
 namespace {
@@ -43,18 +42,14 @@ TEST(WriteFile, NamesAMissingFolderAndAFolder) {
 TEST(WriteFile, SaysThatADiskIsFullAndKeepsWhatWasThere) {
   EXPECT_THAT(input_error([] { write_file("/dev/full", "x"); }), HasSubstr("No space left"));
 
-  // a file-size limit stands for a full disk
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.json");
   write_file(path, "old");
-  rlimit before{};
-  ::getrlimit(RLIMIT_FSIZE, &before);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit tight{1000, before.rlim_max};
-  ::setrlimit(RLIMIT_FSIZE, &tight);
-  const std::string sentence = input_error([&] { write_file(path, std::string(5000, 'x')); });
-  ::setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  std::string sentence;
+  {
+    const test::FullDisk disk(1000);
+    sentence = input_error([&] { write_file(path, std::string(5000, 'x')); });
+  }
   EXPECT_THAT(sentence, AllOf(HasSubstr(path), HasSubstr("File too large")));
   EXPECT_EQ(read_file(path), "old");
   EXPECT_EQ(folder.entries(), 1u);
