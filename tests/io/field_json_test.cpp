@@ -2,10 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.hpp"
+#include "io/examples.hpp"
 #include "io/field_file.hpp"
 #include "io/json.hpp"
 #include "io/random_field.hpp"
-#include "support/input_errors.hpp"
 #include "support/shared.hpp"
 
 namespace prostm {
@@ -19,14 +19,6 @@ constexpr const char* kField =
  "rows": 2, "cols": 3, "pressure": [[0, 1.5, null], [2e-3, 4, 0.25]],
  "height_mm": [[1, 2, null], [3, 4.5, -6]],
  "plane": {"origin_mm": [1, 2, 180], "x": [0, 1, 0], "y": [-1, 0, 0]}})";
-
-/// The example with one piece replaced.
-std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = kField;
-  const std::size_t at = text.find(old_text);
-  EXPECT_NE(at, text.npos) << old_text;
-  return text.replace(at, old_text.size(), new_text);
-}
 
 TEST(FieldJson, ReadsEveryMember) {
   const TargetField field = field_from_json(kField, "a.json");
@@ -57,70 +49,58 @@ TEST(FieldJson, RoundTripsExactly) {
     const TargetField field = test::random_field(random);
     const std::string text = field_to_json(field);
     const TargetField back = field_from_json(text, "a.json");
-    EXPECT_EQ(back.rows, field.rows);
-    EXPECT_EQ(back.cols, field.cols);
-    EXPECT_EQ(back.cell, field.cell);
-    EXPECT_EQ(back.origin, field.origin);
-    EXPECT_EQ(back.pressure, field.pressure);
-    EXPECT_EQ(back.skin, field.skin);
-    EXPECT_EQ(back.height, field.height);
+    test::expect_same_raster(back, field);
     EXPECT_TRUE(back.X_DP.isApprox(field.X_DP, 1e-14));
     EXPECT_EQ(field_to_json(back), text);
   }
 }
 
 TEST(FieldJson, TakesAxesThatAreNearlyOrthonormal) {
-  const TargetField field = field_from_json(
-      with("[0, 1, 0], \"y\": [-1, 0, 0]", "[0, 1.0000004, 0], \"y\": [-1, 3e-7, 0]"), "a");
+  const TargetField field =
+      field_from_json(test::replaced(kField, "[0, 1, 0], \"y\": [-1, 0, 0]",
+                                     "[0, 1.0000004, 0], \"y\": [-1, 3e-7, 0]"),
+                      "a");
   EXPECT_NO_THROW(validate(field));
   EXPECT_NEAR(
       (field.X_DP.linear().transpose() * field.X_DP.linear() - Eigen::Matrix3d::Identity()).norm(),
       0.0, 1e-15);
 }
 
-struct Wrong {
-  const char* old_text;
-  const char* new_text;
-  const char* sentence;
-};
-
 TEST(FieldJson, SaysWhatIsWrong) {
-  const Wrong wrongs[] = {
-      {"prostm-field/1", "prostm-field/2", "must be \"prostm-field/1\""},
-      {"\"format\": \"prostm-field/1\", ", "", "\"format\" is missing"},
-      {"\"cell_mm\": 5", "\"cell_mm\": 0", "\"cell_mm\" is 0; it must be the edge of a cell"},
-      {"\"cell_mm\": 5", "\"cell_mm\": -5", "\"cell_mm\" is -5"},
-      {"\"cell_mm\": 5", "\"cell_mm\": 1e200", "\"cell_mm\" is 1e+200"},
-      {"\"cell_mm\": 5", "\"cell_mm\": \"5\"", "\"cell_mm\" is \"5\"; it must be a number"},
-      {"\"cell_mm\": 5, ", "", "\"cell_mm\" is missing; it must be the edge"},
-      {"[-10, 20.5]", "[-10]", "\"origin_mm\" has 1 numbers; it must have 2"},
-      {"[-10, 20.5]", "[-10, 1e12]", "\"origin_mm\"[1] is 1000000000000"},
-      {"\"rows\": 2", "\"rows\": 3", "\"pressure\" has 2 rows; it must have \"rows\" = 3"},
-      {"\"rows\": 2, \"cols\": 3", "\"rows\": 20000, \"cols\": 20000", "from 1 to 1000000 cells"},
-      {"\"rows\": 2", "\"rows\": 0", "has 0 x 3 cells"},
-      {"\"rows\": 2", "\"rows\": 2.5", "\"rows\" is 2.5; it must be a whole number"},
-      {"2e-3, 4, 0.25", "2e-3, 4",
-       "\"pressure\"[1] has 2 numbers; every row must have \"cols\" = 3"},
-      {"2e-3, 4, 0.25", "2e-3, -4, 0.25", "pressure at row 1, column 1 is -4"},
-      {"2e-3, 4, 0.25", "2e-3, 4e200, 0.25", "pressure at row 1, column 1 is 4e+200"},
-      {"2e-3, 4, 0.25", "2e-3, \"4\", 0.25", "\"pressure\"[1][1] is not a number"},
-      {"2e-3, 4, 0.25", "2e-3, NaN, 0.25", "not valid JSON at line 2, column 60"},
-      {"[3, 4.5, -6]", "[3, null, -6]", "\"height_mm\"[1][1] is null; there is skin"},
-      {"[[1, 2, null], ", "[", "\"height_mm\" has 1 rows; it must have \"rows\" = 2"},
-      {"[3, 4.5, -6]", "[3, 4.5]", "\"height_mm\"[1] has 2 numbers"},
-      {"[0, 1, 0]", "[0, 1.1, 0]", "unit vectors at a right angle"},
-      {"[0, 1, 0]", "[-1, 0, 0]", "unit vectors at a right angle"},
-      {"[0, 1, 0]", "[0, 1]", "\"plane\".x has 2 numbers; it must have 3"},
-      {"\"x\": [0, 1, 0], ", "", "\"plane\".x is missing"},
-      {"{\"origin_mm\": [1, 2, 180]", "{\"origin_mm\": [1, null, 180]",
-       "is null; it must be a number"},
-  };
-  for (const Wrong& wrong : wrongs) {
-    EXPECT_THAT(
-        input_error([&] { field_from_json(with(wrong.old_text, wrong.new_text), "a.json"); }),
-        AllOf(testing::StartsWith("a.json: "), HasSubstr(wrong.sentence)))
-        << wrong.new_text;
-  }
+  test::expect_refused(
+      kField, "a.json",
+      {
+          {"prostm-field/1", "prostm-field/2", "must be \"prostm-field/1\""},
+          {"\"format\": \"prostm-field/1\", ", "", "\"format\" is missing"},
+          {"\"cell_mm\": 5", "\"cell_mm\": 0", "\"cell_mm\" is 0; it must be the edge of a cell"},
+          {"\"cell_mm\": 5", "\"cell_mm\": -5", "\"cell_mm\" is -5"},
+          {"\"cell_mm\": 5", "\"cell_mm\": 1e200", "\"cell_mm\" is 1e+200"},
+          {"\"cell_mm\": 5", "\"cell_mm\": \"5\"", "\"cell_mm\" is \"5\"; it must be a number"},
+          {"\"cell_mm\": 5, ", "", "\"cell_mm\" is missing; it must be the edge"},
+          {"[-10, 20.5]", "[-10]", "\"origin_mm\" has 1 numbers; it must have 2"},
+          {"[-10, 20.5]", "[-10, 1e12]", "\"origin_mm\"[1] is 1000000000000"},
+          {"\"rows\": 2", "\"rows\": 3", "\"pressure\" has 2 rows; it must have \"rows\" = 3"},
+          {"\"rows\": 2, \"cols\": 3", "\"rows\": 20000, \"cols\": 20000",
+           "from 1 to 1000000 cells"},
+          {"\"rows\": 2", "\"rows\": 0", "has 0 x 3 cells"},
+          {"\"rows\": 2", "\"rows\": 2.5", "\"rows\" is 2.5; it must be a whole number"},
+          {"2e-3, 4, 0.25", "2e-3, 4",
+           "\"pressure\"[1] has 2 numbers; every row must have \"cols\" = 3"},
+          {"2e-3, 4, 0.25", "2e-3, -4, 0.25", "pressure at row 1, column 1 is -4"},
+          {"2e-3, 4, 0.25", "2e-3, 4e200, 0.25", "pressure at row 1, column 1 is 4e+200"},
+          {"2e-3, 4, 0.25", "2e-3, \"4\", 0.25", "\"pressure\"[1][1] is not a number"},
+          {"2e-3, 4, 0.25", "2e-3, NaN, 0.25", "not valid JSON at line 2, column 60"},
+          {"[3, 4.5, -6]", "[3, null, -6]", "\"height_mm\"[1][1] is null; there is skin"},
+          {"[[1, 2, null], ", "[", "\"height_mm\" has 1 rows; it must have \"rows\" = 2"},
+          {"[3, 4.5, -6]", "[3, 4.5]", "\"height_mm\"[1] has 2 numbers"},
+          {"[0, 1, 0]", "[0, 1.1, 0]", "unit vectors at a right angle"},
+          {"[0, 1, 0]", "[-1, 0, 0]", "unit vectors at a right angle"},
+          {"[0, 1, 0]", "[0, 1]", "\"plane\".x has 2 numbers; it must have 3"},
+          {"\"x\": [0, 1, 0], ", "", "\"plane\".x is missing"},
+          {"{\"origin_mm\": [1, 2, 180]", "{\"origin_mm\": [1, null, 180]",
+           "is null; it must be a number"},
+      },
+      [](const std::string& text) { field_from_json(text, "a.json"); });
 }
 
 TEST(FieldJson, SaysWhereJsonBreaks) {
@@ -139,7 +119,9 @@ TEST(FieldJson, SaysWhereJsonBreaks) {
 
 TEST(FieldJson, RefusesNumbersThatNoDoubleHolds) {
   const test::WithoutTraps scope;
-  EXPECT_THAT(input_error([&] { field_from_json(with("4, 0.25", "1e999, 0.25"), "a.json"); }),
+  EXPECT_THAT(input_error([&] {
+                field_from_json(test::replaced(kField, "4, 0.25", "1e999, 0.25"), "a.json");
+              }),
               HasSubstr("the number '1e999' is out of range"));
 }
 

@@ -1,16 +1,11 @@
 #include "io/hand_file.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cfenv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "core/input_error.hpp"
+#include "core/file.hpp"
+#include "support/input_errors.hpp"
 #include "support/shared.hpp"
 
 namespace prostm {
@@ -47,13 +42,7 @@ std::string jsonl(const std::vector<json>& lines) {
 }
 
 void expect_error(const std::function<void()>& read, const std::string& part) {
-  try {
-    read();
-    ADD_FAILURE() << "no error that says: " << part;
-  } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
-    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
-  }
+  EXPECT_THAT(test::input_error(read), testing::HasSubstr(part));
 }
 
 void expect_jsonl_error(const std::string& text, const std::string& part) {
@@ -278,17 +267,14 @@ TEST(LeapJson, SaysWhatIsWrongAndWhere) {
 }
 
 TEST(HandFile, TellsTheFormatsApartByTheirContent) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  const test::TemporaryFolder folder;
   const auto read = [&](const std::string& text) {
-    const std::string path = (folder / "prostm_hand_file_test").string();
-    std::ofstream(path) << text;
-    const HandRecording recording = read_hand_recording(path);
-    std::filesystem::remove(path);
-    return recording;
+    write_file(folder.file("a"), text);
+    return read_hand_recording(folder.file("a"));
   };
   EXPECT_EQ(read(jsonl({neutral_header(), neutral_frame(0.0)})).frames.size(), 1u);
   EXPECT_EQ(read(leap_recording().dump(1)).frames.size(), 2u);
-  EXPECT_THROW(read_hand_recording((folder / "no such file").string()), InputError);
+  EXPECT_THROW(read_hand_recording(folder.file("none")), InputError);
 }
 
 struct Difference {
@@ -337,10 +323,8 @@ TEST(HandFile, LeapRecordingsAgreeWithTheirNeutralConversions) {
 
 TEST(HandFile, StrippedBonesOfAFullRecordingAreRebuilt) {
   PROSTM_NEEDS_SHARED("data/leap/finger-tap-54fps.json");
-  std::ifstream file(test::shared_file("data/leap/finger-tap-54fps.json"));
-  std::stringstream text;
-  text << file.rdbuf();
-  json document = json::parse(text.str());
+  const std::string text = read_file(test::shared_file("data/leap/finger-tap-54fps.json"));
+  json document = json::parse(text);
   for (json& frame : document["frames"]) {
     for (json& hand : frame["hands"]) hand.erase("wrist");
     for (json& finger : frame["pointables"]) {
@@ -350,7 +334,7 @@ TEST(HandFile, StrippedBonesOfAFullRecordingAreRebuilt) {
   }
   const HandRecording rebuilt = hands_from_leap_json(document.dump(), "stripped");
   EXPECT_EQ(rebuilt.frames[0].hands[0].inferred, 3u);
-  const Difference d = difference(rebuilt, hands_from_leap_json(text.str(), "full"));
+  const Difference d = difference(rebuilt, hands_from_leap_json(text, "full"));
   EXPECT_LT(d.position, 1e-5);
   EXPECT_LT(d.angle, 0.05);
   EXPECT_LT(d.thumb_angle, 0.05);

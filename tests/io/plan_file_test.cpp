@@ -4,8 +4,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/examples.hpp"
 #include "io/random_field.hpp"
-#include "support/input_errors.hpp"
 
 namespace prostm {
 namespace {
@@ -33,30 +33,12 @@ Plan random_plan(Random& random, int paths) {
 }
 
 std::string example() {
-  Random random(4);
   TargetField field;
   field.resize(2, 2);
   field.cell = 0.005;
   field.skin[1] = 1;
   field.height[1] = 0.001;
-  Plan plan;
-  FocalPath path;
-  for (const Vec2& x : {Vec2(0, 0), Vec2(0.03, 0), Vec2(0.03, 0.04)}) {
-    path.points.push_back(x);
-    path.pressure.push_back(2.5);
-  }
-  path.length = 0.12;
-  path.speed = 7.0;
-  path.period = path.length / path.speed;
-  plan.paths.push_back(path);
-  return plan_to_json(plan, field, {}, {}, "");
-}
-
-std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = example();
-  const std::size_t at = text.find(old_text);
-  EXPECT_NE(at, text.npos) << old_text << " in " << text;
-  return text.replace(at, old_text.size(), new_text);
+  return plan_to_json(test::triangle_plan(), field, {}, {}, "");
 }
 
 TEST(PlanFile, RoundTripsPathsAndRaster) {
@@ -137,34 +119,26 @@ TEST(PlanFile, WritesTheSameBytesForTheSamePlan) {
   EXPECT_EQ(example(), example());
 }
 
-struct Wrong {
-  const char* old_text;
-  const char* new_text;
-  const char* sentence;
-};
-
 TEST(PlanFile, SaysWhatIsWrong) {
-  const Wrong wrongs[] = {
-      {"prostm-plan/1", "prostm-field/1", "must be \"prostm-plan/1\""},
-      {"\"paths\"", "\"path\"", "\"paths\" is missing"},
-      {"[2.5,2.5,2.5]", "[2.5,2.5]", "has 2 numbers; it must have one for each of the 3 points"},
-      {"[2.5,2.5,2.5]", "[2.5,-2.5,2.5]", "pressure[1] is -2.5"},
-      {"[2.5,2.5,2.5]", "[2.5,null,2.5]", "pressure[1] is null; it must be a number"},
-      {"\"length_mm\": 120.0", "\"length_mm\": 130",
-       "is 130; the closed path through the points is 120.000 mm"},
-      {"\"speed_m_s\": 7.0", "\"speed_m_s\": 0", "speed_m_s is 0; it must be from"},
-      {"\"patch\": 0", "\"patch\": 2", "patch is 2; it must be from 0 to 1"},
-      {"[30.0,0.0]", "[30.0]", "points_mm[1] has 1 numbers; it must have 2"},
-      {"\"raster\"", "\"rester\"", "\"raster\" is missing"},
-      {"\"plane\"", "\"plain\"", "\"plane\" is missing"},
-      {"\"rows\": 2", "\"rows\": 3", "has 2 rows; it must have \"rows\" = 3"},
-  };
-  for (const Wrong& wrong : wrongs) {
-    EXPECT_THAT(
-        input_error([&] { plan_from_json(with(wrong.old_text, wrong.new_text), "p.json"); }),
-        AllOf(testing::StartsWith("p.json: "), HasSubstr(wrong.sentence)))
-        << wrong.new_text;
-  }
+  test::expect_refused(
+      example(), "p.json",
+      {
+          {"prostm-plan/1", "prostm-field/1", "must be \"prostm-plan/1\""},
+          {"\"paths\"", "\"path\"", "\"paths\" is missing"},
+          {"[2.5,2.5,2.5]", "[2.5,2.5]",
+           "has 2 numbers; it must have one for each of the 3 points"},
+          {"[2.5,2.5,2.5]", "[2.5,-2.5,2.5]", "pressure[1] is -2.5"},
+          {"[2.5,2.5,2.5]", "[2.5,null,2.5]", "pressure[1] is null; it must be a number"},
+          {"\"length_mm\": 120.0", "\"length_mm\": 130",
+           "is 130; the closed path through the points is 120.000 mm"},
+          {"\"speed_m_s\": 7.0", "\"speed_m_s\": 0", "speed_m_s is 0; it must be from"},
+          {"\"patch\": 0", "\"patch\": 2", "patch is 2; it must be from 0 to 1"},
+          {"[30.0,0.0]", "[30.0]", "points_mm[1] has 1 numbers; it must have 2"},
+          {"\"raster\"", "\"rester\"", "\"raster\" is missing"},
+          {"\"plane\"", "\"plain\"", "\"plane\" is missing"},
+          {"\"rows\": 2", "\"rows\": 3", "has 2 rows; it must have \"rows\" = 3"},
+      },
+      [](const std::string& text) { plan_from_json(text, "p.json"); });
 }
 
 TEST(PlanFile, RefusesTooManyPathsAndPoints) {

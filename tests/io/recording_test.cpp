@@ -2,11 +2,11 @@
 #include <fstream>
 
 #include "core/file.hpp"
+#include "io/examples.hpp"
 #include "io/field_file.hpp"
 #include "io/random_field.hpp"
 #include "io/recorder.hpp"
 #include "support/full_disk.hpp"
-#include "support/input_errors.hpp"
 
 namespace prostm {
 namespace {
@@ -42,40 +42,19 @@ std::vector<TargetFrame> random_frames(int count) {
   return frames;
 }
 
-Plan one_path() {
-  Plan plan;
-  FocalPath path;
-  for (const Vec2& x : {Vec2(0, 0), Vec2(0.03, 0), Vec2(0.03, 0.04)}) {
-    path.points.push_back(x);
-    path.pressure.push_back(2.5);
-  }
-  path.length = 0.12;
-  path.speed = 7.0;
-  path.period = path.length / path.speed;
-  plan.paths.push_back(path);
-  return plan;
-}
-
 void expect_same(const TargetFrame& a, const TargetFrame& b) {
   EXPECT_EQ(a.time, b.time);
   ASSERT_EQ(a.patches.size(), b.patches.size());
   for (std::size_t p = 0; p < a.patches.size(); ++p) {
-    const TargetField &x = a.patches[p], &y = b.patches[p];
-    EXPECT_EQ(x.rows, y.rows);
-    EXPECT_EQ(x.cols, y.cols);
-    EXPECT_EQ(x.cell, y.cell);
-    EXPECT_EQ(x.origin, y.origin);
-    EXPECT_EQ(x.pressure, y.pressure);
-    EXPECT_EQ(x.skin, y.skin);
-    EXPECT_EQ(x.height, y.height);
-    EXPECT_EQ(x.X_DP.matrix(), y.X_DP.matrix());
+    test::expect_same_raster(a.patches[p], b.patches[p]);
+    EXPECT_EQ(a.patches[p].X_DP.matrix(), b.patches[p].X_DP.matrix());
   }
 }
 
 std::string record(const std::string& path, const std::vector<TargetFrame>& frames) {
   Recorder recorder(path, "{}");
   recorder.set_attribute("scene", "one-plume");
-  const Plan plan = one_path();
+  const Plan plan = test::triangle_plan();
   const PlanStats stats;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const bool planned = i % 2 == 1;
