@@ -1,5 +1,6 @@
 #include "figure/figures.hpp"
 
+#include <functional>
 #include <stdexcept>
 
 #include "core/file.hpp"
@@ -59,6 +60,51 @@ TEST(DrawPlan, ShowsEveryPartOfWhatItIsGiven) {
   EXPECT_FALSE(bytes_of(example.figure) == less_tour);
 }
 
+/// Pixels of a PNG along x (0) or y (1), from its header.
+int side_of(const std::string& png, std::size_t axis) {
+  int side = 0;
+  for (std::size_t i = 16 + 4 * axis; i < 20 + 4 * axis; ++i) {
+    side = 256 * side + static_cast<unsigned char>(png.at(i));
+  }
+  return side;
+}
+
+TEST(DrawPlan, DrawsAnotherPlanUnderIt) {
+  const test::TemporaryFolder folder;
+  const test::PlannedExample example;
+  PlanFigure other = example.figure;
+  other.title = "the other";
+  other.metrics.rmse = 0.7;
+  const auto bytes_of = [&](const PlanFigure* beside) {
+    draw_plan(example.figure, folder.file("a.png"), beside);
+    return read_file(folder.file("a.png"));
+  };
+  const std::string alone = bytes_of(nullptr);
+  const std::string both = bytes_of(&other);
+  EXPECT_EQ(side_of(both, 0), side_of(alone, 0));
+  EXPECT_GT(2 * side_of(both, 1), 3 * side_of(alone, 1));
+  EXPECT_LT(side_of(both, 1), 2 * side_of(alone, 1));  // the table is there once
+
+  // its title, metrics, paths, trace and reconstruction all show
+  Plan fewer = example.plan;
+  fewer.paths.pop_back();
+  PlanTrace shorter = example.trace;
+  shorter.tour.pop_back();
+  const std::vector<std::function<void(PlanFigure&)>> changes = {
+      [](PlanFigure& f) { f.title += "!"; }, [](PlanFigure& f) { f.metrics.rmse += 0.1; },
+      [&](PlanFigure& f) { f.plan = &fewer; }, [&](PlanFigure& f) { f.trace = &shorter; },
+      [](PlanFigure& f) { f.reconstruction.assign(f.reconstruction.size(), 0.0); }};
+  for (const auto& change : changes) {
+    PlanFigure changed = other;
+    change(changed);
+    EXPECT_FALSE(bytes_of(&changed) == both);
+  }
+
+  // the table's controls are the plan's own
+  other.controls.clear();
+  EXPECT_TRUE(bytes_of(&other) == both);
+}
+
 TEST(DrawPlan, DrawsDegenerateFields) {
   const test::TemporaryFolder folder;
   const auto draws = [&](int rows, int cols, bool skin, double pressure) {
@@ -90,6 +136,7 @@ TEST(DrawPlan, RefusesWhatDoesNotBelongTogether) {
   figure = example.figure;
   figure.trace = nullptr;
   EXPECT_THROW(draw_plan(figure, "a.png"), std::invalid_argument);
+  EXPECT_THROW(draw_plan(example.figure, "a.png", &figure), std::invalid_argument);
   EXPECT_THAT(test::input_error([&] { draw_plan(example.figure, "a.jpg"); }),
               HasSubstr("must end in .png or .svg"));
 }
