@@ -39,12 +39,6 @@ GridShape grid_shape(const FluidSettings& settings) {
   return grid;
 }
 
-/// Flat in the middle, smooth at the rim: exp(−(r/R)⁴).
-double jet_profile(const SmokeJet& jet, const Vec2& p) {
-  const double q = (p - jet.centre).squaredNorm() / (jet.radius * jet.radius);
-  return q < 6.0 ? std::exp(-q * q) : 0.0;
-}
-
 }  // namespace
 
 Fluid::State::State(const FluidSettings& s, const Scene& scene, WorkerPool& workers)
@@ -52,6 +46,7 @@ Fluid::State::State(const FluidSettings& s, const Scene& scene, WorkerPool& work
       pool(workers),
       grid(grid_shape(s)),
       padded{s.cells},
+      surroundings(grid, scene),
       velocity{Field(padded), Field(padded), Field(padded)},
       smoke(padded),
       obstacle(s.cells, workers),
@@ -66,26 +61,8 @@ Fluid::State::State(const FluidSettings& s, const Scene& scene, WorkerPool& work
       pressure_out(grid.cell_count()),
       smoke_out(grid.cell_count()),
       fluid_cells(grid.cell_count(), 1) {
-  set_jets(scene);
+  surroundings.set_floor(obstacle.wall_velocity(2));
   reset();
-}
-
-void Fluid::State::set_jets(const Scene& scene) {
-  fluid::validate(scene);
-  vented = scene.vent_speed > 0.0;
-  inlet.assign(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny), 0.0F);
-  for (int j = 0; j < grid.ny; ++j) {
-    for (int i = 0; i < grid.nx; ++i) {
-      const Vec2 p = grid.cell_centre(i, j, 0).head<2>();
-      double speed = scene.vent_speed, share = 0.0;
-      for (const SmokeJet& jet : scene.jets) {
-        speed += jet.speed * jet_profile(jet, p);
-        share = std::max(share, jet_profile(jet, p));
-      }
-      obstacle.wall_velocity(2)[padded.index(i, j, 0)] = static_cast<float>(speed);
-      inlet[grid.cell_index(i, j, 0)] = static_cast<float>(share);
-    }
-  }
 }
 
 void Fluid::State::reset() {
@@ -94,10 +71,7 @@ void Fluid::State::reset() {
   solver.pressure().fill(0.0F);
   std::fill(pressure_out.begin(), pressure_out.end(), 0.0F);
   std::fill(smoke_out.begin(), smoke_out.end(), 0.0F);
-  // the floor's jets blow from the first step on
-  const Index floor = padded.index(0, 0, 0);
-  std::copy_n(obstacle.wall_velocity(2).data() + floor, padded.row() * padded.n,
-              velocity[2].data() + floor);
+  surroundings.set_floor(velocity[2]);  // the jets blow from the first step on
 }
 
 template <class F>
@@ -131,18 +105,6 @@ FluidStats Fluid::State::step(double dt, const HandRaster& raster) {
   return stats;
 }
 
-void Fluid::State::set_smoke_halo() {
-  for (int j = 0; j < padded.n; ++j) {
-    const float* share = inlet.data() + grid.cell_index(0, j, 0);
-    const float* first = smoke.data() + padded.index(0, j, 0);
-    float* below = smoke.data() + padded.index(0, j, -1);
-    for (int i = 0; i < padded.n; ++i) {
-      const float beside = vented ? 0.0F : first[i];  // clean air, or what lies on a solid floor
-      below[i] = share[i] + (1.0F - share[i]) * beside;
-    }
-  }
-}
-
 void Fluid::State::advect(double dt) {
   const int n = padded.n;
   const auto scale = static_cast<float>(dt / grid.cell);
@@ -154,7 +116,7 @@ void Fluid::State::advect(double dt) {
   const float* const from[3] = {centre[0].data(), centre[1].data(), centre[2].data()};
   float* const moved[3] = {trace[0].data(), trace[1].data(), trace[2].data()};
   over_planes([&](int k0, int k1) { kernels.trace(padded, from, moved, k0, k1); });
-  set_smoke_halo();
+  surroundings.set_smoke_halo(smoke);
   // what they bring
   const float* const displacement[3] = {trace[0].data(), trace[1].data(), trace[2].data()};
   over_planes([&](int k0, int k1) {
@@ -168,35 +130,8 @@ void Fluid::State::advect(double dt) {
   });
   for (int axis = 0; axis < 3; ++axis) std::swap(velocity[axis], next_velocity[axis]);
   std::swap(smoke, next_smoke);
-  calm_inflow();
-  const Index floor = padded.index(0, 0, 0);
-  std::copy_n(obstacle.wall_velocity(2).data() + floor, padded.row() * n,
-              velocity[2].data() + floor);
-}
-
-void Fluid::State::calm_inflow() {
-  const int last = padded.n - 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int other[2] = {(axis + 1) % 3, (axis + 2) % 3};
-    for (int side = axis == 2 ? 1 : 0; side < 2; ++side) {  // the floor is no open side
-      for (int b = 0; b <= last; ++b) {
-        for (int a = 0; a <= last; ++a) {
-          int at[3];
-          at[axis] = side * last;
-          at[other[0]] = a;
-          at[other[1]] = b;
-          const Index c = padded.index(at[0], at[1], at[2]);
-          float& inward = velocity[axis][c + side * padded.stride(axis)];
-          if (side == 0 ? inward <= 0.0F : inward >= 0.0F) continue;
-          inward = 0.0F;
-          for (const int t : other) {
-            if (t != 2 || at[2] > 0) velocity[t][c] = 0.0F;
-            velocity[t][c + padded.stride(t)] = 0.0F;
-          }
-        }
-      }
-    }
-  }
+  surroundings.calm_inflow(velocity);
+  surroundings.set_floor(velocity[2]);
 }
 
 void Fluid::State::add_forces(double dt) {

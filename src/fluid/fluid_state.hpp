@@ -9,6 +9,7 @@
 #include "fluid/obstacle.hpp"
 #include "fluid/pressure_solver.hpp"
 #include "fluid/projection.hpp"
+#include "fluid/surroundings.hpp"
 
 namespace prostm {
 
@@ -26,12 +27,6 @@ struct Fluid::State {
   void project(double dt, FluidStats& stats);
   bool publish(double dt, FluidStats& stats);
 
-  void set_jets(const Scene& scene);
-  void set_smoke_halo();
-  /// Air that enters through an open side was at rest outside (F3a): the side's cells forget their
-  /// momentum where the flow is inward, and the projection alone drives it. Kept momentum would
-  /// feed itself and turn the whole box.
-  void calm_inflow();
   void confine_vorticity(double dt);
   void push_swept(const HandRaster& raster);
   void mark_fluid_cells(const HandRaster& raster);
@@ -43,14 +38,13 @@ struct Fluid::State {
   WorkerPool& pool;
   GridShape grid;
   fluid::PaddedGrid padded;
+  fluid::Surroundings surroundings;
 
   // state
   fluid::Field velocity[3];  // at faces [m/s]
   fluid::Field smoke;        // at cells, 0..1; the halo holds what would flow in
   fluid::Obstacle obstacle;
   fluid::PressureSolver solver;
-  bool vented = false;       // clean air comes through the floor
-  std::vector<float> inlet;  // share of fresh smoke in what the floor's faces let in, 0..1
 
   // scratch
   fluid::Field next_velocity[3], next_smoke;

@@ -1,0 +1,80 @@
+#include "fluid/surroundings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace prostm::fluid {
+namespace {
+
+constexpr int kCells = 16;
+
+/// 16³ cells of 10 mm, the device's axis in the middle.
+GridShape box() {
+  return {kCells, kCells, kCells, 0.01, Vec3(-0.08, -0.08, 0.0)};
+}
+
+/// A jet about the centre of cell (10, 4).
+Scene one_jet(double vent_speed) {
+  Scene scene;
+  scene.jets.push_back({Vec2(0.025, -0.035), 0.03, 2.0});
+  scene.vent_speed = vent_speed;
+  return scene;
+}
+
+TEST(Surroundings, BlowTheJetsAndTheVentThroughTheFloor) {
+  const PaddedGrid grid{kCells};
+  Field w(grid, -7.0F);
+  Surroundings(box(), one_jet(0.25)).set_floor(w);
+  EXPECT_FLOAT_EQ(w[grid.index(10, 4, 0)], 2.25F);  // on the jet's axis
+  EXPECT_FLOAT_EQ(w[grid.index(13, 4, 0)], 0.25F + 2.0F * std::exp(-1.0F));
+  EXPECT_EQ(w[grid.index(10, 13, 0)], 0.25F);
+  EXPECT_EQ(w[grid.index(0, 15, 0)], 0.25F);
+  EXPECT_EQ(w[grid.index(10, 4, 1)], -7.0F);  // nothing else
+  EXPECT_EQ(w[grid.index(16, 4, 0)], -7.0F);
+}
+
+TEST(Surroundings, LetInFreshSmokeAndWhatTheFloorIsLike) {
+  const PaddedGrid grid{kCells};
+  for (const double vent_speed : {0.0, 0.25}) {
+    Field smoke(grid, 0.5F);
+    Surroundings(box(), one_jet(vent_speed)).set_smoke_halo(smoke);
+    EXPECT_EQ(smoke[grid.index(10, 4, -1)], 1.0F);
+    EXPECT_EQ(smoke[grid.index(0, 15, -1)], vent_speed > 0.0 ? 0.0F : 0.5F);
+    EXPECT_EQ(smoke[grid.index(10, 4, 0)], 0.5F);
+  }
+}
+
+TEST(Surroundings, CalmWhatFlowsInThroughAnOpenSide) {
+  const PaddedGrid grid{kCells};
+  Field velocity[3] = {Field(grid, 1.0F), Field(grid, 0.0F), Field(grid, 3.0F)};
+  for (int j = 0; j < kCells; ++j) velocity[1][grid.index(5, j, 7)] = 4.0F;
+  Surroundings(box(), one_jet(0.0)).calm_inflow(velocity);
+
+  // in through x = 0, out through the opposite side and the top
+  EXPECT_EQ(velocity[0][grid.index(0, 5, 7)], 0.0F);
+  EXPECT_EQ(velocity[2][grid.index(0, 5, 7)], 0.0F);
+  EXPECT_EQ(velocity[2][grid.index(0, 5, 8)], 0.0F);
+  EXPECT_EQ(velocity[0][grid.index(1, 5, 7)], 1.0F);
+  EXPECT_EQ(velocity[0][grid.index(kCells, 5, 7)], 1.0F);
+  EXPECT_EQ(velocity[2][grid.index(8, 8, kCells)], 3.0F);
+  EXPECT_EQ(velocity[2][grid.index(0, 5, 0)], 3.0F);  // the floor's faces are the jets'
+
+  // in through y = 0, where the cell forgets its other velocities, too
+  EXPECT_EQ(velocity[1][grid.index(5, 0, 7)], 0.0F);
+  EXPECT_EQ(velocity[0][grid.index(5, 0, 7)], 0.0F);
+  EXPECT_EQ(velocity[0][grid.index(6, 0, 7)], 0.0F);
+  EXPECT_EQ(velocity[1][grid.index(5, 1, 7)], 4.0F);
+  EXPECT_EQ(velocity[0][grid.index(8, 0, 7)], 1.0F);
+}
+
+TEST(Surroundings, RefuseAJetOutOfBounds) {
+  Scene scene = one_jet(0.0);
+  scene.jets[0].radius = 0.0;
+  EXPECT_THROW(Surroundings(box(), scene), std::invalid_argument);
+  EXPECT_THROW(Surroundings(box(), one_jet(-1.0)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace prostm::fluid
