@@ -119,6 +119,13 @@ void check_hand(const JsonNode& node, const Hand& hand) {
   }
 }
 
+JsonNode hands_of(const JsonNode& frame) {
+  JsonNode hands = frame.at("hands", "an array of at most 2 hands");
+  if (hands.array_size() > 2)
+    hands.fail(fmt::format("has {} hands; it must have at most 2", hands.array_size()));
+  return hands;
+}
+
 void append_frame(const JsonNode& node, double time, HandFrame frame, HandRecording& recording) {
   if (!recording.frames.empty() && !(time > recording.frames.back().time)) {
     node.fail(fmt::format(
@@ -163,9 +170,7 @@ HandRecording hands_from_jsonl(std::string_view text, const std::string& name) {
     if (recording.frames.empty()) start = time;
     if (time - start > kMaxRecordingTime)
       node.fail("is more than a day after the first one; t must be in seconds");
-    const JsonNode hands = node.at("hands", "an array of at most 2 hands");
-    if (hands.array_size() > 2)
-      hands.fail(fmt::format("has {} hands; it must have at most 2", hands.array_size()));
+    const JsonNode hands = hands_of(node);
     HandFrame frame;
     for (std::size_t h = 0; h < hands.array_size(); ++h)
       frame.hands.push_back(neutral_hand(hands.at(h)));

@@ -280,9 +280,7 @@ void append_leap_frame(const JsonNode& node, double& start, HandRecording& recor
   if (recording.frames.empty()) start = time;
   if (time - start > kMaxRecordingTime)
     node.fail("is more than a day after the first; timestamp must be in microseconds");
-  const JsonNode hands = node.at("hands", "an array of at most 2 hands");
-  if (hands.array_size() > 2)
-    hands.fail(fmt::format("has {} hands; it must have at most 2", hands.array_size()));
+  const JsonNode hands = hands_of(node);
   HandFrame frame;
   for (std::size_t h = 0; h < hands.array_size(); ++h) {
     const JsonNode pointables = node.at("pointables", "an array of fingers");

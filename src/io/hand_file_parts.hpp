@@ -15,6 +15,9 @@ inline constexpr double kMaxRecordingTime = 86400.0;
 /// @throws InputError.
 void check_hand(const JsonNode& node, const Hand& hand);
 
+/// The member "hands" of a frame. @throws InputError unless it is an array of at most 2.
+JsonNode hands_of(const JsonNode& frame);
+
 /// Appends a frame at `time` [s] after the first one. @throws InputError when time does not
 /// increase, or when two hands of the frame have one id and side.
 void append_frame(const JsonNode& node, double time, HandFrame frame, HandRecording& recording);
