@@ -7,7 +7,8 @@ namespace {
 thread_local std::size_t allocation_count = 0;
 }
 
-// operator new[] calls these by default; the nothrow forms are replaced too, since sanitizers bring their own
+// operator new[] calls these by default; the nothrow forms are replaced too, since sanitizers bring
+// their own
 void* operator new(std::size_t size) {
   ++allocation_count;
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
