@@ -16,6 +16,7 @@
 
 #include "core/input_error.hpp"
 #include "io/hdf5.hpp"
+#include "io/hdf5_disk.hpp"
 
 namespace prostm {
 namespace {
@@ -175,15 +176,6 @@ void check_writable(const std::string& path, const std::string& part) {
   ::close(fd);
 }
 
-/// Earliest file format, so that every HDF5 of the last decades opens it, also after the writer was
-/// killed.
-h5::Id create_file(const std::string& part) {
-  const h5::Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
-  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  return {H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose};
-}
-
 /// 0 or the error.
 int sync(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -197,6 +189,7 @@ int sync(const std::string& path) {
 
 struct Recorder::Impl {
   std::string path, part;
+  int error = 0;  // the first errno of the file's writes
   h5::Id file;
   Group frame, target, hand, plan;
   std::int64_t frames = 0, patches = 0, cells = 0;
@@ -205,7 +198,7 @@ struct Recorder::Impl {
   void append_target(const TargetField& field);
   void append_hands(const HandFrame& hands);
   void append_plan(const Plan* p, const PlanStats* stats);
-  bool ok() const { return frame.ok() && target.ok() && hand.ok() && plan.ok(); }
+  bool ok() const { return error == 0 && frame.ok() && target.ok() && hand.ok() && plan.ok(); }
   bool close_all();
   [[noreturn]] void give_up();
 };
@@ -316,7 +309,7 @@ bool Recorder::Impl::close_all() {
   done = target.close() && done;
   done = hand.close() && done;
   done = plan.close() && done;
-  return file.close() && done;
+  return file.close() && done && error == 0;
 }
 
 void Recorder::Impl::give_up() {
@@ -329,7 +322,8 @@ void Recorder::Impl::give_up() {
     ::unlink(part.c_str());
     rest = "nothing was kept";
   }
-  throw InputError(fmt::format("{} cannot be written: the disk is full or fails; {}", path, rest));
+  throw InputError(fmt::format("{} cannot be written ({}); {}", path,
+                               error != 0 ? reason(error) : "libhdf5 failed", rest));
 }
 
 Recorder::Recorder(const std::string& path, const std::string& settings_json)
@@ -339,7 +333,7 @@ Recorder::Recorder(const std::string& path, const std::string& settings_json)
   r.path = path;
   r.part = path + ".part.h5";
   check_writable(path, r.part);
-  r.file = create_file(r.part);
+  r.file = h5::create_file(r.part, r.error);
   const hid_t file = r.file.get();
   const bool ok = r.file.valid() && h5::write_text(file, "format", "prostm-recording/1") &&
                   h5::write_text(file, "settings", settings_json) &&
@@ -347,12 +341,12 @@ Recorder::Recorder(const std::string& path, const std::string& settings_json)
                   r.target.create(file, "target", target_columns()) &&
                   r.hand.create(file, "hand", hand_columns()) &&
                   r.plan.create(file, "plan", plan_columns()) &&
-                  H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+                  H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 && r.error == 0;
   if (!ok) {
     r.close_all();
     ::unlink(r.part.c_str());
-    throw InputError(path +
-                     " cannot be written: the disk is full or another program uses the file");
+    throw InputError(fmt::format("{} cannot be written ({})", path,
+                                 r.error != 0 ? reason(r.error) : "another program uses it"));
   }
 }
 
@@ -381,7 +375,7 @@ void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const Pl
   if (r.frames++ == 0) r.flushed_at = frame.time;
   bool ok = r.ok();
   if (ok && std::abs(frame.time - r.flushed_at) >= 1.0) {
-    ok = H5Fflush(r.file.get(), H5F_SCOPE_GLOBAL) >= 0;
+    ok = H5Fflush(r.file.get(), H5F_SCOPE_GLOBAL) >= 0 && r.error == 0;
     r.flushed_at = frame.time;
   }
   if (!ok) r.give_up();
@@ -389,7 +383,8 @@ void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const Pl
 
 void Recorder::set_attribute(const std::string& name, const std::string& value) {
   const h5::Quiet quiet;
-  if (!h5::write_text(impl_->file.get(), name.c_str(), value)) impl_->give_up();
+  if (!h5::write_text(impl_->file.get(), name.c_str(), value) || impl_->error != 0)
+    impl_->give_up();
 }
 
 void Recorder::close() {
