@@ -1,4 +1,3 @@
-/// The layout is described in docs/recordings.md.
 #include "io/recorder.hpp"
 
 #include <fcntl.h>
@@ -17,112 +16,15 @@
 #include "core/input_error.hpp"
 #include "io/hdf5.hpp"
 #include "io/hdf5_disk.hpp"
+#include "io/recording_layout.hpp"
 
 namespace prostm {
 namespace {
 
+using recording::kHands;
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr float kNanFloat = std::numeric_limits<float>::quiet_NaN();
-constexpr hsize_t kHands = 2;
-
-std::vector<h5::Column> frame_columns() {
-  return {{"time", H5T_NATIVE_DOUBLE, {}, "s", "time of the hand frame"},
-          {"first_patch", H5T_NATIVE_INT64, {}, "1", "row of the frame's first patch in /target"},
-          {"patches", H5T_NATIVE_INT32, {}, "1", "number of patches, one for each hand"}};
-}
-
-std::vector<h5::Column> target_columns() {
-  return {{"frame", H5T_NATIVE_INT64, {}, "1", "row of the patch's frame in /frame"},
-          {"rows", H5T_NATIVE_INT32, {}, "1", "rows of the raster"},
-          {"cols", H5T_NATIVE_INT32, {}, "1", "columns of the raster"},
-          {"offset",
-           H5T_NATIVE_INT64,
-           {},
-           "1",
-           "index of the raster's first cell in pressure and height"},
-          {"cell", H5T_NATIVE_DOUBLE, {}, "m", "edge of a cell"},
-          {"origin", H5T_NATIVE_DOUBLE, {2}, "m", "centre of the first cell in the plane, (x, y)"},
-          {"pose",
-           H5T_NATIVE_DOUBLE,
-           {4, 4},
-           "1, last column m",
-           "X_DP: plane coordinates to the device's"},
-          {"pressure",
-           H5T_NATIVE_DOUBLE,
-           {},
-           "Pa",
-           "rasters row by row, one after another; NaN = no skin"},
-          {"height",
-           H5T_NATIVE_DOUBLE,
-           {},
-           "m",
-           "of the skin along the plane's normal, like pressure"}};
-}
-
-std::vector<h5::Column> hand_columns() {
-  return {
-      {"id",
-       H5T_NATIVE_INT64,
-       {kHands},
-       "1",
-       "stays with a hand while it is tracked; -1 = no hand"},
-      {"side", H5T_NATIVE_INT32, {kHands}, "1", "0 = left, 1 = right, -1 = no hand"},
-      {"confidence", H5T_NATIVE_FLOAT, {kHands}, "1", "of the tracker, 0 to 1; NaN = no hand"},
-      {"inferred",
-       H5T_NATIVE_UINT32,
-       {kHands},
-       "1",
-       "bit 0: metacarpals were rebuilt, bit 1: the wrist"},
-      {"position",
-       H5T_NATIVE_FLOAT,
-       {kHands, kJointCount, 3},
-       "m",
-       "joints in OpenXR's order, frame D"},
-      {"orientation",
-       H5T_NATIVE_FLOAT,
-       {kHands, kJointCount, 4},
-       "1",
-       "unit quaternions x, y, z, w"},
-      {"radius", H5T_NATIVE_FLOAT, {kHands, kJointCount}, "m", "of the flesh around each joint"},
-      {"velocity", H5T_NATIVE_FLOAT, {kHands, kJointCount, 3}, "m/s", "of each joint"}};
-}
-
-std::vector<h5::Column> plan_columns() {
-  const hsize_t paths = kMaxPaths, points = kMaxPathPoints;
-  return {
-      {"paths", H5T_NATIVE_INT32, {}, "1", "number of paths; -1 = no plan was made in this frame"},
-      {"samples", H5T_NATIVE_INT32, {paths}, "1", "points of each path"},
-      {"patch",
-       H5T_NATIVE_INT32,
-       {paths},
-       "1",
-       "the frame's patch that a path lies on; -1 = no path"},
-      {"points",
-       H5T_NATIVE_DOUBLE,
-       {paths, points, 2},
-       "m",
-       "in the patch's plane, padded with NaN"},
-      {"pressure",
-       H5T_NATIVE_DOUBLE,
-       {paths, points},
-       "Pa",
-       "rendered at each point, padded with NaN"},
-      {"length", H5T_NATIVE_DOUBLE, {paths}, "m", "of each closed path"},
-      {"speed", H5T_NATIVE_DOUBLE, {paths}, "m/s", "of the focal point"},
-      {"period", H5T_NATIVE_DOUBLE, {paths}, "s", "of a lap"},
-      {"stage_time",
-       H5T_NATIVE_DOUBLE,
-       {7},
-       "s",
-       "init, kmeans, tour, split, resample, refine, total"},
-      {"counts",
-       H5T_NATIVE_INT32,
-       {7},
-       "1",
-       "clusters, lloyd_iterations, refine_iterations, cost_evaluations, leaves, long_paths, "
-       "crossings"},
-      {"cost", H5T_NATIVE_DOUBLE, {}, "1", "of Eqs. (2) to (5) after refinement"}};
-}
 
 /// One group of tables, found by their names.
 class Group {
@@ -337,10 +239,10 @@ Recorder::Recorder(const std::string& path, const std::string& settings_json)
   const hid_t file = r.file.get();
   const bool ok = r.file.valid() && h5::write_text(file, "format", "prostm-recording/1") &&
                   h5::write_text(file, "settings", settings_json) &&
-                  r.frame.create(file, "frame", frame_columns()) &&
-                  r.target.create(file, "target", target_columns()) &&
-                  r.hand.create(file, "hand", hand_columns()) &&
-                  r.plan.create(file, "plan", plan_columns()) &&
+                  r.frame.create(file, "frame", recording::frame_columns()) &&
+                  r.target.create(file, "target", recording::target_columns()) &&
+                  r.hand.create(file, "hand", recording::hand_columns()) &&
+                  r.plan.create(file, "plan", recording::plan_columns()) &&
                   H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 && r.error == 0;
   if (!ok) {
     r.close_all();

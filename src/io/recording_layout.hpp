@@ -1,0 +1,17 @@
+#pragma once
+/// The datasets of a recording, as docs/recordings.md describes them. Private to io.
+
+#include <vector>
+
+#include "io/hdf5.hpp"
+
+namespace prostm::recording {
+
+inline constexpr hsize_t kHands = 2;  ///< a row of /hand has room for
+
+std::vector<h5::Column> frame_columns();   ///< of /frame
+std::vector<h5::Column> target_columns();  ///< of /target, a row for each patch
+std::vector<h5::Column> hand_columns();    ///< of /hand, a row for each frame
+std::vector<h5::Column> plan_columns();    ///< of /plan, a row for each frame
+
+}  // namespace prostm::recording
