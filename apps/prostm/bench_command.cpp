@@ -139,6 +139,7 @@ bool measure(const RecordingReader& recording, const PlanSettings& settings, int
 }  // namespace
 
 int bench_command(const BenchOptionsGiven& given) {
+  check_outputs(given.common);
   if (given.repeats < 1 || given.repeats > 1000) {
     throw InputError(fmt::format("--repeats {} must be between 1 and 1000", given.repeats));
   }

@@ -10,6 +10,7 @@
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
+#include "figure/figures.hpp"
 #include "io/hand_file.hpp"
 
 namespace prostm::app {
@@ -39,6 +40,11 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (options.paths) settings.plan.paths = settings.emit.foci = *options.paths;
   if (options.grid) settings.fluid.cells = *options.grid;
   return settings;
+}
+
+void check_outputs(const CommonOptions& options) {
+  if (!options.json.empty()) check_writable(options.json);
+  if (!options.figure.empty()) check_figure(options.figure);
 }
 
 std::string settings_json(PipelineSettings settings) {

@@ -19,6 +19,9 @@ namespace prostm::app {
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene);
 
+/// Tries the files that the results are to go to, before the work. @throws InputError.
+void check_outputs(const CommonOptions& options);
+
 /// All settings as {"pipeline": {…}, "plan": {…}, …}.
 std::string settings_json(PipelineSettings settings);
 

@@ -90,10 +90,50 @@ void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given, const 
   draw_plan(figure, given.common.figure, &beside);
 }
 
+/// Everything that is told of one plan.
+struct Result {
+  PlanStatus status = PlanStatus::EmptyTarget;
+  Plan plan;
+  PlanStats stats;
+  PlanTrace trace;
+  Metrics metrics;
+  std::vector<Control> controls;
+};
+
+Result plan_and_score(const TargetField& target, const PlanSettings& s, bool traced) {
+  Planner planner(s, target.size());
+  Result r;
+  r.status = planner.plan(target, r.plan, r.stats);
+  // a second time with the intermediate results, so that collecting them is not in the times
+  if (traced) {
+    PlanStats stats;
+    planner.plan(target, r.plan, stats, &r.trace);
+  }
+  r.metrics = score_plan(target, r.plan, 0, s.sigma, s.gain);
+  if (r.status != PlanStatus::Planned) return r;
+  const auto seed = static_cast<std::uint64_t>(s.seed);
+  Plan other;
+  PlanStats other_stats;
+  planner.plan(another_target(target, seed), other, other_stats);
+  r.controls = controls(target, s.sigma, s.gain, s.max_length, &other, seed);
+  return r;
+}
+
+void write_plan(const Result& r, const TargetField& target, const PipelineSettings& settings,
+                const std::string& json) {
+  PlanFileExtras extras;
+  extras.stats = &r.stats;
+  extras.metrics = &r.metrics;
+  extras.controls = &r.controls;
+  write_file(json, plan_to_json(r.plan, target, settings.plan, extras, settings_json(settings)));
+}
+
 }  // namespace
 
 int plan_command(const PlanOptionsGiven& given) {
-  PipelineSettings settings = make_settings(given.common, std::nullopt);
+  check_outputs(given.common);
+  const PipelineSettings settings = make_settings(given.common, std::nullopt);
+  const PlanSettings& s = settings.plan;
   if (!given.beside.empty() && given.common.figure.empty())
     throw InputError("--beside needs --figure to draw in");
   FieldFileOptions file_options;
@@ -101,50 +141,25 @@ int plan_command(const PlanOptionsGiven& given) {
   file_options.frame = given.frame;
   const TargetField target = read_field(given.field, file_options);
 
-  Planner planner(settings.plan, target.size());
-  Plan plan;
-  PlanStats stats;
-  PlanTrace trace;
-  const PlanStatus status = planner.plan(target, plan, stats);
-  if (status == PlanStatus::InvalidTarget) {
+  const Result r = plan_and_score(target, s, !given.common.figure.empty());
+  if (r.status == PlanStatus::InvalidTarget) {
     throw InputError(
         given.field +
         ": the field has a value that cannot be planned; pressures must be finite and >= 0");
   }
-  // a second time with the intermediate results, so that collecting them is not in the times
+  if (!given.common.json.empty()) write_plan(r, target, settings, given.common.json);
   if (!given.common.figure.empty()) {
-    PlanStats traced;
-    planner.plan(target, plan, traced, &trace);
-  }
-  const PlanSettings& s = settings.plan;
-  const Metrics metrics = score_plan(target, plan, 0, s.sigma, s.gain);
-  std::vector<Control> control_rows;
-  if (status == PlanStatus::Planned) {
-    const auto seed = static_cast<std::uint64_t>(s.seed);
-    Plan other;
-    PlanStats other_stats;
-    planner.plan(another_target(target, seed), other, other_stats);
-    control_rows = controls(target, s.sigma, s.gain, s.max_length, &other, seed);
-  }
-
-  if (status == PlanStatus::EmptyTarget) {
-    fmt::print(prose(given.common.json), "{}: no pressure anywhere, so no path\n", given.field);
-  } else {
-    print_plan(prose(given.common.json), plan, stats, metrics, control_rows);
-  }
-  if (!given.common.json.empty()) {
-    PlanFileExtras extras;
-    extras.stats = &stats;
-    extras.metrics = &metrics;
-    extras.controls = &control_rows;
-    write_file(given.common.json, plan_to_json(plan, target, s, extras, settings_json(settings)));
-  }
-  if (!given.common.figure.empty()) {
-    PlanFigure figure = as_figure(target, plan, trace, s);
-    figure.metrics = metrics;
-    figure.controls = control_rows;
+    PlanFigure figure = as_figure(target, r.plan, r.trace, s);
+    figure.metrics = r.metrics;
+    figure.controls = r.controls;
     figure.title = given.field + ", preset " + s.preset;
     draw_figure(figure, given, s);
+  }
+  std::FILE* out = prose(given.common.json);
+  if (r.status == PlanStatus::EmptyTarget) {
+    fmt::print(out, "{}: no pressure anywhere, so no path\n", given.field);
+  } else {
+    print_plan(out, r.plan, r.stats, r.metrics, r.controls);
   }
   return 0;
 }

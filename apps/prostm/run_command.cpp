@@ -175,6 +175,7 @@ void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& 
 }  // namespace
 
 int run_command(const RunOptionsGiven& given) {
+  check_outputs(given.common);
   PipelineSettings settings = make_settings(given.common, given.scene);
   RunOptions options;
   options.mode = given.stepped               ? RunMode::Stepped

@@ -89,6 +89,20 @@ Descriptor open_to_read(const std::string& path, struct stat* status) {
   return file;
 }
 
+/// Whether `path` is written through a temporary file, beside `target`: a link stays a link, a
+/// device stays a device.
+bool temporary_serves(const std::string& path, std::string& target) {
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  if (kind == std::filesystem::file_type::directory) {
+    throw InputError(path + " is a folder; name a file to write");
+  }
+  const bool regular = kind == std::filesystem::file_type::regular;
+  target = regular ? std::filesystem::canonical(path, ignored).string() : path;
+  return regular || kind == std::filesystem::file_type::not_found ||
+         kind == std::filesystem::file_type::none;
+}
+
 /// 0 or the error; the temporary file is there in both cases.
 int fill_and_sync(Descriptor& file, std::string_view bytes) {
   if (const int error = write_all(file.get(), bytes); error != 0) return error;
@@ -129,6 +143,14 @@ std::string read_file(const std::string& path, std::size_t limit) {
   return bytes;
 }
 
+void check_writable(const std::string& path) {
+  std::string target, temporary;
+  if (path == "-" || !temporary_serves(path, target)) return;
+  const Descriptor file(open_temporary(target, temporary));
+  if (file.get() < 0) fail_to_write(path, errno);
+  ::unlink(temporary.c_str());
+}
+
 void write_file(const std::string& path, std::string_view bytes) {
   if (path == "-") {
     std::fflush(stdout);
@@ -138,21 +160,11 @@ void write_file(const std::string& path, std::string_view bytes) {
     return;
   }
 
-  // a link stays a link, a device stays a device
-  std::error_code ignored;
-  const auto kind = std::filesystem::status(path, ignored).type();
-  if (kind == std::filesystem::file_type::directory) {
-    throw InputError(path + " is a folder; name a file to write");
-  }
-  if (kind != std::filesystem::file_type::regular &&
-      kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::none) {
+  std::string target;
+  if (!temporary_serves(path, target)) {
     write_in_place(path, bytes);
     return;
   }
-  const std::string target = kind == std::filesystem::file_type::regular
-                                 ? std::filesystem::canonical(path, ignored).string()
-                                 : path;
-
   // the new content appears whole or not at all
   std::string temporary;
   Descriptor file(open_temporary(target, temporary));

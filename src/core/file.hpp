@@ -14,6 +14,10 @@ std::string read_file(const std::string& path, std::size_t limit = std::size_t{1
 /// @throws InputError: it does not exist, cannot be read, is a folder.
 void check_readable(const std::string& path);
 
+/// Tries whether write_file could write there, before the work whose result it is to hold.
+/// @throws InputError: a folder, or one that is missing or not writable.
+void check_writable(const std::string& path);
+
 /// Writes to a temporary file beside `path`, flushes, renames. "-" writes to standard output.
 /// @throws InputError: the folder is missing or not writable, the disk is full. Nothing is left
 /// behind then.

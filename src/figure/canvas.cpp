@@ -7,13 +7,36 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "core/units.hpp"
+#include "figure/figures.hpp"
 
-namespace prostm::figure {
+namespace prostm {
+namespace {
+
+bool ends_in(const std::string& path, std::string_view ending) {
+  return path.size() > ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+void check_ending(const std::string& path) {
+  if (!ends_in(path, ".png") && !ends_in(path, ".svg")) {
+    throw InputError(path + " names no kind of figure; it must end in .png or .svg");
+  }
+}
+
+}  // namespace
+
+void check_figure(const std::string& path) {
+  check_ending(path);
+  check_writable(path);
+}
+
+namespace figure {
 namespace {
 
 constexpr double kPixelsPerPoint = 2.0;  // of PNG pages
@@ -68,14 +91,9 @@ struct Canvas::Impl {
 
 Canvas::Canvas(const std::string& path, double width, double height)
     : impl_(std::make_unique<Impl>()) {
-  const auto ends_in = [&](const char* ending) {
-    return path.size() > 4 && path.compare(path.size() - 4, 4, ending) == 0;
-  };
-  if (!ends_in(".png") && !ends_in(".svg")) {
-    throw InputError(path + " names no kind of figure; it must end in .png or .svg");
-  }
+  check_ending(path);
   impl_->path = path;
-  impl_->is_svg = ends_in(".svg");
+  impl_->is_svg = ends_in(path, ".svg");
   if (impl_->is_svg) {
     impl_->surface.reset(
         cairo_svg_surface_create_for_stream(append_bytes, &impl_->bytes, width, height));
@@ -206,4 +224,5 @@ void Canvas::save() {
   write_file(impl_->path, impl_->bytes);
 }
 
-}  // namespace prostm::figure
+}  // namespace figure
+}  // namespace prostm

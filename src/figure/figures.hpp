@@ -11,6 +11,10 @@
 
 namespace prostm {
 
+/// Tries whether a picture could be written, before the work that it is to show. @throws
+/// InputError: the name ends in neither .png nor .svg, or the file cannot be written.
+void check_figure(const std::string& path);
+
 /// What the six panels of the paper's Fig. 2 show.
 struct PlanFigure {
   const TargetField* target = nullptr;

@@ -39,6 +39,17 @@ TEST(WriteFile, NamesAMissingFolderAndAFolder) {
   EXPECT_THAT(input_error([&] { write_file(folder.file(""), "x"); }), HasSubstr("is a folder"));
 }
 
+TEST(CheckWritable, SaysBeforeTheWorkWhatWriteFileWouldSayAfterIt) {
+  const test::TemporaryFolder folder;
+  check_writable("-");
+  check_writable(folder.file("a.json"));
+  EXPECT_EQ(folder.entries(), 0u);
+  const std::string missing = folder.file("missing/a.json");
+  EXPECT_EQ(input_error([&] { check_writable(missing); }),
+            input_error([&] { write_file(missing, "x"); }));
+  EXPECT_THAT(input_error([&] { check_writable(folder.file("")); }), HasSubstr("is a folder"));
+}
+
 TEST(WriteFile, SaysThatADiskIsFullAndKeepsWhatWasThere) {
   EXPECT_THAT(input_error([] { write_file("/dev/full", "x"); }), HasSubstr("No space left"));
 
