@@ -120,12 +120,12 @@ mount -t tmpfs tmpfs "$root/dev/shm"
 mounted+=("$root/dev/shm")
 
 # a clone of this commit, through a bundle, so that nothing but the committed files gets in
-git -C "$source" bundle create -q "$root/root/prostm.bundle" HEAD
-rm -rf "$root/root/prostm"
+git -C "$source" bundle create -q "$root/srv/prostm.bundle" HEAD
+rm -rf "$root/srv/prostm"
 step "git clone" in_chroot "cd /root && git -c advice.detachedHead=false clone -q prostm.bundle prostm && git -C prostm log -1 --format='%h %s'"
 
 for command in "${commands[@]}"; do
   say "$command"
-  step "$command" in_chroot "cd /root/prostm && $command" || { report; exit 1; }
+  step "$command" in_chroot "cd /srv/prostm && $command" || { report; exit 1; }
 done
 report
