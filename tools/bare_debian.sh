@@ -122,7 +122,7 @@ mounted+=("$root/dev/shm")
 # a clone of this commit, through a bundle, so that nothing but the committed files gets in
 git -C "$source" bundle create -q "$root/srv/prostm.bundle" HEAD
 rm -rf "$root/srv/prostm"
-step "git clone" in_chroot "cd /root && git -c advice.detachedHead=false clone -q prostm.bundle prostm && git -C prostm log -1 --format='%h %s'"
+step "git clone" in_chroot "cd /srv && git -c advice.detachedHead=false clone -q prostm.bundle prostm && git -C prostm log -1 --format='%h %s'"
 
 for command in "${commands[@]}"; do
   say "$command"
