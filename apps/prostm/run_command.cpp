@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common.hpp"
 #include "core/input_error.hpp"
@@ -17,8 +18,8 @@ namespace {
 /// Records, keeps the instant nearest to one for the picture, and watches for Ctrl-C.
 class Observer final : public RunObserver {
  public:
-  /// @param picture_at time of the picture [s]; negative for none.
-  Observer(Recorder* recorder, double picture_at, double seconds)
+  /// @param picture_at time of the picture, when there is to be one [s].
+  Observer(Recorder* recorder, std::optional<double> picture_at, double seconds)
       : recorder_(recorder), picture_at_(picture_at), seconds_(seconds) {}
 
   bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
@@ -27,11 +28,13 @@ class Observer final : public RunObserver {
       recorder_->append(contact.target, contact.hands, planned ? &plan.plan : nullptr,
                         planned ? &plan.stats : nullptr);
     }
-    const double away = std::abs(contact.target.time - picture_at_);
-    if (picture_at_ >= 0.0 && plan.status == PlanStatus::Planned && away < away_) {
-      away_ = away;
-      contact_ = contact;
-      plan_ = plan;
+    if (picture_at_ && plan.status == PlanStatus::Planned) {
+      const double away = std::abs(contact.target.time - *picture_at_);
+      if (away < away_) {
+        away_ = away;
+        contact_ = contact;
+        plan_ = plan;
+      }
     }
     return !interrupt_.requested();
   }
@@ -48,7 +51,8 @@ class Observer final : public RunObserver {
 
  private:
   Recorder* recorder_;
-  double picture_at_, seconds_, away_ = std::numeric_limits<double>::infinity();
+  std::optional<double> picture_at_;
+  double seconds_, away_ = std::numeric_limits<double>::infinity();
   ContactFrame contact_;
   PlanFrame plan_;
   Interrupt interrupt_;
@@ -191,6 +195,10 @@ int run_command(const RunOptionsGiven& given) {
     throw InputError(
         fmt::format("--seconds {} must be above 0 and at most 86400", options.seconds));
   }
+  if (given.figure_at && !(*given.figure_at >= 0.0 && *given.figure_at <= options.seconds)) {
+    throw InputError(fmt::format("--figure-at {} must be between 0 and the run's {} s",
+                                 *given.figure_at, options.seconds));
+  }
   Pipeline pipeline(settings, std::move(hands));
 
   std::unique_ptr<Recorder> recorder;
@@ -199,8 +207,8 @@ int run_command(const RunOptionsGiven& given) {
     recorder->set_attribute("scene", settings.scene);
     recorder->set_attribute("hand", given.hand);
   }
-  const double picture_at =
-      settings.side_view ? given.figure_at.value_or(0.5 * options.seconds) : -1.0;
+  std::optional<double> picture_at;
+  if (settings.side_view) picture_at = given.figure_at.value_or(0.5 * options.seconds);
   Observer observer(recorder.get(), picture_at, options.seconds);
   const RunSummary summary = run(pipeline, settings, options, observer);
 

@@ -125,6 +125,8 @@ def test_bad_recordings(refuses, tmp_path, fault):
         (["run", "--hand", "openxr"], ["not built yet"]),
         (["run", "--hand", "/nowhere/hand.jsonl"], ["/nowhere/hand.jsonl"]),
         (["run", "--seconds", "-1"], ["seconds"]),
+        (["run", "--seconds", "9", "--figure-at", "-3", "--figure", "f.png"], ["--figure-at", "9 s"]),
+        (["run", "--seconds", "9", "--figure-at", "nan", "--figure", "f.png"], ["--figure-at", "nan"]),
         (["run", "--grid", "63"], ["63"]),
         (["run", "--paths", "9"], ["9"]),
         (["run", "--preset", "best"], ["not built yet"]),
