@@ -1,59 +1,96 @@
 #include "hand/body_set.hpp"
 
-#include <utility>
+#include <algorithm>
 
 namespace prostm {
+namespace {
+
+Vec3 corner_of(const BodySet& bodies, const CubeCorners& corners, unsigned c) {
+  Vec3 p = bodies.origin();
+  for (unsigned a = 0; a < 3; ++a) {
+    const float sign = (c >> a & 1U) != 0 ? 1.0F : -1.0F;
+    p[a] += static_cast<double>(corners.centre[a]) + static_cast<double>(sign * corners.half);
+  }
+  return p;
+}
+
+double distance(const BodySet::Body& body, const Vec3& p) {
+  return body.cone != nullptr ? body.cone->distance(p) : body.triangle->distance(p);
+}
+
+void cull(const BodySet& bodies, const BodyList& list, const CubeCorners& corners, float reach,
+          float limit, std::uint8_t* near) {
+  std::fill_n(near, list.count, std::uint8_t{0});
+  for (unsigned c = 0; c < 8; ++c) {
+    const Vec3 p = corner_of(bodies, corners, c);
+    double from[BodySet::kCapacity], nearest = 1e30;
+    for (int n = 0; n < list.count; ++n) {
+      from[n] = distance(bodies[list.body[n]], p);
+      nearest = std::min(nearest, from[n]);
+    }
+    const auto radius = static_cast<double>(reach);
+    const double farthest = std::min(nearest + 2.0 * radius, static_cast<double>(limit) + radius);
+    for (int n = 0; n < list.count; ++n) {
+      if (from[n] <= farthest) near[n] = static_cast<std::uint8_t>(near[n] | 1U << c);
+    }
+  }
+}
+
+void nearest(const BodySet& bodies, const BodyList& list, const CubeCorners& corners,
+             NearestBodies& out) {
+  for (unsigned c = 0; c < 8; ++c) {
+    const Vec3 p = corner_of(bodies, corners, c);
+    double least = 1e30;
+    out.body[c] = list.body[0];
+    for (int n = 0; n < list.count; ++n) {
+      const double from = distance(bodies[list.body[n]], p);
+      if (from >= least) continue;
+      least = from;
+      out.body[c] = list.body[n];
+    }
+    out.distance[c] = static_cast<float>(least);
+  }
+}
+
+void velocity(const BodySet& bodies, const NearestBodies& nearest, const CubeCorners& corners,
+              unsigned which, float (*out)[8]) {
+  for (unsigned c = 0; c < 8; ++c) {
+    if ((which >> c & 1U) == 0) continue;
+    const BodySet::Body& body = bodies[static_cast<std::size_t>(nearest.body[c])];
+    const Vec3 p = corner_of(bodies, corners, c);
+    const Vec3 v =
+        body.cone != nullptr ? body.cone->query(p).velocity : body.triangle->query(p).velocity;
+    for (int a = 0; a < 3; ++a) out[a][c] = static_cast<float>(v[a]);
+  }
+}
+
+}  // namespace
+
+void BodySet::clear(const Vec3& origin) noexcept {
+  origin_ = origin;
+  bodies_.clear();
+  cones_.clear();
+  triangles_.clear();
+}
+
+void BodySet::add(const RoundCone& cone) noexcept {
+  bodies_.push_back({&cone, nullptr, cones_.size()});
+  cones_.push_back(cone.packed(origin_));
+}
+
+void BodySet::add(const SphereTriangle& triangle) noexcept {
+  bodies_.push_back({nullptr, &triangle, triangles_.size()});
+  triangles_.push_back(triangle.packed(origin_));
+}
 
 void BodySet::add(const HandShape& shape) noexcept {
-  for (const RoundCone& cone : shape.cones()) bodies_.push_back({&cone, nullptr});
-  for (const SphereTriangle& triangle : shape.triangles()) bodies_.push_back({nullptr, &triangle});
+  for (const RoundCone& cone : shape.cones()) add(cone);
+  for (const SphereTriangle& triangle : shape.triangles()) add(triangle);
 }
 
-BodySet::List BodySet::all() const noexcept {
-  List list;
-  for (std::size_t n = 0; n < bodies_.size(); ++n)
-    list.push_back({-1e30, static_cast<std::uint8_t>(n)});
-  return list;
-}
-
-BodySet::Candidate BodySet::nearest(const Vec3& p, const List& from, double step) const noexcept {
-  Candidate best{1e30, from.front().body};
-  for (const Candidate& candidate : from) {
-    if (candidate.distance - step >= best.distance) continue;
-    const double distance = bodies_[candidate.body].distance(p);
-    if (distance < best.distance) best = {distance, candidate.body};
-  }
-  return best;
-}
-
-BodySet::Candidate BodySet::nearest(const Vec3& p, const List& from, double step, double reach,
-                                    List& kept) const noexcept {
-  kept.clear();
-  double nearest = 1e30;
-  for (const Candidate& candidate : from) {
-    if (candidate.distance - step > nearest + 2.0 * reach) continue;
-    const double distance = bodies_[candidate.body].distance(p);
-    kept.push_back({distance, candidate.body});
-    if (distance < nearest) {
-      nearest = distance;
-      std::swap(kept.front(), kept.back());
-    }
-  }
-  // drop those that were taken before the nearest was known
-  for (std::size_t n = 1; n < kept.size();) {
-    if (kept[n].distance > nearest + 2.0 * reach) {
-      kept[n] = kept.back();
-      kept.pop_back();
-    } else {
-      ++n;
-    }
-  }
-  return kept.front();
-}
-
-SurfacePoint BodySet::query(std::size_t body, const Vec3& p) const noexcept {
-  const Body& b = bodies_[body];
-  return b.cone != nullptr ? b.cone->query(p) : b.triangle->query(p);
+const BodyKernels& scalar_body_kernels() {
+  static constexpr BodyKernels kernels{cull, nearest, velocity};
+  return kernels;
 }
 
 }  // namespace prostm

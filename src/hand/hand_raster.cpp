@@ -1,7 +1,6 @@
 #include "hand/hand_raster.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -12,15 +11,17 @@ namespace prostm {
 namespace {
 
 constexpr int kMaxSubPoses = 16;
-constexpr double kVelocityReach = 2.0;   // how far from the skin its velocity is told [cells]
-constexpr float kDiagonal = 1.7320509F;  // of a cell [cells], rounded up
-constexpr int kSlab = 4;                 // planes in one task
-static_assert(BodySet::kCapacity < 255, "a node's owner is one byte");
+constexpr double kVelocityReach = 2.0;  // how far from the skin its velocity is told [cells]
+constexpr int kRoot = 16;               // points along a block that is one task
+constexpr double kFarthest = 1e3;       // no hand has a joint farther from the array [m]
+constexpr double kSlack = 1e-3;         // more than single precision errs by [cells]
 
-bool is_finite(const Hand& hand) {
+bool is_usable(const Hand& hand) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     if (!hand.position[j].allFinite() || !hand.velocity[j].allFinite() ||
         !std::isfinite(hand.radius[j]))
+      return false;
+    if (hand.position[j].cwiseAbs().maxCoeff() > kFarthest || hand.radius[j] > kFarthest)
       return false;
   }
   return true;
@@ -43,59 +44,148 @@ void include(const CellBox& part, CellBox& whole) {
   }
 }
 
-bool has_plane(const CellBox& box, int k, int extra = 0) {
-  return !box.empty() && k >= box.lower[2] && k < box.upper[2] + extra;
+CellBox common(const CellBox& a, const CellBox& b) {
+  CellBox both;
+  for (int axis = 0; axis < 3; ++axis) {
+    both.lower[axis] = std::max(a.lower[axis], b.lower[axis]);
+    both.upper[axis] = std::min(a.upper[axis], b.upper[axis]);
+  }
+  return both;
 }
 
-/// Points of the grid by index: nodes (offset 0) or centres of cells (offset 0.5).
-struct Points {
-  const GridShape& grid;
-  double offset;
-  Vec3 at(int i, int j, int k) const {
-    return grid.p_DF + grid.cell * Vec3(i + offset, j + offset, k + offset);
+/// The nodes of a box of cells.
+CellBox nodes_of(CellBox box) {
+  if (box.empty()) return {};
+  for (int& upper : box.upper) ++upper;
+  return box;
+}
+
+/// The cells around a range of nodes.
+CellBox cells_around(CellBox nodes, const GridShape& grid) {
+  if (nodes.empty()) return {};
+  for (int a = 0; a < 3; ++a) {
+    nodes.lower[a] = std::max(nodes.lower[a] - 1, 0);
+    nodes.upper[a] = std::min(nodes.upper[a], cells_along(grid, a));
   }
+  return nodes;
+}
+
+/// Calls row(j, k) for each row of the box.
+template <class F>
+void for_rows(const CellBox& box, F&& row) {
+  if (box.empty()) return;
+  for (int k = box.lower[2]; k < box.upper[2]; ++k) {
+    for (int j = box.lower[1]; j < box.upper[1]; ++j) row(j, k);
+  }
+}
+
+/// Blocks of kRoot³ points, aligned to the grid, that cover a box.
+struct Roots {
+  explicit Roots(const CellBox& box) {
+    for (int a = 0; a < 3; ++a) {
+      first[a] = box.lower[a] / kRoot;
+      count[a] = box.empty() ? 0 : (box.upper[a] + kRoot - 1) / kRoot - first[a];
+    }
+  }
+  int size() const { return count[0] * count[1] * count[2]; }
+  CellBox operator[](int n) const {
+    const int at[3] = {n % count[0], n / count[0] % count[1], n / (count[0] * count[1])};
+    CellBox root;
+    for (int a = 0; a < 3; ++a) {
+      root.lower[a] = kRoot * (first[a] + at[a]);
+      root.upper[a] = root.lower[a] + kRoot;
+    }
+    return root;
+  }
+  int first[3], count[3];
 };
 
 /// Follows what can be within `limit` of a body, from a block of points to its octants, with the
-/// bodies that can be nearest there, down to blocks of two points along each axis. Calls leaf(i, j,
-/// k, point, nearest) for each point within the limit. `from` holds distances at `origin`.
+/// bodies that can be nearest there, down to blocks of two points along each axis. Calls leaf(at,
+/// corners, nearest, within) with the first point of each such block, its points, their nearest
+/// bodies, and bit c of `within` set where point c is in `range` and within the limit.
 template <class Leaf>
-void descend(const BodySet& bodies, const BodySet::List& from, const Vec3& origin,
-             const Points& points, const CellBox& block, double limit, const Leaf& leaf) {
-  const int *lo = block.lower, *up = block.upper;
-  const Vec3 low = points.at(lo[0], lo[1], lo[2]),
-             high = points.at(up[0] - 1, up[1] - 1, up[2] - 1);
-  const Vec3 centre = 0.5 * (low + high);
-  const double reach = 0.5 * (high - low).norm();
-  BodySet::List kept;
-  const double distance =
-      bodies.nearest(centre, from, (centre - origin).norm(), reach, kept).distance;
-  if (distance - reach > limit) return;
-  if (up[0] - lo[0] <= 2 && up[1] - lo[1] <= 2 && up[2] - lo[2] <= 2) {
-    for (int k = lo[2]; k < up[2]; ++k) {
-      for (int j = lo[1]; j < up[1]; ++j) {
-        for (int i = lo[0]; i < up[0]; ++i) {
-          const Vec3 point = points.at(i, j, k);
-          const BodySet::Candidate nearest = bodies.nearest(point, kept, reach);
-          if (nearest.distance <= limit) leaf(i, j, k, point, nearest);
-        }
-      }
-    }
-    return;
+class Descent {
+ public:
+  /// @param offset 0 for the grid's nodes, 0.5 for the centres of its cells. @param limit [m]
+  Descent(const BodySet& bodies, const GridShape& grid, double offset, const CellBox& range,
+          double limit, const Leaf& leaf)
+      : bodies_(bodies),
+        kernels_(fast_body_kernels()),
+        cell_(grid.cell),
+        range_(range),
+        limit_(static_cast<float>(limit)),
+        leaf_(leaf) {
+    for (int a = 0; a < 3; ++a) start_[a] = grid.p_DF[a] + grid.cell * offset - bodies.origin()[a];
   }
-  // the longest axes are cut, at powers of two, so that blocks become cubes and the last ones are
-  // whole
-  const auto size = [&](int a) { return static_cast<unsigned>(up[a] - lo[a]); };
-  const unsigned longest = std::bit_ceil(std::max({size(0), size(1), size(2)}));
-  int middle[3];
-  for (int a = 0; a < 3; ++a) {
-    middle[a] = std::bit_ceil(size(a)) == longest ? lo[a] + static_cast<int>(longest / 2) : up[a];
+
+  void from(const CellBox& root) const {
+    BodyList every;
+    every.count = static_cast<int>(bodies_.size());
+    for (int n = 0; n < every.count; ++n) every.body[n] = static_cast<std::uint8_t>(n);
+    if (every.count > 0) descend(root.lower, root.upper[0] - root.lower[0], every);
   }
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    CellBox part = block;
+
+ private:
+  void descend(const int* at, int size, const BodyList& list) const {
+    // the corners are the points of a block of two, the middles of a larger one's octants
+    CubeCorners corners{};
     for (int a = 0; a < 3; ++a)
-      ((octant >> a & 1U) != 0 ? part.lower[a] : part.upper[a]) = middle[a];
-    if (!part.empty()) descend(bodies, kept, centre, points, part, limit, leaf);
+      corners.centre[a] = static_cast<float>(start_[a] + cell_ * (at[a] + 0.5 * (size - 1)));
+    corners.half = static_cast<float>(0.25 * size * cell_);
+    if (size == 2) {
+      touch(at, corners, list);
+      return;
+    }
+    const double reach = (0.5 * std::sqrt(3.0) * (size / 2 - 1) + kSlack) * cell_;
+    std::uint8_t near[BodySet::kCapacity];
+    kernels_.cull(bodies_, list, corners, static_cast<float>(reach), limit_, near);
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      BodyList part;
+      for (int n = 0; n < list.count; ++n) {
+        part.body[part.count] = list.body[n];
+        part.count += near[n] >> octant & 1;
+      }
+      int lower[3];
+      if (part.count > 0 && octant_of(at, size / 2, octant, lower)) descend(lower, size / 2, part);
+    }
+  }
+
+  /// False where the octant holds no point of the range.
+  bool octant_of(const int* at, int size, unsigned octant, int* lower) const {
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = at[a] + ((octant >> a & 1U) != 0 ? size : 0);
+      if (lower[a] >= range_.upper[a] || lower[a] + size <= range_.lower[a]) return false;
+    }
+    return true;
+  }
+
+  void touch(const int* at, const CubeCorners& corners, const BodyList& list) const {
+    NearestBodies nearest;
+    kernels_.nearest(bodies_, list, corners, nearest);
+    unsigned within = 0;
+    for (unsigned c = 0; c < 8; ++c) {
+      int point[3];
+      if (nearest.distance[c] <= limit_ && octant_of(at, 1, c, point)) within |= 1U << c;
+    }
+    if (within != 0) leaf_(at, corners, nearest, within);
+  }
+
+  const BodySet& bodies_;
+  const BodyKernels& kernels_;
+  double cell_, start_[3];
+  CellBox range_;
+  float limit_;
+  const Leaf& leaf_;
+};
+
+/// Calls f(c, i, j, k) for each point of a block of two whose bit is set.
+template <class F>
+void for_points(const int* at, unsigned within, F&& f) {
+  for (unsigned c = 0; c < 8; ++c) {
+    if ((within >> c & 1U) == 0) continue;
+    f(c, at[0] + static_cast<int>(c & 1U), at[1] + static_cast<int>(c >> 1 & 1U),
+      at[2] + static_cast<int>(c >> 2));
   }
 }
 
@@ -115,7 +205,8 @@ HandRasteriser::HandRasteriser(const GridShape& grid, double band) : band_(band)
   raster_.node_distance.assign(grid.node_count(), HandRaster::kFar);
   for (std::vector<float>& component : raster_.velocity) component.assign(grid.cell_count(), 0.0F);
   raster_.swept.assign(grid.cell_count(), 0);
-  owner_.assign(grid.node_count(), 0);
+  solid_.assign(grid.cell_count(), 0);
+  middle_ = grid.p_DF + 0.5 * grid.cell * Vec3(grid.nx, grid.ny, grid.nz);
   sub_poses_.resize(2 * kMaxSubPoses);
   node_ranges_.reserve(2);
 }
@@ -125,27 +216,28 @@ void HandRasteriser::rasterise(const HandFrame& frame, WorkerPool& pool) noexcep
   const CellBox old = raster_.box;
   place_box();
 
-  // planes that held something before or hold something now
+  // blocks that held something before or hold something now, of nodes and of cells
   CellBox both = raster_.box.empty() ? old : raster_.box;
   include(old, both);
   if (both.empty()) return;
-  const int first = both.lower[2], planes = both.upper[2] - first, nodes = planes + 1;
-  pool.run((nodes + kSlab - 1) / kSlab, [&](int task) {
-    fill_nodes(old, first + task * kSlab, std::min(first + (task + 1) * kSlab, first + nodes));
-  });
-  pool.run((planes + kSlab - 1) / kSlab, [&](int task) {
-    fill_cells(old, first + task * kSlab, std::min(first + (task + 1) * kSlab, first + planes));
+  const Roots nodes(nodes_of(both)), cells(both);
+  pool.run(nodes.size() + cells.size(), [&](int task) {
+    if (task < nodes.size()) {
+      fill_nodes(old, nodes[task]);
+    } else {
+      fill_cells(old, cells[task - nodes.size()]);
+    }
   });
 }
 
 void HandRasteriser::set_shapes(const HandFrame& frame) noexcept {
   shapes_.clear();
-  bodies_.clear();
+  bodies_.clear(middle_);
   node_ranges_.clear();
   sub_pose_count_ = 0;
   HandFrame usable;
   for (const Hand& hand : frame.hands) {
-    if (!is_finite(hand)) continue;
+    if (!is_usable(hand)) continue;
     usable.hands.push_back(hand);
     shapes_.emplace_back(hand);
     bodies_.add(shapes_.back());
@@ -175,7 +267,7 @@ void HandRasteriser::add_sub_poses(const Hand& from, const Hand& to) noexcept {
     }
     SubPose& pose = sub_poses_[sub_pose_count_++];
     pose.shape.set(hand);
-    pose.bodies.clear();
+    pose.bodies.clear(middle_);
     pose.bodies.add(pose.shape);
     // between poses a cell apart the skin of a fingertip of 5 mm leaves scallops of less than a
     // fifth of a cell
@@ -202,131 +294,88 @@ CellBox HandRasteriser::range_of(const HandShape& shape, double margin,
 
 void HandRasteriser::place_box() noexcept {
   raster_.box = CellBox();
-  const auto take = [&](CellBox range, int below) {
-    for (int a = 0; a < 3; ++a) {
-      range.lower[a] = std::max(range.lower[a] - below, 0);
-      range.upper[a] = std::min(range.upper[a], cells_along(raster_.grid, a));
-    }
+  const auto take = [&](const CellBox& range) {
     if (raster_.box.empty()) raster_.box = range;
     include(range, raster_.box);
   };
-  // the cells around a node lie from one below it to itself
-  for (const CellBox& nodes : node_ranges_) {
-    if (!nodes.empty()) take(nodes, 1);
-  }
-  for (std::size_t n = 0; n < sub_pose_count_; ++n) take(sub_poses_[n].cells, 0);
+  for (const CellBox& nodes : node_ranges_) take(cells_around(nodes, raster_.grid));
+  for (std::size_t n = 0; n < sub_pose_count_; ++n) take(sub_poses_[n].cells);
   if (raster_.box.empty()) raster_.box = CellBox();
 }
 
-void HandRasteriser::fill_nodes(const CellBox& old, int first, int last) noexcept {
+void HandRasteriser::fill_nodes(const CellBox& old, const CellBox& root) noexcept {
   const GridShape& grid = raster_.grid;
-  for (int k = first; k < last; ++k) {
-    if (!has_plane(old, k, 1)) continue;
-    for (int j = old.lower[1]; j <= old.upper[1]; ++j) {
-      const auto row = static_cast<std::ptrdiff_t>(grid.node_index(old.lower[0], j, k));
-      const auto count = static_cast<std::size_t>(old.upper[0] - old.lower[0] + 1);
-      std::fill_n(raster_.node_distance.begin() + row, count, HandRaster::kFar);
-      std::fill_n(owner_.begin() + row, count, std::uint8_t{0});
-    }
-  }
-
-  // each hand's box may overlap the other's; there all bodies count, so a node that is met twice is
-  // only written twice
-  for (CellBox range : node_ranges_) {
-    range.lower[2] = std::max(range.lower[2], first);
-    range.upper[2] = std::min(range.upper[2], last);
-    if (range.empty()) continue;
-    descend(bodies_, bodies_.all(), Vec3::Zero(), Points{grid, 0.0}, range, band_ * grid.cell,
-            [&](int i, int j, int k, const Vec3&, const BodySet::Candidate& nearest) {
-              const std::size_t node = grid.node_index(i, j, k);
-              raster_.node_distance[node] = static_cast<float>(nearest.distance);
-              owner_[node] = static_cast<std::uint8_t>(nearest.body + 1);
-            });
-  }
+  const CellBox stale = common(nodes_of(old), root);
+  for_rows(stale, [&](int j, int k) {
+    std::fill_n(&raster_.node_distance[grid.node_index(stale.lower[0], j, k)],
+                stale.upper[0] - stale.lower[0], HandRaster::kFar);
+  });
+  const auto reached = [&](const CellBox& range) { return !common(range, root).empty(); };
+  if (std::none_of(node_ranges_.begin(), node_ranges_.end(), reached)) return;
+  const auto leaf = [&](const int* at, const CubeCorners&, const NearestBodies& nearest,
+                        unsigned within) {
+    for_points(at, within, [&](unsigned c, int i, int j, int k) {
+      raster_.node_distance[grid.node_index(i, j, k)] = nearest.distance[c];
+    });
+  };
+  Descent(bodies_, grid, 0.0, nodes_of(raster_.box), band_ * grid.cell, leaf).from(root);
 }
 
-void HandRasteriser::fill_cells(const CellBox& old, int first, int last) noexcept {
+void HandRasteriser::fill_cells(const CellBox& old, const CellBox& root) noexcept {
   const GridShape& grid = raster_.grid;
-  for (int k = first; k < last; ++k) {
-    if (!has_plane(old, k)) continue;
-    for (int j = old.lower[1]; j < old.upper[1]; ++j) {
-      const auto row = static_cast<std::ptrdiff_t>(grid.cell_index(old.lower[0], j, k));
-      const auto count = static_cast<std::size_t>(old.upper[0] - old.lower[0]);
-      for (std::vector<float>& component : raster_.velocity) {
-        std::fill_n(component.begin() + row, count, 0.0F);
-      }
-      std::fill_n(raster_.swept.begin() + row, count, std::uint8_t{0});
-    }
-  }
-  // the cells around a node lie from one below it to itself
-  for (const CellBox& nodes : node_ranges_) {
-    if (nodes.empty()) continue;
-    for (int k = std::max(nodes.lower[2] - 1, first); k < std::min({nodes.upper[2], grid.nz, last});
-         ++k) {
-      for (int j = std::max(nodes.lower[1] - 1, 0); j < std::min(nodes.upper[1], grid.ny); ++j) {
-        for (int i = std::max(nodes.lower[0] - 1, 0); i < std::min(nodes.upper[0], grid.nx); ++i) {
-          find_velocity(i, j, k);
-        }
-      }
-    }
-  }
-  for (std::size_t n = 0; n < sub_pose_count_; ++n) sweep(sub_poses_[n], first, last);
+  const CellBox stale = common(old, root);
+  for_rows(stale, [&](int j, int k) {
+    const std::size_t row = grid.cell_index(stale.lower[0], j, k);
+    const int count = stale.upper[0] - stale.lower[0];
+    for (std::vector<float>& component : raster_.velocity)
+      std::fill_n(&component[row], count, 0.0F);
+    std::fill_n(&raster_.swept[row], count, std::uint8_t{0});
+    std::fill_n(&solid_[row], count, std::uint8_t{0});
+  });
+  const auto reached = [&](const CellBox& nodes) {
+    return !common(cells_around(nodes, grid), root).empty();
+  };
+  if (std::any_of(node_ranges_.begin(), node_ranges_.end(), reached)) set_cells(root);
+  for (std::size_t n = 0; n < sub_pose_count_; ++n) sweep(sub_poses_[n], root);
 }
 
-std::array<std::size_t, 8> HandRasteriser::corners(int i, int j, int k) const noexcept {
+void HandRasteriser::set_cells(const CellBox& root) noexcept {
   const GridShape& grid = raster_.grid;
-  const std::size_t row = static_cast<std::size_t>(grid.nx) + 1;
-  const std::size_t plane = row * (static_cast<std::size_t>(grid.ny) + 1);
-  const std::size_t first = grid.node_index(i, j, k);
-  return {first,         first + 1,         first + row,         first + row + 1,
-          first + plane, first + plane + 1, first + plane + row, first + plane + row + 1};
+  const auto leaf = [&](const int* at, const CubeCorners& corners, const NearestBodies& nearest,
+                        unsigned within) {
+    alignas(32) float velocity[3][8];
+    fast_body_kernels().velocity(bodies_, nearest, corners, within, velocity);
+    for_points(at, within, [&](unsigned c, int i, int j, int k) {
+      const std::size_t cell = grid.cell_index(i, j, k);
+      for (int a = 0; a < 3; ++a) raster_.velocity[a][cell] = velocity[a][c];
+      solid_[cell] = nearest.distance[c] <= 0.0F ? 1 : 0;
+    });
+  };
+  Descent(bodies_, grid, 0.5, raster_.box, kVelocityReach * grid.cell, leaf).from(root);
 }
 
-void HandRasteriser::find_velocity(int i, int j, int k) noexcept {
-  // the body that is nearest at the corner nearest to a hand is taken for the one nearest to the
-  // cell
+void HandRasteriser::sweep(const SubPose& pose, const CellBox& root) noexcept {
   const GridShape& grid = raster_.grid;
-  const float reach = static_cast<float>(kVelocityReach * grid.cell);
-  if (raster_.node_distance[grid.node_index(i, j, k)] >
-      reach + kDiagonal * static_cast<float>(grid.cell))
-    return;
-  std::size_t nearest = grid.node_index(i, j, k);
-  for (const std::size_t node : corners(i, j, k)) {
-    if (raster_.node_distance[node] < raster_.node_distance[nearest]) nearest = node;
-  }
-  if (raster_.node_distance[nearest] > reach || owner_[nearest] == 0) return;
-  const Vec3 velocity = bodies_.query(owner_[nearest] - 1U, grid.cell_centre(i, j, k)).velocity;
-  const std::size_t cell = grid.cell_index(i, j, k);
-  for (int a = 0; a < 3; ++a) raster_.velocity[a][cell] = static_cast<float>(velocity[a]);
-}
-
-bool HandRasteriser::is_solid(int i, int j, int k) const noexcept {
-  // a centre is half a diagonal from its corners, and distances change at most as fast
-  const float half_diagonal = 0.5F * kDiagonal * static_cast<float>(raster_.grid.cell);
-  for (const std::size_t node : corners(i, j, k)) {
-    if (raster_.node_distance[node] < -half_diagonal) return true;
-    if (raster_.node_distance[node] > half_diagonal) return false;
-  }
-  const Vec3 centre = raster_.grid.cell_centre(i, j, k);
-  return std::any_of(shapes_.begin(), shapes_.end(),
-                     [&](const HandShape& shape) { return shape.distance(centre) <= 0.0; });
-}
-
-void HandRasteriser::sweep(const SubPose& pose, int first, int last) noexcept {
-  const GridShape& grid = raster_.grid;
-  CellBox range = pose.cells;
-  range.lower[2] = std::max(range.lower[2], first);
-  range.upper[2] = std::min(range.upper[2], last);
-  if (range.empty()) return;
-  descend(pose.bodies, pose.bodies.all(), Vec3::Zero(), Points{grid, 0.5}, range, pose.margin,
-          [&](int i, int j, int k, const Vec3& centre, const BodySet::Candidate& touch) {
-            // not yet marked by a newer pose, and free now
-            const std::size_t cell = grid.cell_index(i, j, k);
-            if (raster_.swept[cell] != 0 || is_solid(i, j, k)) return;
-            raster_.swept[cell] = 1;
-            const Vec3 velocity = pose.bodies.query(touch.body, centre).velocity;
-            for (int a = 0; a < 3; ++a) raster_.velocity[a][cell] = static_cast<float>(velocity[a]);
-          });
+  const CellBox range = common(pose.cells, raster_.box);
+  if (common(range, root).empty()) return;
+  const auto leaf = [&](const int* at, const CubeCorners& corners, const NearestBodies& touch,
+                        unsigned within) {
+    // not yet marked by a newer pose, and free now
+    unsigned swept = 0;
+    for_points(at, within, [&](unsigned c, int i, int j, int k) {
+      const std::size_t cell = grid.cell_index(i, j, k);
+      if (raster_.swept[cell] == 0 && solid_[cell] == 0) swept |= 1U << c;
+    });
+    if (swept == 0) return;
+    alignas(32) float velocity[3][8];
+    fast_body_kernels().velocity(pose.bodies, touch, corners, swept, velocity);
+    for_points(at, swept, [&](unsigned c, int i, int j, int k) {
+      const std::size_t cell = grid.cell_index(i, j, k);
+      raster_.swept[cell] = 1;
+      for (int a = 0; a < 3; ++a) raster_.velocity[a][cell] = velocity[a][c];
+    });
+  };
+  Descent(pose.bodies, grid, 0.5, range, pose.margin, leaf).from(root);
 }
 
 }  // namespace prostm

@@ -1,7 +1,6 @@
 #pragma once
 /// Hands on the fluid's grid.
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -36,8 +35,8 @@ struct HandRaster {
 };
 
 /// Rasterises hands with their motion since the last frame. Each body of a hand is evaluated only
-/// in its own box, planes of the grid are shared out over a pool, and the result does not depend on
-/// the number of threads.
+/// where it can be the nearest, blocks of the grid are shared out over a pool, and the result does
+/// not depend on the number of threads.
 class HandRasteriser {
  public:
   /// @param band width of the narrow band in cells, 2 to 16. @throws std::invalid_argument, also
@@ -48,7 +47,8 @@ class HandRasteriser {
   /// sub-stepped so that no joint moves more than one cell between sub-poses (at most 16), and
   /// cells whose centre only sub-poses touch are marked `swept` with the hand's velocity there, so
   /// that nothing tunnels. A hand that was not in the previous frame (by id and side) sweeps
-  /// nothing; a hand with a joint that is not finite is left out. Allocates nothing.
+  /// nothing; a hand with a joint that is not finite, or farther than a kilometre from D's origin,
+  /// is left out. Allocates nothing.
   void rasterise(const HandFrame& frame, WorkerPool& pool) noexcept;
 
   const HandRaster& raster() const { return raster_; }
@@ -66,22 +66,21 @@ class HandRasteriser {
   void add_sub_poses(const Hand& from, const Hand& to) noexcept;
   CellBox range_of(const HandShape& shape, double margin, double offset) const noexcept;
   void place_box() noexcept;
-  void fill_nodes(const CellBox& old, int first, int last) noexcept;
-  void fill_cells(const CellBox& old, int first, int last) noexcept;
-  std::array<std::size_t, 8> corners(int i, int j, int k) const noexcept;  ///< nodes of a cell
-  void find_velocity(int i, int j, int k) noexcept;
-  bool is_solid(int i, int j, int k) const noexcept;
-  void sweep(const SubPose& pose, int first, int last) noexcept;
+  void fill_nodes(const CellBox& old, const CellBox& root) noexcept;
+  void fill_cells(const CellBox& old, const CellBox& root) noexcept;
+  void set_cells(const CellBox& root) noexcept;
+  void sweep(const SubPose& pose, const CellBox& root) noexcept;
 
   HandRaster raster_;
   double band_;  // [cells]
+  Vec3 middle_;  // of the grid: the origin of what is in single precision
   HandFrame previous_;
-  boost::container::static_vector<HandShape, 2> shapes_;
+  boost::container::static_vector<HandShape, BodySet::kMaxHands> shapes_;
   BodySet bodies_;                    // of the shapes
   std::vector<CellBox> node_ranges_;  // of each shape with its band
   std::vector<SubPose> sub_poses_;    // newest first, hand by hand
   std::size_t sub_pose_count_ = 0;    // in use
-  std::vector<std::uint8_t> owner_;   // of each node: 1 + the body that is nearest, 0 where none is
+  std::vector<std::uint8_t> solid_;   // of each cell: 1 where a hand covers its centre
 };
 
 }  // namespace prostm

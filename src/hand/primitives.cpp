@@ -22,6 +22,10 @@ Vec3 any_perpendicular(const Vec3& axis) {
   return axis.cross(Vec3::Unit(smallest)).normalized();
 }
 
+void pack(const Vec3& v, float (&out)[3]) {
+  for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(v[i]);
+}
+
 }  // namespace
 
 RoundCone::RoundCone(const CornerSphere& a, const CornerSphere& b) noexcept : a_(a), b_(b) {
@@ -69,6 +73,23 @@ SurfacePoint RoundCone::query(const Vec3& p) const noexcept {
   return seen_from(p, a_.centre + u * (b_.centre - a_.centre),
                    a_.radius + u * (b_.radius - a_.radius),
                    a_.velocity + u * (b_.velocity - a_.velocity), on_axis);
+}
+
+PackedCone RoundCone::packed(const Vec3& origin) const noexcept {
+  PackedCone out{};
+  pack(a_.centre - origin, out.centre);
+  pack(a_.velocity, out.velocity);
+  out.radius = static_cast<float>(a_.radius);
+  out.cosine = 1.0F;
+  if (generator_ == 0.0) return out;
+  pack(axis_, out.axis);
+  out.sine = static_cast<float>(sine_);
+  out.cosine = static_cast<float>(cosine_);
+  out.per_generator = static_cast<float>(1.0 / generator_);
+  out.length = static_cast<float>((b_.centre - a_.centre).norm());
+  out.growth = static_cast<float>(b_.radius - a_.radius);
+  pack(b_.velocity - a_.velocity, out.change);
+  return out;
 }
 
 SphereTriangle::SphereTriangle(const CornerSphere& a, const CornerSphere& b,
@@ -147,6 +168,34 @@ SurfacePoint SphereTriangle::query(const Vec3& p) const noexcept {
     if (point.distance < nearest.distance) nearest = point;
   }
   return nearest;
+}
+
+PackedTriangle SphereTriangle::packed(const Vec3& origin) const noexcept {
+  PackedTriangle out{};
+  for (std::size_t e = 0; e < 3; ++e) out.edge[e] = edges_[e].packed(origin);
+  // a point that is told wrongly to fall on the face errs by the square of the slip over the
+  // radius; the slip of single precision grows as the triangle gets thinner, and that of leaving
+  // the faces out shrinks
+  const Vec3 e1 = b_.centre - a_.centre, e2 = c_.centre - a_.centre;
+  constexpr double kThinnest = 1e-8;  // of the sine between two edges, squared
+  out.has_faces =
+      has_faces_ && e1.cross(e2).squaredNorm() > kThinnest * e1.squaredNorm() * e2.squaredNorm();
+  if (!out.has_faces) return out;
+  pack(a_.centre - origin, out.centre);
+  pack(a_.velocity, out.velocity);
+  out.radius = static_cast<float>(a_.radius);
+  pack(plane_normal_, out.plane);
+  // what the two faces share, and what is of opposite sign
+  const Face &above = faces_[0], &below = faces_[1];
+  pack(0.5 * (above.normal + below.normal), out.in_plane);
+  out.height = static_cast<float>(above.normal.dot(plane_normal_));
+  pack(0.5 * (above.weight_b + below.weight_b), out.dual_b);
+  pack(0.5 * (above.weight_c + below.weight_c), out.dual_c);
+  out.shear_b = static_cast<float>(-above.weight_b.dot(plane_normal_));
+  out.shear_c = static_cast<float>(-above.weight_c.dot(plane_normal_));
+  pack(b_.velocity - a_.velocity, out.change_b);
+  pack(c_.velocity - a_.velocity, out.change_c);
+  return out;
 }
 
 }  // namespace prostm

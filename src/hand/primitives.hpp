@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/geometry.hpp"
+#include "hand/packed_body.hpp"
 
 namespace prostm {
 
@@ -30,6 +31,7 @@ class RoundCone {
 
   double distance(const Vec3& p) const noexcept;
   SurfacePoint query(const Vec3& p) const noexcept;
+  PackedCone packed(const Vec3& origin) const noexcept;
   const Vec3& lower() const { return lower_; }  ///< of the bounding box [m]
   const Vec3& upper() const { return upper_; }
 
@@ -54,6 +56,9 @@ class SphereTriangle {
 
   double distance(const Vec3& p) const noexcept;
   SurfacePoint query(const Vec3& p) const noexcept;
+  /// A triangle too thin for single precision, thinner than 10⁻⁴ of its edges, is packed as its
+  /// edges.
+  PackedTriangle packed(const Vec3& origin) const noexcept;
   const Vec3& lower() const { return lower_; }  ///< of the bounding box [m]
   const Vec3& upper() const { return upper_; }
 
