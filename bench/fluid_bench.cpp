@@ -1,5 +1,5 @@
-/// What a step of the smoke costs with a moving hand in it, and how far its pressure on the hand is
-/// from a converged solve.
+/// What a moving hand on the grid and a step of the smoke with it cost, and how far its pressure on
+/// the hand is from a converged solve.
 ///
 /// usage: fluid_bench [--json FILE]
 
@@ -141,6 +141,31 @@ StepTimes step_times(int cells, int steps) {
   return {ours_ms.summary(), paper_ms.summary()};
 }
 
+/// The scripted hand on a 64³ grid step by step, alone or with a second one beside and above it.
+Summary raster_times(bool two) {
+  prostm::WorkerPool pool(kThreads);
+  const prostm::Fluid fluid(multigrid(64, 1), prostm::scene_from_name("four-plumes"), pool);
+  const auto source = prostm::make_scripted_hand({}, {});
+  prostm::HandRasteriser rasteriser(fluid.grid());
+  Distribution ms;
+  for (int t = 0; t < kWarmUp + kTimedSteps; ++t) {
+    prostm::HandFrame frame;
+    source->sample(kHandStart + kStep * t, frame);
+    to_device(prostm::default_tracker_pose(), frame);
+    if (two && !frame.hands.empty()) {
+      prostm::Hand other = frame.hands.front();
+      ++other.id;
+      for (prostm::Vec3& p : frame.hands.front().position) p.x() -= 0.08;
+      for (prostm::Vec3& p : other.position) p += prostm::Vec3(0.07, 0.0, 0.02);
+      frame.hands.push_back(other);
+    }
+    const prostm::StageTimer timer;
+    rasteriser.rasterise(frame, pool);
+    if (t >= kWarmUp) ms.add(1e3 * timer.seconds());
+  }
+  return ms.summary();
+}
+
 /// Bytes a second of y = a·x + z over arrays as large as the fluid's state at 64³.
 double triad_rate() {
   prostm::WorkerPool pool(kThreads);
@@ -170,6 +195,8 @@ std::vector<Row> measure() {
     rows.push_back(
         {"step " + size + " against its memory traffic", "ms", times.ours, "traffic alone", floor});
   }
+  rows.push_back({"raster 64^3, one hand", "ms", raster_times(false), "", 0.0});
+  rows.push_back({"raster 64^3, two hands", "ms", raster_times(true), "", 0.0});
   const Summary cold = accuracy(jacobi(64, false), "one-plume");
   rows.push_back({"hand pressure, 40 Jacobi sweeps cold", "%", cold, "", 0.0});
   rows.push_back({"hand pressure, 40 Jacobi sweeps warm", "%",

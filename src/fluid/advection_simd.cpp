@@ -57,27 +57,46 @@ HWY_INLINE V hat(V s, int t) {
   return hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0F), distance));
 }
 
-/// Values of kFields fields at the shifted places of row r of the tile; out + lane.
-template <int kFields>
-HWY_INLINE void interpolate_row(const PaddedGrid& grid, const Tile& tile, int r,
-                                const float* const* fields, float* const* out) {
+/// Weights of a row's lanes for each of the block's shifts along an axis.
+struct AxisWeights {
+  alignas(64) float at[kMaxTaps][kMaxLanes];
+};
+
+HWY_INLINE void set_weights(const Tile& tile, int r, int axis, AxisWeights& weights) {
   const D d;
-  const V sx = hn::Load(d, tile.shift[0][r]), sy = hn::Load(d, tile.shift[1][r]),
-          sz = hn::Load(d, tile.shift[2][r]);
+  const V s = hn::Load(d, tile.shift[axis][r]);
+  for (int t = tile.first[axis]; t <= tile.last[axis]; ++t)
+    hn::Store(hat(s, t), d, weights.at[t - tile.first[axis]]);
+}
+
+/// Σ over shifts along x of weight × value; kTaps of them, `taps` where kTaps is 0.
+template <int kTaps>
+HWY_INLINE V along_x(const AxisWeights& weights, const float* field, int taps) {
+  const D d;
+  V sum = hn::Mul(hn::Load(d, weights.at[0]), hn::LoadU(d, field));
+  for (int t = 1; t < (kTaps > 0 ? kTaps : taps); ++t)
+    sum = hn::MulAdd(hn::Load(d, weights.at[t]), hn::LoadU(d, field + t), sum);
+  return sum;
+}
+
+/// Values of kFields fields at the shifted places of row r of the tile; out + lane.
+template <int kFields, int kTaps>
+HWY_INLINE void sum_block(const PaddedGrid& grid, const Tile& tile, int r, const AxisWeights& wx,
+                          const AxisWeights& wy, const float* const* fields, float* const* out) {
+  const D d;
+  const V sz = hn::Load(d, tile.shift[2][r]);
   const Index own = grid.index(tile.i, tile.j + r, tile.k);
+  const int taps = tile.last[0] - tile.first[0] + 1;
   V sum0 = hn::Zero(d), sum1 = hn::Zero(d), sum2 = hn::Zero(d);
   for (int tz = tile.first[2]; tz <= tile.last[2]; ++tz) {
     const V wz = hat(sz, tz);
     for (int ty = tile.first[1]; ty <= tile.last[1]; ++ty) {
-      const V wyz = hn::Mul(wz, hat(sy, ty));
-      const Index o = own + tz * grid.plane() + ty * grid.row();
-      for (int tx = tile.first[0]; tx <= tile.last[0]; ++tx) {
-        const V w = hn::Mul(wyz, hat(sx, tx));
-        sum0 = hn::MulAdd(w, hn::LoadU(d, fields[0] + o + tx), sum0);
-        if constexpr (kFields == 3) {
-          sum1 = hn::MulAdd(w, hn::LoadU(d, fields[1] + o + tx), sum1);
-          sum2 = hn::MulAdd(w, hn::LoadU(d, fields[2] + o + tx), sum2);
-        }
+      const V w = hn::Mul(wz, hn::Load(d, wy.at[ty - tile.first[1]]));
+      const Index o = own + tz * grid.plane() + ty * grid.row() + tile.first[0];
+      sum0 = hn::MulAdd(w, along_x<kTaps>(wx, fields[0] + o, taps), sum0);
+      if constexpr (kFields == 3) {
+        sum1 = hn::MulAdd(w, along_x<kTaps>(wx, fields[1] + o, taps), sum1);
+        sum2 = hn::MulAdd(w, along_x<kTaps>(wx, fields[2] + o, taps), sum2);
       }
     }
   }
@@ -85,6 +104,23 @@ HWY_INLINE void interpolate_row(const PaddedGrid& grid, const Tile& tile, int r,
   if constexpr (kFields == 3) {
     hn::StoreU(sum1, d, out[1] + own);
     hn::StoreU(sum2, d, out[2] + own);
+  }
+}
+
+/// The block with the number of shifts along x known to the compiler where it is a common one.
+template <int kFields>
+HWY_INLINE void interpolate_row(const PaddedGrid& grid, const Tile& tile, int r,
+                                const float* const* fields, float* const* out) {
+  AxisWeights wx, wy;
+  set_weights(tile, r, 0, wx);
+  set_weights(tile, r, 1, wy);
+  switch (tile.last[0] - tile.first[0] + 1) {
+    case 2:
+      return sum_block<kFields, 2>(grid, tile, r, wx, wy, fields, out);
+    case 3:
+      return sum_block<kFields, 3>(grid, tile, r, wx, wy, fields, out);
+    default:
+      return sum_block<kFields, 0>(grid, tile, r, wx, wy, fields, out);
   }
 }
 
@@ -211,7 +247,8 @@ void sample(const PaddedGrid& grid, const Placement& place, const float* const d
 
 const AdvectionKernels& fast_advection_kernels() {
   static constexpr AdvectionKernels kernels{trace, sample};
-  const bool vectors = (hwy::SupportedTargets() & ~(HWY_SCALAR | HWY_EMU128)) != 0;
+  // asked once: the question is dear in a virtual machine
+  static const bool vectors = (hwy::SupportedTargets() & ~(HWY_SCALAR | HWY_EMU128)) != 0;
   return vectors ? kernels : scalar_advection_kernels();
 }
 

@@ -37,9 +37,8 @@ HWY_INLINE V set(float value) {
 
 /// The corners from `first` on, one a lane.
 HWY_INLINE Points corners_from(const CubeCorners& corners, std::size_t first) {
-  alignas(32) static constexpr float kSide[3][8] = {{-1, 1, -1, 1, -1, 1, -1, 1},
-                                                    {-1, -1, 1, 1, -1, -1, 1, 1},
-                                                    {-1, -1, -1, -1, 1, 1, 1, 1}};
+  alignas(32) static constexpr float kSide[3][8] = {
+      {-1, 1, -1, 1, -1, 1, -1, 1}, {-1, -1, 1, 1, -1, -1, 1, 1}, {-1, -1, -1, -1, 1, 1, 1, 1}};
   const D d;
   const V half = set(corners.half);
   return {hn::MulAdd(hn::Load(d, kSide[0] + first), half, set(corners.centre[0])),
@@ -79,8 +78,8 @@ HWY_INLINE Answer ask(const PackedCone& cone, const Points& p) {
   const Points off = plus(from, hn::Neg(along), cone.axis);
   const V across_squared =
       hn::MulAdd(off.z, off.z, hn::MulAdd(off.y, off.y, hn::Mul(off.x, off.x)));
-  const V k = hn::NegMulAdd(set(cone.sine), hn::Sqrt(across_squared),
-                            hn::Mul(set(cone.cosine), along));
+  const V k =
+      hn::NegMulAdd(set(cone.sine), hn::Sqrt(across_squared), hn::Mul(set(cone.cosine), along));
   const V u = hn::Min(hn::Max(hn::Mul(k, set(cone.per_generator)), hn::Zero(d)), set(1.0F));
   const V rest = hn::NegMulAdd(u, set(cone.length), along);
   const V radius = hn::MulAdd(u, set(cone.growth), set(cone.radius));

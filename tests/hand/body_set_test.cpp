@@ -1,12 +1,12 @@
 #include "hand/body_set.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <hwy/highway.h>
 
 #include "core/random.hpp"
 
@@ -34,11 +34,12 @@ std::array<CornerSphere, 3> corners_of_kind(int kind, Random& random) {
       b.radius = c.radius = a.radius;
       break;
     case 2:  // one sphere in another
-      b.centre = a.centre + random.uniform(0.0, 0.9) * std::abs(a.radius - b.radius) * ab.normalized();
+      b.centre =
+          a.centre + random.uniform(0.0, 0.9) * std::abs(a.radius - b.radius) * ab.normalized();
       break;
     case 3:  // one sphere touching another from within, or nearly so
-      b.centre = a.centre +
-                 (1.0 + random.uniform(-1e-6, 1e-6)) * std::abs(a.radius - b.radius) * ab.normalized();
+      b.centre = a.centre + (1.0 + random.uniform(-1e-6, 1e-6)) * std::abs(a.radius - b.radius) *
+                                ab.normalized();
       break;
     case 4:  // corners in line
       c.centre = a.centre + u * ab;
@@ -222,8 +223,8 @@ TEST(BodyKernels, CullingKeepsEveryBodyThatIsNearestSomewhere) {
       }
       for (int i = 0; i < 200; ++i) {
         const unsigned c = static_cast<unsigned>(i) % 8;
-        const Vec3 p = point(cube, c) +
-                       random.uniform(0.0, reach) * random_vector(random, 1.0).normalized();
+        const Vec3 p =
+            point(cube, c) + random.uniform(0.0, reach) * random_vector(random, 1.0).normalized();
         std::size_t best = 0;
         for (std::size_t b = 1; b < bodies.set.size(); ++b) {
           if (bodies.distance(b, p) < bodies.distance(best, p)) best = b;
@@ -250,8 +251,8 @@ TEST(BodyKernels, PlainVelocitiesAreTheBodiesOwn) {
   for (unsigned c = 0; c < 8; ++c) {
     const BodySet::Body& body = bodies.set[static_cast<std::size_t>(nearest.body[c])];
     const Vec3 p = point(cube, c);
-    Vec3 expected = body.cone != nullptr ? body.cone->query(p).velocity
-                                         : body.triangle->query(p).velocity;
+    Vec3 expected =
+        body.cone != nullptr ? body.cone->query(p).velocity : body.triangle->query(p).velocity;
     if (c == 1) expected.setZero();  // not asked for
     for (std::size_t a = 0; a < 3; ++a)
       EXPECT_NEAR(static_cast<double>(v[a][c]), expected[static_cast<int>(a)], 1e-6);
