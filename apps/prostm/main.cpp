@@ -46,7 +46,7 @@ void add_common(CLI::App& command, CommonOptions& o) {
                      "settings of any stage, a TOML file (docs/files.md)");
   command.add_option("--json", o.json, "write the result as JSON; - is standard output");
   command.add_option("--seed", o.seed, "of everything that is drawn at random");
-  command.add_option("--preset", o.preset, "paper, or paper-valid (default)");
+  command.add_option("--preset", o.preset, "best, fast, paper, or paper-valid (default)");
   command.add_option("--paths", o.paths, "focal points, 1 to 8");
   refuse_unbuilt(command, "--budget-ms", "time for a plan");
   only(command, "--method", "pro-stm", "am", "how the field is rendered");

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "emit/lifted_plan.hpp"
+#include "plan/lifted_plan.hpp"
 
 namespace prostm {
 

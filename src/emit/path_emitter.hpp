@@ -7,7 +7,7 @@
 
 #include "core/settings.hpp"
 #include "emit/focus_sample.hpp"
-#include "emit/lifted_plan.hpp"
+#include "plan/lifted_plan.hpp"
 
 namespace prostm {
 

@@ -6,6 +6,7 @@
 
 #include "core/stage_timer.hpp"
 #include "plan/clustering.hpp"
+#include "plan/fit_planner.hpp"
 #include "plan/refine.hpp"
 #include "plan/settings_check.hpp"
 #include "plan/tours.hpp"
@@ -79,10 +80,14 @@ struct Planner::Scratch {
         kmeans(cells),
         refiner(CostSettings(s), s.paths, s.samples, s.refine_iterations) {
     x.reserve(static_cast<std::size_t>(s.paths) * static_cast<std::size_t>(s.samples));
+    if (preset == Preset::Best || preset == Preset::Fast) {
+      for (int patch = 0; patch < kMaxPatches; ++patch) fits.emplace_back(s, preset, cells);
+    }
   }
 
   /// Appends at most `paths` paths for one patch to `plan` and adds to `stats` (all but the total).
-  PlanStatus plan_patch(const TargetField& target, int patch, int paths, Plan& plan,
+  /// @param continues whether the patch's last plan is a candidate.
+  PlanStatus plan_patch(const TargetField& target, int patch, int paths, bool continues, Plan& plan,
                         PlanStats& stats, PlanTrace* trace);
   void collect_points(const TargetField& target, double maximum);
   void initial_paths(int paths, PlanStats& stats, StageTimer& timer, const Vec2& origin,
@@ -98,6 +103,7 @@ struct Planner::Scratch {
   Clusters clusters;
   DistanceTable distance;
   Refiner refiner;
+  std::vector<FitPlanner> fits;  // of each patch, for the presets best and fast
   std::vector<Vec2>
       x;  // samples of the paths, one path after the other, heaviest first [mm from the origin]
 };
@@ -182,12 +188,19 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
   }
 }
 
-PlanStatus Planner::Scratch::plan_patch(const TargetField& target, int patch, int paths, Plan& plan,
-                                        PlanStats& stats, PlanTrace* trace) {
+PlanStatus Planner::Scratch::plan_patch(const TargetField& target, int patch, int paths,
+                                        bool continues, Plan& plan, PlanStats& stats,
+                                        PlanTrace* trace) {
   StageTimer timer;
   const double maximum = checked_maximum(target, max_cells);
   if (maximum < 0.0) return PlanStatus::InvalidTarget;
   if (maximum == 0.0) return PlanStatus::EmptyTarget;
+  if (!fits.empty()) {
+    if (trace != nullptr) *trace = {};
+    fits[static_cast<std::size_t>(patch)].plan_patch(target, maximum, patch, paths, continues, plan,
+                                                     stats);
+    return PlanStatus::Planned;
+  }
   collect_points(target, maximum);
   stats.init += timer.lap();
 
@@ -229,7 +242,7 @@ PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats
   plan.paths.clear();
   stats = {};
   const PlanStatus status =
-      scratch_->plan_patch(target, 0, scratch_->settings.paths, plan, stats, trace);
+      scratch_->plan_patch(target, 0, scratch_->settings.paths, false, plan, stats, trace);
   stats.total = timer.seconds();
   return status;
 }
@@ -248,10 +261,15 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
   const std::array<int, kMaxPatches> share = share_paths(pressure, scratch_->settings.paths);
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
     if (share[i] == 0) continue;
-    scratch_->plan_patch(frame.patches[i], static_cast<int>(i), share[i], plan, stats, nullptr);
+    scratch_->plan_patch(frame.patches[i], static_cast<int>(i), share[i], true, plan, stats,
+                         nullptr);
   }
   stats.total = timer.seconds();
   return plan.paths.empty() ? PlanStatus::EmptyTarget : PlanStatus::Planned;
+}
+
+void Planner::reset() noexcept {
+  for (FitPlanner& fit : scratch_->fits) fit.reset();
 }
 
 }  // namespace prostm

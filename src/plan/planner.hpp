@@ -14,10 +14,11 @@
 namespace prostm {
 
 /// `paper`: the paper, exact; its violations of length and crossing are reported. `paper-valid`:
-/// the same, then made valid.
-enum class Preset : std::uint8_t { Paper, PaperValid };
+/// the same, then made valid. `best`: the paths whose field is nearest to the target, always valid.
+/// `fast`: one short search of the same kind.
+enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast };
 
-/// @throws std::invalid_argument with a sentence for a name that is unknown or not built yet.
+/// @throws std::invalid_argument with a sentence for a name that is unknown.
 Preset preset_from_name(const std::string& name);
 std::string to_string(Preset preset);
 
@@ -40,6 +41,15 @@ struct PlanSettings {
   int lloyd_iterations = 100;  ///< at most
   int refine_iterations = 200;  ///< gradient steps at most
   int seed = 1;                 ///< of the clustering
+  // presets best and fast
+  double least_length = 0.035;   ///< of a path [m]
+  double fit_coverage = 0.1;     ///< weight of pressure that no path reaches, (P13)
+  double fit_bending = 0.1;      ///< weight of bending, (P16)
+  double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
+  int fit_starts = 4;            ///< sets of paths laid anew, of a plan without one before
+  int fit_kicks = 20;            ///< tries to lay one or two paths anew
+  double budget = 0.0;  ///< time after which `best` tries nothing more [s]; 0: only the counts
+                        ///< bind, and the same input gives the same plan
 
   void visit(SettingsVisitor& v);
 };
@@ -70,8 +80,8 @@ struct PlanTrace {
   std::vector<std::vector<int>> split;  ///< (d) the kept tours, indices of clusters
 };
 
-/// Plans the paths of one target. Deterministic: the same settings and target give the same plan to
-/// the bit.
+/// Plans the paths of one target. Deterministic: the same settings and targets give the same plans
+/// to the bit, unless a budget is set.
 class Planner {
  public:
   /// @param max_cells the largest raster that plan() will be given.
@@ -91,8 +101,12 @@ class Planner {
   /// Paths for every patch of a frame: settings.paths are shared out in proportion to Σ p*
   /// (d'Hondt), at least one to each patch that has pressure (with one path in all, to the
   /// strongest), and no path spans two patches. One invalid patch makes the frame invalid. Stage
-  /// times and counts are summed over patches.
+  /// times and counts are summed over patches. The presets best and fast continue from the paths of
+  /// the frame before, patch by patch.
   PlanStatus plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept;
+
+  /// Forgets the frame before.
+  void reset() noexcept;
 
  private:
   struct Scratch;

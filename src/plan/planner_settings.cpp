@@ -11,15 +11,24 @@ namespace prostm {
 Preset preset_from_name(const std::string& name) {
   if (name == "paper") return Preset::Paper;
   if (name == "paper-valid") return Preset::PaperValid;
-  if (name == "best" || name == "fast") {
-    throw std::invalid_argument("preset '" + name +
-                                "' is not built yet: it must be paper or paper-valid");
-  }
-  throw std::invalid_argument("preset '" + name + "' is unknown: it must be paper or paper-valid");
+  if (name == "best") return Preset::Best;
+  if (name == "fast") return Preset::Fast;
+  throw std::invalid_argument("preset '" + name +
+                              "' is unknown: it must be best, fast, paper or paper-valid");
 }
 
 std::string to_string(Preset preset) {
-  return preset == Preset::Paper ? "paper" : "paper-valid";
+  switch (preset) {
+    case Preset::Paper:
+      return "paper";
+    case Preset::PaperValid:
+      return "paper-valid";
+    case Preset::Best:
+      return "best";
+    case Preset::Fast:
+      break;
+  }
+  return "fast";
 }
 
 void PlanSettings::visit(SettingsVisitor& v) {
@@ -39,6 +48,13 @@ void PlanSettings::visit(SettingsVisitor& v) {
   v.field("lloyd_iterations", lloyd_iterations);
   v.field("refine_iterations", refine_iterations);
   v.field("seed", seed);
+  v.field("least_length", least_length);
+  v.field("fit_coverage", fit_coverage);
+  v.field("fit_bending", fit_bending);
+  v.field("fit_hysteresis", fit_hysteresis);
+  v.field("fit_starts", fit_starts);
+  v.field("fit_kicks", fit_kicks);
+  v.field("budget", budget);
 }
 
 namespace planning {
@@ -59,6 +75,13 @@ void check_settings(const PlanSettings& s) {
   require_between("weak_pressure", s.weak_pressure, 0.0001, 1.0);
   require_between("lloyd_iterations", s.lloyd_iterations, 1, 10000);
   require_between("refine_iterations", s.refine_iterations, 0, 100000);
+  require_between("least_length", s.least_length, 0.005, 1.0, "m");
+  require_between("fit_coverage", s.fit_coverage, 0.0, 100.0);
+  require_between("fit_bending", s.fit_bending, 0.0, 1000.0);
+  require_between("fit_hysteresis", s.fit_hysteresis, 0.0, 1.0);
+  require_between("fit_starts", s.fit_starts, 1, 10000);
+  require_between("fit_kicks", s.fit_kicks, 0, 100000);
+  require_between("budget", s.budget, 0.0, 60.0, "s");
 }
 
 }  // namespace planning

@@ -129,7 +129,6 @@ def test_bad_recordings(refuses, tmp_path, fault):
         (["run", "--seconds", "9", "--figure-at", "nan", "--figure", "f.png"], ["--figure-at", "nan"]),
         (["run", "--grid", "63"], ["63"]),
         (["run", "--paths", "9"], ["9"]),
-        (["run", "--preset", "best"], ["not built yet"]),
         (["run", "--preset", "worst"], ["worst"]),
         (["run", "--seconds", "ten"], ["ten"]),
         (["run", "--realtime", "--stepped"], []),

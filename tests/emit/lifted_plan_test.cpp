@@ -1,4 +1,4 @@
-#include "emit/lifted_plan.hpp"
+#include "plan/lifted_plan.hpp"
 
 #include <gtest/gtest.h>
 

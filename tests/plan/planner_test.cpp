@@ -67,7 +67,7 @@ TEST(Planner, SameInputGivesTheSamePlanToTheBit) {
 }
 
 TEST(Planner, APressureScaleOfAPowerOfTwoScalesThePressuresAlone) {
-  for (const char* name : {"paper", "paper-valid"}) {
+  for (const char* name : {"paper", "paper-valid", "best", "fast"}) {
     Planner planner(preset(name), fields::kCells * fields::kCells);
     for (const Pattern pattern : fields::kPatterns) {
       TargetField field = fields::make(pattern, 5);
@@ -82,7 +82,7 @@ TEST(Planner, APressureScaleOfAPowerOfTwoScalesThePressuresAlone) {
 }
 
 TEST(Planner, AllocatesNothing) {
-  for (const char* name : {"paper", "paper-valid"}) {
+  for (const char* name : {"paper", "paper-valid", "best", "fast"}) {
     Planner planner(preset(name), fields::kCells * fields::kCells);
     TargetFrame frame;
     frame.patches.push_back(fields::make(Pattern::OnePlume, 1));
@@ -213,9 +213,8 @@ TEST(Planner, SettingsThatAreOutOfBoundsAreNamed) {
   settings = {};
   settings.gain = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(message(settings).find("gain = "), std::string::npos);
-  EXPECT_THROW(preset_from_name("best"), std::invalid_argument);
   EXPECT_THROW(preset_from_name("worst"), std::invalid_argument);
-  for (const Preset p : {Preset::Paper, Preset::PaperValid})
+  for (const Preset p : {Preset::Paper, Preset::PaperValid, Preset::Best, Preset::Fast})
     EXPECT_EQ(preset_from_name(to_string(p)), p);
 }
 

@@ -38,6 +38,9 @@ struct LiftedPlan {
 /// `hand_time`, leaves `id`. @pre every `patch` is an index into frame.patches.
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
 
+/// Length on the skin of one path over `field`, as lift() makes it [m].
+double skin_length(const FocalPath& path, const TargetField& field) noexcept;
+
 /// Computes `s` and `length` from the points. @pre p_D.size() == pressure.size(), coordinates
 /// finite.
 void measure(LiftedPath& path) noexcept;

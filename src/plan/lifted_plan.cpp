@@ -1,4 +1,4 @@
-#include "emit/lifted_plan.hpp"
+#include "plan/lifted_plan.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -96,6 +96,12 @@ void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept 
     out.paths.emplace_back();
     lift_path(path, frame.patches[patch], out.paths.back());
   }
+}
+
+double skin_length(const FocalPath& path, const TargetField& field) noexcept {
+  LiftedPath lifted;
+  lift_path(path, field, lifted);
+  return lifted.length;
 }
 
 void measure(LiftedPath& path) noexcept {

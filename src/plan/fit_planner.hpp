@@ -1,0 +1,44 @@
+#pragma once
+/// Planning by reconstruction: the presets `fast` and `best` for one patch.
+
+#include <array>
+#include <boost/container/static_vector.hpp>
+
+#include "plan/planner.hpp"
+#include "plan/search.hpp"
+#include "plan/spacing.hpp"
+
+namespace prostm::planning {
+
+/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P16). Remembers the last
+/// plan, so that the next can start from it. Sized once; plan() allocates and throws nothing.
+class FitPlanner {
+ public:
+  FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells);
+
+  /// Forgets the last plan.
+  void reset() { has_previous_ = false; }
+  /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
+  /// @param continues whether the last plan is a candidate. @pre maximum > 0.
+  void plan_patch(const TargetField& target, double maximum, int patch, int paths, bool continues,
+                  Plan& plan, PlanStats& stats);
+
+ private:
+  const Loops* previous_loops(const TargetField& target, int paths);
+  boost::container::static_vector<int, kMaxPaths> by_pressure() const;
+  bool mend(const TargetField& target, PlanStats& stats);
+  void append(const TargetField& target, double maximum, int patch, Plan& plan, PlanStats& stats);
+  double skin_factor(const TargetField& target, int path);
+
+  PlanSettings settings_;
+  Search search_;
+  Fit fit_;
+  Loops previous_;  // of the last plan, in P [mm]
+  Loops shifted_;   // the same from the target's cell (0, 0)
+  bool has_previous_ = false;
+  // scratch
+  FocalPath flat_;
+  std::array<Vec2, kMaxLoopNodes> points_;
+};
+
+}  // namespace prostm::planning

@@ -1,0 +1,191 @@
+#include "plan/initial_loops.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace prostm::planning {
+namespace {
+
+constexpr int kRegionPasses = 6, kStopPasses = 4;  // of Lloyd's iteration
+constexpr float kRelaxation = 1.5F;  // centres overshoot their mean: fewer passes do the same
+
+}  // namespace
+
+InitialLoops::InitialLoops(std::size_t max_cells) {
+  for (std::vector<float>* v : {&x_, &y_, &pressure_, &weight_}) v->reserve(max_cells);
+  for (std::vector<float>& v : sorted_) v.resize(max_cells);
+  label_.reserve(max_cells);
+}
+
+void InitialLoops::set(const CellTiles& cells, float weak) {
+  set(cells, weak, {}, 0, 0);
+}
+void InitialLoops::set(const CellTiles& cells, float weak,
+                       const std::vector<ReconstructionScratch::TileFit>& fits, int lanes,
+                       std::uint32_t owners) {
+  x_.clear();
+  y_.clear();
+  pressure_.clear();
+  for (std::size_t t = 0; t < cells.tiles().size(); ++t) {
+    const CellTile& tile = cells.tiles()[t];
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (tile.weight[c] == 0.0F || tile.pressure[c] < weak) continue;
+      if (lanes > 0 && ((owners >> (fits[t].segment[c] % lanes)) & 1U) == 0) continue;
+      x_.push_back(tile.x[c]);
+      y_.push_back(tile.y[c]);
+      pressure_.push_back(tile.pressure[c]);
+    }
+  }
+  weight_.resize(x_.size());
+  label_.resize(x_.size());
+  exponent_ = 0.0;
+}
+
+void InitialLoops::weigh(double exponent) {
+  if (exponent == 1.0) {
+    weight_ = pressure_;
+  } else {
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      weight_[i] = std::pow(pressure_[i], static_cast<float>(exponent));
+    }
+  }
+}
+
+/// Lloyd's iteration from points at equal steps of the cumulative weight: fills centres_ and
+/// label_.
+void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
+  centres_.centre.clear();
+  centres_.mass.clear();
+  std::array<float, kMaxClusters> cx{}, cy{}, mass{}, sum_x{}, sum_y{};
+  const auto count = static_cast<std::size_t>(k);
+
+  float total = 0.0F;
+  for (std::size_t i = group.begin; i < group.end; ++i) total += weight_[i];
+  const float step = total / static_cast<float>(k);
+  float next = step * static_cast<float>(random.uniform()), passed = 0.0F;
+  std::size_t seeds = 0;
+  for (std::size_t i = group.begin; i < group.end && seeds < count; ++i) {
+    passed += weight_[i];
+    // of a run of heavy cells each is taken once
+    if (passed < next && group.end - i > count - seeds) continue;
+    cx[seeds] = x_[i];
+    cy[seeds] = y_[i];
+    ++seeds;
+    next += step;
+  }
+
+  for (int pass = 0; pass <= passes; ++pass) {
+    mass.fill(0.0F);
+    sum_x.fill(0.0F);
+    sum_y.fill(0.0F);
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      float least = std::numeric_limits<float>::max();
+      std::size_t nearest = 0;
+      for (std::size_t c = 0; c < count; ++c) {
+        const float dx = x_[i] - cx[c], dy = y_[i] - cy[c], distance2 = dx * dx + dy * dy;
+        if (distance2 < least) {
+          least = distance2;
+          nearest = c;
+        }
+      }
+      label_[i] = static_cast<std::uint8_t>(nearest);
+      mass[nearest] += weight_[i];
+      sum_x[nearest] += weight_[i] * x_[i];
+      sum_y[nearest] += weight_[i] * y_[i];
+    }
+    const float relaxation = pass < passes - 1 ? kRelaxation : 1.0F;
+    for (std::size_t c = 0; c < count; ++c) {
+      if (mass[c] == 0.0F) continue;
+      cx[c] += relaxation * (sum_x[c] / mass[c] - cx[c]);
+      cy[c] += relaxation * (sum_y[c] / mass[c] - cy[c]);
+    }
+  }
+  for (std::size_t c = 0; c < count; ++c) {
+    centres_.centre.push_back(Vec2(static_cast<double>(cx[c]), static_cast<double>(cy[c])));
+    centres_.mass.push_back(static_cast<double>(mass[c]));
+  }
+}
+
+/// Puts the cells in the order of their labels. @return one group for each label.
+void InitialLoops::sort_by_label(int k, std::array<Group, kMaxPaths>& groups) {
+  std::array<std::size_t, kMaxPaths + 1> start{};
+  for (const std::uint8_t label : label_) ++start[label + 1U];
+  for (std::size_t c = 0; c < static_cast<std::size_t>(k); ++c) {
+    start[c + 1] += start[c];
+    groups[c] = {start[c], start[c]};
+  }
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const std::size_t to = groups[label_[i]].end++;
+    sorted_[0][to] = x_[i];
+    sorted_[1][to] = y_[i];
+    sorted_[2][to] = pressure_[i];
+  }
+  const auto n = static_cast<std::ptrdiff_t>(x_.size());
+  std::copy_n(sorted_[0].begin(), n, x_.begin());
+  std::copy_n(sorted_[1].begin(), n, y_.begin());
+  std::copy_n(sorted_[2].begin(), n, pressure_.begin());
+}
+
+/// The shortest tour of centres_ found, without the stops that do not pay, as samples.
+void InitialLoops::tour(const StartSettings& settings, std::span<Vec2> samples) {
+  distance_.set(std::span<const Vec2>(centres_.centre.data(), centres_.centre.size()));
+  Tour order;
+  for (std::size_t c = 0; c < centres_.centre.size(); ++c) {
+    if (centres_.mass[c] > 0.0) order.push_back(static_cast<std::uint8_t>(c));
+  }
+  // from the nearest neighbour on
+  for (std::size_t i = 0; i + 2 < order.size(); ++i) {
+    std::size_t nearest = i + 1;
+    for (std::size_t j = i + 2; j < order.size(); ++j) {
+      if (distance_(order[i], order[j]) < distance_(order[i], order[nearest])) nearest = j;
+    }
+    std::swap(order[i + 1], order[nearest]);
+  }
+  two_opt(distance_, std::span<std::uint8_t>(order.data(), order.size()));
+
+  double length = tour_length(distance_, std::span<const std::uint8_t>(order.data(), order.size()));
+  while (length > settings.most_length && order.size() > 3) {
+    const std::size_t n = order.size();
+    std::size_t worst = 0;
+    double most = -1.0, saved = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t before = order[(i + n - 1) % n], after = order[(i + 1) % n];
+      const double saving =
+          distance_(before, order[i]) + distance_(order[i], after) - distance_(before, after);
+      if (saving / centres_.mass[order[i]] > most) {
+        most = saving / centres_.mass[order[i]];
+        worst = i;
+        saved = saving;
+      }
+    }
+    order.erase(order.begin() + static_cast<std::ptrdiff_t>(worst));
+    length -= saved;
+  }
+  resample_tour(centres_, std::span<const std::uint8_t>(order.data(), order.size()), samples);
+}
+
+void InitialLoops::make(const StartSettings& settings, int samples, Random& random, Loops& loops) {
+  weigh(settings.exponent);
+  const int regions = std::min(settings.paths, static_cast<int>(x_.size()));
+  std::array<Group, kMaxPaths> groups{};
+  cluster({0, x_.size()}, regions, kRegionPasses, random);
+  sort_by_label(regions, groups);
+  const auto last = std::remove_if(groups.begin(), groups.begin() + regions,
+                                   [](const Group& g) { return g.begin == g.end; });
+  weigh(settings.exponent);
+
+  const auto paths = static_cast<int>(last - groups.begin());
+  loops.reset(samples, paths);
+  std::array<Vec2, kMaxPathPoints> storage;
+  const std::span<Vec2> points(storage.data(), static_cast<std::size_t>(samples));
+  for (int k = 0; k < paths; ++k) {
+    const Group group = groups[static_cast<std::size_t>(k)];
+    cluster(group, std::min(settings.stops, static_cast<int>(group.end - group.begin)), kStopPasses,
+            random);
+    tour(settings, points);
+    for (int i = 0; i < samples; ++i) loops.set_point(i, k, points[static_cast<std::size_t>(i)]);
+  }
+}
+
+}  // namespace prostm::planning

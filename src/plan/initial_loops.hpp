@@ -1,0 +1,62 @@
+#pragma once
+/// Paths to start from: the plane is shared out among them jointly, and each tours its own region.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/random.hpp"
+#include "plan/cell_tiles.hpp"
+#include "plan/clustering.hpp"
+#include "plan/loops.hpp"
+#include "plan/reconstruction.hpp"
+#include "plan/tours.hpp"
+
+namespace prostm::planning {
+
+/// How one start differs from another.
+struct StartSettings {
+  int paths = 4;
+  int stops = 12;            ///< clusters that each path tours, at most
+  double exponent = 1.0;     ///< clusters are weighted with p* to this power
+  double most_length = 140;  ///< of a tour [mm]
+  double least_length = 35;  ///< [mm]
+};
+
+/// Weighted k-means twice: the cells with pressure into one region for each path, each region into
+/// stops. A tour of the stops (2-opt) that is too long leaves out those that cost most length for
+/// their mass. Sized once; make() allocates nothing.
+class InitialLoops {
+ public:
+  explicit InitialLoops(std::size_t max_cells);
+
+  /// Takes over the cells with at least `weak` of the maximum.
+  void set(const CellTiles& cells, float weak);
+  /// Of those only the cells whose closest path is in the set `owners` (a bit each).
+  void set(const CellTiles& cells, float weak,
+           const std::vector<ReconstructionScratch::TileFit>& fits, int lanes,
+           std::uint32_t owners);
+  /// Cells with pressure.
+  std::size_t size() const { return x_.size(); }
+
+  /// Fills `loops`: as many paths as asked, or one for each cell if there are fewer.
+  /// @pre size() > 0.
+  void make(const StartSettings& settings, int samples, Random& random, Loops& loops);
+
+ private:
+  struct Group {
+    std::size_t begin, end;
+  };
+  void weigh(double exponent);
+  void cluster(Group group, int k, int passes, Random& random);
+  void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
+  void tour(const StartSettings& settings, std::span<Vec2> samples);
+
+  std::vector<float> x_, y_, pressure_, weight_, sorted_[3];
+  std::vector<std::uint8_t> label_;
+  Clusters centres_;
+  DistanceTable distance_;
+  double exponent_ = 0.0;
+};
+
+}  // namespace prostm::planning

@@ -1,0 +1,142 @@
+#include "plan/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace prostm::planning {
+namespace {
+
+constexpr float kFelt = 0.2F;   // share of the maximum from which a cell asks for paths
+constexpr double kWidth = 1.5;  // of a path in σ: how much area a path of full length serves
+constexpr int kFewestStops = 9, kMoreStops = 6;
+
+Vec2 centroid(const Loops& loops, int path) {
+  Vec2 sum = Vec2::Zero();
+  for (int i = 0; i < loops.samples; ++i) sum += loops.point(i, path);
+  return sum / loops.samples;
+}
+
+/// A path other than `first`, more likely a near one; `first` itself where it is alone.
+int draw_neighbour(const Loops& loops, int first, Random& random) {
+  const Vec2 from = centroid(loops, first);
+  int chosen = first;
+  double least = std::numeric_limits<double>::max();
+  for (int k = 0; k < loops.paths; ++k) {
+    const double distance = (centroid(loops, k) - from).norm() * random.uniform(0.5, 1.0);
+    if (k == first || distance >= least) continue;
+    least = distance;
+    chosen = k;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Search::Search(std::size_t max_cells, const FitSettings& fit, const SearchSettings& settings)
+    : settings_(settings),
+      coarse_(max_cells),
+      fine_(max_cells),
+      initial_(std::min(max_cells, 8 * CellTiles::kMaxTiles)),
+      descent_(std::min(max_cells, CellTiles::kMaxTiles), settings.samples, fit),
+      random_(settings.seed) {}
+
+void Search::set_target(const TargetField& target, double maximum) {
+  timer_.restart();
+  coarse_.set(target, maximum, settings_.coarse_width);
+  fine_.set(target, maximum, settings_.fine_width);
+  reserve_ = 0.75 * settings_.budget;
+}
+
+StartSettings Search::draw_start(int paths) {
+  StartSettings start;
+  start.paths = paths;
+  start.stops = kFewestStops + random_.below(kMoreStops);
+  start.exponent = random_.below(2) == 0 ? 1.0 : 0.5;
+  start.most_length = static_cast<double>(descent_.settings().shape.most_length[0]);
+  return start;
+}
+
+/// Paths that the area with pressure asks for; more would chase the same small contact.
+int Search::needed_paths(int paths) const {
+  double area = 0.0;
+  for (const CellTile& tile : coarse_.tiles()) {
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (tile.pressure[c] >= kFelt) area += static_cast<double>(tile.weight[c] * kUnitArea);
+    }
+  }
+  const FitSettings& fit = descent_.settings();
+  const double served = kWidth * static_cast<double>(fit.reconstruction.sigma) *
+                        static_cast<double>(fit.shape.most_length[0]);
+  return std::clamp(static_cast<int>(std::ceil(area / served)), 1, paths);
+}
+
+int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
+  int used = 0;
+  const int needed = needed_paths(paths);
+  initial_.set(coarse_, static_cast<float>(settings_.weak));
+  if (initial_.size() == 0) initial_.set(coarse_, 0.0F);
+  for (int start = 0; start < starts && (start == 0 || !is_over()); ++start) {
+    const int count = paths - start % (paths - needed + 1);
+    initial_.make(draw_start(count), settings_.samples, random_, trial_.loops);
+    used += descent_.run(coarse_, trial_, settings_.start_evaluations);
+    if (trial_.cost < best.cost - hysteresis) {
+      best = trial_;
+      hysteresis = 0.0F;
+    }
+  }
+  return used;
+}
+
+int Search::try_kicks(Fit& best) {
+  int used = 0;
+  for (int kick = 0; kick < settings_.kicks && !is_over(); ++kick) {
+    const int first = random_.below(best.loops.paths);
+    const int second = random_.below(3) == 0 ? first : draw_neighbour(best.loops, first, random_);
+    const int count = first == second ? 1 : 2;
+
+    // lay them anew over the cells that are nearest to them
+    descent_.evaluate(coarse_, best);
+    ++used;
+    const std::uint32_t owners =
+        (1U << static_cast<unsigned>(first)) | (1U << static_cast<unsigned>(second));
+    initial_.set(coarse_, static_cast<float>(settings_.weak), descent_.fits(), best.loops.lanes,
+                 owners);
+    if (initial_.size() == 0) continue;
+    initial_.make(draw_start(count), settings_.samples, random_, laid_);
+    if (laid_.paths < count) continue;
+    trial_ = best;
+    for (int i = 0; i < best.loops.samples; ++i) {
+      trial_.loops.set_point(i, first, laid_.point(i, 0));
+      if (count == 2) trial_.loops.set_point(i, second, laid_.point(i, 1));
+    }
+    used += descent_.run(coarse_, trial_, settings_.kick_evaluations);
+    if (trial_.cost < best.cost) best = trial_;
+  }
+  return used;
+}
+
+int Search::run(int paths, const Loops* previous, Fit& best) {
+  int used = 0;
+  if (previous == nullptr) {
+    random_ = Random(settings_.seed);
+    best.cost = std::numeric_limits<float>::max();
+    used += try_starts(paths, settings_.starts, 0.0F, best);
+  } else {
+    best.loops = *previous;
+    used += descent_.run(coarse_, best, settings_.warm_evaluations);
+    const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
+    used += try_starts(paths, settings_.warm_starts, margin, best);
+  }
+  return used + try_kicks(best);
+}
+
+int Search::finish(const std::array<float, kMaxPaths>& most_length, Fit& fit) {
+  const std::array<float, kMaxPaths> unbound = descent_.settings().shape.most_length;
+  descent_.settings().shape.most_length = most_length;
+  const int used = descent_.run(fine_, fit, settings_.final_evaluations);
+  descent_.settings().shape.most_length = unbound;
+  return used;
+}
+
+}  // namespace prostm::planning

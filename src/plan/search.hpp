@@ -1,0 +1,67 @@
+#pragma once
+/// The search behind the presets `fast` and `best`: starts, descent, and kicks that lay one or two
+/// paths anew.
+
+#include <cstdint>
+
+#include "core/random.hpp"
+#include "core/stage_timer.hpp"
+#include "plan/cell_tiles.hpp"
+#include "plan/descent.hpp"
+#include "plan/initial_loops.hpp"
+
+namespace prostm::planning {
+
+/// What a search may cost, in evaluations of the error and its gradient.
+struct SearchSettings {
+  int samples = 20;            ///< of each path
+  int starts = 4;              ///< laid anew when there is no plan before
+  int start_evaluations = 30;  ///< of each start
+  int kicks = 20;              ///< tries to lay one or two paths anew
+  int kick_evaluations = 25;   ///< of each kick
+  int warm_starts = 1;         ///< laid anew beside a plan before
+  int warm_evaluations = 20;   ///< of the plan before on the new target
+  int final_evaluations = 30;  ///< of the winner, on the fine cells
+  double hysteresis = 0.03;    ///< by which a new start must be cheaper than the plan before
+  double coarse_width = 4.0;   ///< of the cells that starts and kicks are tried on [mm]
+  double fine_width = 2.0;     ///< of the cells that the winner is finished on [mm]
+  double weak = 0.01;          ///< cells below are not toured, over the maximum
+  double budget = 0.0;         ///< no more starts or kicks after this [s]; 0: only the counts bind
+  std::uint64_t seed = 1;
+};
+
+/// Sized once; run() allocates nothing.
+class Search {
+ public:
+  Search(std::size_t max_cells, const FitSettings& fit, const SearchSettings& settings);
+
+  /// Begins a plan: takes over the target. @pre maximum > 0.
+  void set_target(const TargetField& target, double maximum);
+
+  /// Fits at most `paths` paths. @param previous the paths of the plan before, or null.
+  /// @return evaluations used.
+  int run(int paths, const Loops* previous, Fit& best);
+  /// Lowers the cost of `fit` further on the fine cells, under the given bounds of length [mm].
+  int finish(const std::array<float, kMaxPaths>& most_length, Fit& fit);
+  /// Solves the pressures at the places of `fit`, on the fine cells.
+  void solve(Fit& fit) { descent_.evaluate(fine_, fit); }
+
+ private:
+  StartSettings draw_start(int paths);
+  int needed_paths(int paths) const;
+  int try_starts(int paths, int starts, float hysteresis, Fit& best);
+  int try_kicks(Fit& best);
+  bool is_over() const { return settings_.budget > 0.0 && timer_.seconds() > reserve_; }
+
+  SearchSettings settings_;
+  CellTiles coarse_, fine_;
+  InitialLoops initial_;
+  Descent descent_;
+  Random random_;
+  Fit trial_;
+  Loops laid_;
+  StageTimer timer_;
+  double reserve_ = 0.0;  // when starts and kicks must end, so that the finish is in time [s]
+};
+
+}  // namespace prostm::planning

@@ -1,0 +1,334 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "fields/fields.hpp"
+#include "plan/descent.hpp"
+#include "plan/initial_loops.hpp"
+#include "plan/planner.hpp"
+#include "plan/spacing.hpp"
+#include "plan_checks.hpp"
+#include "random_fields.hpp"
+#include "score/score.hpp"
+#include "support/load.hpp"
+
+namespace prostm::planning {
+namespace {
+
+using fields::Pattern;
+
+constexpr std::size_t kCells = static_cast<std::size_t>(fields::kCells) * fields::kCells;
+
+FitSettings fit_settings() {
+  FitSettings settings;
+  settings.shape.most_length.fill(140.0F);
+  return settings;
+}
+
+/// Loops laid over a pattern, and the cells that they are to render.
+struct Case {
+  CellTiles cells{kCells};
+  Loops loops;
+
+  Case(Pattern pattern, int frame, int paths, int samples, std::uint64_t seed) {
+    const TargetField field = fields::make(pattern, frame);
+    cells.set(field, max_pressure(field), 4.0);
+    InitialLoops initial(kCells);
+    initial.set(cells, 0.01F);
+    Random random(seed);
+    StartSettings start;
+    start.paths = paths;
+    initial.make(start, samples, random, loops);
+  }
+};
+
+TEST(CellTiles, KeepTheMassTheAreaAndTheSkinOfTheTarget) {
+  for (const Pattern pattern : fields::kPatterns) {
+    const TargetField field = fields::make(pattern, 2);
+    const double maximum = max_pressure(field);
+    double mass = 0.0, area = 0.0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      mass += field.pressure[i] / maximum;
+      area += field.skin[i];
+    }
+    for (const double width : {2.0, 4.0, 6.0, 9.0}) {
+      CellTiles cells(kCells);
+      cells.set(field, maximum, width);
+      double tiled_mass = 0.0, tiled_area = 0.0;
+      for (const CellTile& tile : cells.tiles()) {
+        for (std::size_t c = 0; c < 8; ++c) {
+          tiled_area += static_cast<double>(tile.weight[c]);
+          tiled_mass += static_cast<double>(tile.weight[c] * tile.pressure[c]);
+          EXPECT_LE(std::hypot(tile.x[c] - tile.centre_x, tile.y[c] - tile.centre_y),
+                    tile.radius + 1e-3F);
+        }
+      }
+      EXPECT_NEAR(tiled_area, area, 1e-3 * area) << width;
+      EXPECT_NEAR(tiled_mass, mass, 1e-3 * mass) << width;
+    }
+  }
+}
+
+/// Whether a cell with weight has another closest segment in one than in the other.
+bool has_tie(const Case& c, const ReconstructionScratch& a, const ReconstructionScratch& b) {
+  for (std::size_t t = 0; t < c.cells.tiles().size(); ++t) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (c.cells.tiles()[t].weight[k] > 0.0F && a.fits[t].segment[k] != b.fits[t].segment[k]) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+TEST(Reconstruction, VectorKernelAgreesWithThePlainOne) {
+  const std::uint64_t count = test::reduced(400);
+  double worst = 0.0;
+  std::uint64_t ties = 0;
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    Random random(seed);
+    const Pattern pattern = fields::kPatterns[seed % fields::kPatterns.size()];
+    const Case c(pattern, static_cast<int>(seed % 100), 1 + static_cast<int>(seed % 8),
+                 8 + random.below(30), seed);
+    ReconstructionScratch plain_scratch(CellTiles::kMaxTiles), scratch(CellTiles::kMaxTiles);
+    Reconstruction plain, vector;
+    reconstruct_plain(c.cells, c.loops, {}, plain_scratch, plain);
+    fast_reconstruct()(c.cells, c.loops, {}, scratch, vector);
+    ASSERT_NEAR(vector.error, plain.error, 1e-5F * plain.error) << seed;
+    // of two segments equally near to a cell either may be taken, and pressures follow
+    if (has_tie(c, plain_scratch, scratch)) {
+      ++ties;
+      continue;
+    }
+    for (int k = 0; k < c.loops.paths; ++k) {
+      for (int i = 0; i < c.loops.samples; ++i) {
+        const std::size_t a = c.loops.node(i, k);
+        worst = std::max(
+            {worst, std::abs(static_cast<double>(vector.gradient_x[a] - plain.gradient_x[a])),
+             std::abs(static_cast<double>(vector.gradient_y[a] - plain.gradient_y[a]))});
+        ASSERT_NEAR(vector.pressure[a], plain.pressure[a], 1e-4F) << seed;
+      }
+    }
+  }
+  EXPECT_LT(worst, 1e-4);
+  EXPECT_LT(ties, count / 4) << ties;
+}
+
+/// The cost has kinks where a cell changes its closest segment, so a few differences may be off.
+TEST(Descent, GradientAgreesWithCentralDifferences) {
+  int tried = 0, off = 0;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed), 4, 20,
+                 seed);
+    Descent descent(CellTiles::kMaxTiles, 20, fit_settings());
+    Fit fit;
+    fit.loops = c.loops;
+    descent.run(c.cells, fit, 10);
+    for (std::size_t a = 0; a < fit.loops.nodes(); a += 3) {
+      constexpr float kStep = 0.01F;
+      Fit up = fit, down = fit;
+      up.loops.x[a] += kStep;
+      down.loops.x[a] -= kStep;
+      descent.evaluate(c.cells, up);
+      descent.evaluate(c.cells, down);
+      const float difference = (up.cost - down.cost) / (2.0F * kStep);
+      ++tried;
+      if (std::abs(difference - fit.reconstruction.gradient_x[a]) >
+          0.02F * std::abs(difference) + 0.02F) {
+        ++off;
+      }
+    }
+  }
+  EXPECT_LT(off, tried / 10) << off << " of " << tried;
+}
+
+TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed),
+                 1 + static_cast<int>(seed % 8), 20, seed);
+    Descent descent(CellTiles::kMaxTiles, 20, fit_settings());
+    Fit fit;
+    fit.loops = c.loops;
+    descent.evaluate(c.cells, fit);
+    const float start = fit.cost;
+    float before = start;
+    for (const int evaluations : {1, 2, 7, 30}) {
+      EXPECT_LE(descent.run(c.cells, fit, evaluations), evaluations);
+      // pairs that were not listed before may add to the cost
+      EXPECT_LE(fit.cost, before * 1.001F + 1e-3F);
+      before = fit.cost;
+    }
+    EXPECT_LT(fit.cost, 0.9F * start);
+  }
+}
+
+TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {
+  // moving any pressure either way, within its bounds, does not lower the error
+  const Case c(Pattern::FourPlumes, 3, 4, 20, 5);
+  ReconstructionSettings settings;
+  settings.weight_coverage = 0.0F;
+  ReconstructionScratch scratch(CellTiles::kMaxTiles);
+  Reconstruction out;
+  reconstruct_plain(c.cells, c.loops, settings, scratch, out);
+  const auto error = [&](const NodeArray& pressure) {
+    double sum = 0.0;
+    for (std::size_t t = 0; t < c.cells.tiles().size(); ++t) {
+      const CellTile& tile = c.cells.tiles()[t];
+      for (std::size_t k = 0; k < 8; ++k) {
+        const auto& fit = scratch.fits[t];
+        const auto a = static_cast<std::size_t>(fit.segment[k]);
+        const std::size_t b = (a + 4) % c.loops.nodes();
+        const double p =
+            static_cast<double>((1.0F - fit.along[k]) * pressure[a] + fit.along[k] * pressure[b]);
+        const double residual =
+            static_cast<double>(fit.phi[k]) * p - static_cast<double>(tile.pressure[k]);
+        sum += static_cast<double>(tile.weight[k]) * residual * residual;
+      }
+    }
+    for (std::size_t a = 0; a < c.loops.nodes(); ++a) {
+      const auto change = static_cast<double>(pressure[(a + 4) % c.loops.nodes()] - pressure[a]);
+      sum += static_cast<double>(settings.smoothing) * change * change;
+    }
+    return sum;
+  };
+  const double least = error(out.pressure);
+  EXPECT_NEAR(least, static_cast<double>(out.error), 1e-4 * least);
+  for (std::size_t a = 0; a < c.loops.nodes(); ++a) {
+    for (const float change : {-0.02F, 0.02F}) {
+      NodeArray moved = out.pressure;
+      moved[a] = std::min(std::max(moved[a] + change, 0.0F), settings.most_pressure);
+      EXPECT_GE(error(moved), least * (1.0 - 1e-5));
+    }
+  }
+}
+
+PlanSettings preset(const std::string& name) {
+  PlanSettings settings;
+  settings.preset = name;
+  return settings;
+}
+
+SpacingRule stated_rule() {
+  SpacingRule rule;
+  rule.spacing = 0.9 * 8.6 - 1e-3;
+  rule.along = 2.0 * 8.6 + 1e-3;
+  return rule;
+}
+
+std::vector<Vec2> all_points(const Plan& plan) {
+  std::vector<Vec2> x;
+  for (const FocalPath& path : plan.paths) {
+    for (const Vec2& p : path.points) x.push_back(1e3 * p);
+  }
+  return x;
+}
+
+TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
+  constexpr int kMaxSide = 48;
+  const char* asked = std::getenv("PROSTM_RANDOM_FIELDS");
+  const std::uint64_t count =
+      asked != nullptr ? std::strtoull(asked, nullptr, 10) : test::reduced(4'000);
+  Planner fast(preset("fast"), kMaxSide * kMaxSide);
+  PlanSettings brief = preset("best");
+  brief.fit_starts = 2;
+  brief.fit_kicks = 1;
+  Planner best(brief, kMaxSide * kMaxSide);
+  std::uint64_t planned = 0;
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const test::RandomField input = test::random_field(random, kMaxSide);
+    Plan plan;
+    PlanStats stats;
+    Planner& planner = seed % 4 == 0 ? best : fast;
+    const PlanStatus status = planner.plan(input.field, plan, stats);
+    if (status != PlanStatus::Planned) {
+      ASSERT_TRUE(status == PlanStatus::InvalidTarget || max_pressure(input.field) == 0.0);
+      continue;
+    }
+    ++planned;
+    ASSERT_GE(plan.paths.size(), 1U);
+    ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, 20, 0.140));
+    ASSERT_EQ(count_near_pairs(all_points(plan), 20, stated_rule()), 0);
+    const double most = 1.4 * max_pressure(input.field) * (1.0 + 1e-6);
+    for (const FocalPath& path : plan.paths) {
+      for (const double p : path.pressure) ASSERT_LE(p, most);
+    }
+  }
+  RecordProperty("planned", std::to_string(planned));
+}
+
+TEST(FitPresets, BestRendersEveryPatternBetterThanPaperValid) {
+  Planner paper(preset("paper-valid"), kCells), best(preset("best"), kCells);
+  for (const Pattern pattern : fields::kPatterns) {
+    for (const int frame : {20, 60}) {
+      const TargetField field = fields::make(pattern, frame);
+      Plan theirs, ours;
+      PlanStats stats;
+      paper.plan(field, theirs, stats);
+      best.plan(field, ours, stats);
+      const Metrics a = score_plan(field, theirs, 0, 8.6e-3, 1.4);
+      const Metrics b = score_plan(field, ours, 0, 8.6e-3, 1.4);
+      EXPECT_LT(b.rmse, 0.9 * a.rmse) << fields::to_string(pattern) << frame;
+    }
+  }
+}
+
+TEST(FitPresets, ASmallContactGetsAShortLoopThatRendersIt) {
+  Planner best(preset("best"), kCells);
+  TargetField field;
+  field.resize(30, 30);
+  field.cell = 4e-3;
+  field.skin.assign(field.size(), 1);
+  test::touch(field, 15, 15, 1.0);
+  Plan plan;
+  PlanStats stats;
+  ASSERT_EQ(best.plan(field, plan, stats), PlanStatus::Planned);
+  EXPECT_EQ(plan.paths.size(), 1U);
+  EXPECT_LT(plan.paths[0].length, 0.05);
+  EXPECT_GT(plan.paths[0].length, 0.03);
+  EXPECT_GT(score_plan(field, plan, 0, 8.6e-3, 1.4).coverage, 0.99);
+}
+
+TEST(FitPresets, FramesContinueFromThePathsBefore) {
+  Planner planner(preset("best"), kCells);
+  TargetFrame frame;
+  frame.patches.push_back(fields::make(Pattern::OnePlume, 4));
+  Plan first, second;
+  PlanStats stats;
+  planner.plan(frame, first, stats);
+  planner.plan(frame, second, stats);
+  // the same target again: the paths stay where they are, or get better
+  const Metrics a = score_plan(frame.patches[0], first, 0, 8.6e-3, 1.4);
+  const Metrics b = score_plan(frame.patches[0], second, 0, 8.6e-3, 1.4);
+  EXPECT_LT(b.rmse, 1.03 * a.rmse);
+
+  // after a reset it is as new
+  planner.reset();
+  Plan again;
+  planner.plan(frame, again, stats);
+  ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(first, again, 1.0));
+}
+
+TEST(Spacing, PushesApartWhatIsTooNear) {
+  // two circles that overlap by half
+  SpacingRule rule = stated_rule();
+  rule.most_length.fill(140.0);
+  rule.least_length = 35.0;
+  std::vector<Vec2> x;
+  for (const double centre : {0.0, 12.0}) {
+    for (int i = 0; i < 20; ++i) {
+      const double angle = 2.0 * kPi * i / 20;
+      x.push_back(Vec2(centre, 0.0) + 12.0 * Vec2(std::cos(angle), std::sin(angle)));
+    }
+  }
+  ASSERT_GT(count_near_pairs(x, 20, rule), 0);
+  const int kept = make_spaced(x, 20, rule);
+  ASSERT_GE(kept, 1);
+  x.resize(static_cast<std::size_t>(kept) * 20);
+  EXPECT_EQ(count_near_pairs(x, 20, rule), 0);
+}
+
+}  // namespace
+}  // namespace prostm::planning
