@@ -125,7 +125,7 @@ def check_tree(root, layers=None):
     layers = LAYERS if layers is None else layers
     root = Path(root)
     lines = []
-    for top in ("src", "apps", "bench", "fuzz", "tests", "tools", "docs", "cmake"):
+    for top in ("src", "apps", "python", "bench", "fuzz", "tests", "tools", "docs", "cmake"):
         for file in sorted((root / top).rglob("*")):
             if not file.is_file() or "__pycache__" in file.parts:
                 continue

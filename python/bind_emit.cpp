@@ -1,0 +1,258 @@
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "core/require.hpp"
+#include "emit/path_emitter.hpp"
+#include "settings.hpp"
+
+namespace prostm::python {
+namespace {
+
+constexpr int kMostSamples = 100'000'000;  // of one call: 16 bytes for each and every focal point
+
+void check_patches(const Plan& plan, std::size_t patches) {
+  for (const FocalPath& path : plan.paths) {
+    if (static_cast<std::size_t>(path.patch) < patches) continue;
+    throw std::invalid_argument("a path lies on patch " + std::to_string(path.patch) +
+                                "; the target has " + std::to_string(patches));
+  }
+}
+
+std::unique_ptr<LiftedPlan> lift_on_frame(const Plan& plan, const TargetFrame& frame) {
+  check_patches(plan, frame.patches.size());
+  auto lifted = std::make_unique<LiftedPlan>();
+  const py::gil_scoped_release unlocked;
+  lift(plan, frame, *lifted);
+  return lifted;
+}
+
+std::unique_ptr<LiftedPlan> lift_on_field(const Plan& plan, const TargetField& field) {
+  TargetFrame frame;
+  frame.patches.push_back(field);
+  return lift_on_frame(plan, frame);
+}
+
+void bind_lifted(py::module_& m) {
+  py::class_<LiftedPath>(m, "LiftedPath",
+                         "A closed path on the skin, in the device's frame: a polygon in 3-D.")
+      .def_property_readonly(
+          "p_D",
+          [](const py::object& self) {
+            static_assert(sizeof(Vec3) == 3 * sizeof(double));
+            const auto& p = self.cast<const LiftedPath&>().p_D;
+            const double* data = p.empty() ? nullptr : p.data()->data();
+            return view({static_cast<py::ssize_t>(p.size()), 3}, data, self);
+          },
+          "(n, 3) points [m]; a view.")
+      .def_property_readonly(
+          "pressure",
+          [](const py::object& self) {
+            const auto& p = self.cast<const LiftedPath&>().pressure;
+            return view({static_cast<py::ssize_t>(p.size())}, p.data(), self);
+          },
+          "(n,) rendered pressure, in the target's unit; a view.")
+      .def_property_readonly(
+          "s",
+          [](const py::object& self) {
+            const auto& s = self.cast<const LiftedPath&>().s;
+            return view({static_cast<py::ssize_t>(s.size())}, s.data(), self);
+          },
+          "(n,) arc length of each point [m], s[0] = 0; a view.")
+      .def_readonly("length", &LiftedPath::length, "On the skin [m].")
+      .def_readonly("speed", &LiftedPath::speed, "Of the focal point [m/s].");
+
+  py::class_<LiftedPlan>(m, "LiftedPlan", "A plan on the skin, ready to be emitted; see lift().")
+      .def_property_readonly(
+          "paths",
+          [](const py::object& self) {
+            py::list paths;
+            for (const LiftedPath& path : self.cast<const LiftedPlan&>().paths) {
+              paths.append(py::cast(&path, py::return_value_policy::reference_internal, self));
+            }
+            return paths;
+          },
+          "The LiftedPaths, as a new list.")
+      .def_readwrite("id", &LiftedPlan::id, "Number of the plan, as TakeOver repeats it.")
+      .def_readonly("hand_time", &LiftedPlan::hand_time,
+                    "Of the hand frame that it was planned from [s].");
+
+  m.def(
+      "lift", &lift_on_field,
+      "Lifts a plan back to the skin: each segment is cut in five, each point gets the height of\n"
+      "the skin there, in the device's frame. target: the TargetField or TargetFrame that was\n"
+      "planned. Returns a LiftedPlan.",
+      py::arg("plan"), py::arg("target"));
+  m.def("lift", &lift_on_frame, py::arg("plan"), py::arg("target"));
+}
+
+/// An emitter and a lock for each of its two sides, so that any Python threads may call it.
+struct SharedEmitter {
+  SharedEmitter(const EmitSettings& s, double rate)
+      : emitter(s, rate), settings(s), sample_rate(rate) {}
+  PathEmitter emitter;
+  EmitSettings settings;
+  double sample_rate;
+  std::mutex planners_side, devices_side;
+};
+
+std::unique_ptr<SharedEmitter> make_emitter(const EmitSettings* settings, double sample_rate,
+                                            const py::kwargs& values) {
+  EmitSettings own = settings != nullptr ? *settings : EmitSettings{};
+  set_settings(visit_of(own), "EmitSettings", values);
+  return std::make_unique<SharedEmitter>(own, sample_rate);
+}
+
+void submit(SharedEmitter& self, const LiftedPlan& plan) {
+  const py::gil_scoped_release unlocked;
+  const std::lock_guard lock(self.planners_side);
+  self.emitter.draft() = plan;
+  self.emitter.submit();
+}
+
+/// Fills an array in place: a FocusSample is four floats, of which two arrays are views.
+py::tuple fill(SharedEmitter& self, std::int64_t first, int samples) {
+  static_assert(sizeof(FocusSample) == 4 * sizeof(float));
+  static_assert(offsetof(FocusSample, intensity) == 3 * sizeof(float));
+  require_between("samples", samples, 1, kMostSamples);
+  if (first < 0) {
+    throw std::invalid_argument("first = " + std::to_string(first) + " must be at least 0");
+  }
+  const py::ssize_t foci = self.emitter.foci(), n = samples;
+  py::array_t<float> all({n, foci, py::ssize_t{4}});
+  float* data = all.mutable_data();
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard lock(self.devices_side);
+    const auto count = static_cast<std::size_t>(n * foci);
+    auto* out = reinterpret_cast<FocusSample*>(data);
+    std::uninitialized_default_construct_n(out, count);
+    self.emitter.fill(first, {out, count});
+  }
+  const py::ssize_t number = sizeof(float), sample = 4 * number;
+  const std::vector<py::ssize_t> strides{foci * sample, sample, number};
+  const auto type = py::dtype::of<float>();
+  const py::array positions(type, {n, foci, py::ssize_t{3}}, strides, data, all);
+  const py::array intensities(type, {n, foci}, {strides[0], strides[1]}, data + 3, all);
+  return py::make_tuple(positions, intensities);
+}
+
+void bind_emitter(py::module_& m) {
+  bind_settings<EmitSettings>(
+      m, "EmitSettings",
+      "Settings of the emission, in SI units. full_scale_pressure, the rendered pressure that is\n"
+      "played at intensity 1, must be given.");
+
+  Record<EmitStats>(m, "EmitStats", "Counters of an emission.")
+      .field("samples", &EmitStats::samples, "Emitted, summed over focal points.")
+      .field("saturated", &EmitStats::saturated, "Clipped at full scale.")
+      .field("limited", &EmitStats::limited, "Scaled down by the power limit.")
+      .field("faded", &EmitStats::faded, "In a fade of a transition.")
+      .field("laps_started", &EmitStats::laps_started, "Laps that began.")
+      .field("laps_cut", &EmitStats::laps_cut, "Laps that were cut short.")
+      .field("stalls", &EmitStats::stalls, "Fade-outs because no plan came.")
+      .field("refused_plans", &EmitStats::refused_plans,
+             "Plans with a number that is not finite or out of bounds.")
+      .field("dropped_paths", &EmitStats::dropped_paths,
+             "Paths beyond the number of focal points, not drawn.")
+      .field("max_focus_step", &EmitStats::max_focus_step,
+             "Largest step between samples while the intensity is above 1 % [m].")
+      .done();
+  Record<TakeOver>(m, "TakeOver", "When a plan took over, in counts of samples.")
+      .field("plan", &TakeOver::plan, "Its id.")
+      .field("first_sample", &TakeOver::first_sample, "The first sample that follows it.")
+      .field("redrawn_sample", &TakeOver::redrawn_sample,
+             "When 90 % of its path length was drawn; -1: never.")
+      .done();
+
+  py::class_<SharedEmitter>(
+      m, "PathEmitter",
+      "Turns plans into samples of focal points: speed, transitions, drive law, fade-out.\n\n"
+      "While its intensity is above 1 % a focal point moves at most 8 m/s, intensities change by\n"
+      "at most 1/40 per sample and the sum of their squares stays within power_limit. A plan that\n"
+      "no other follows fades out after stall_time. docs/design.md, section 7.")
+      .def(py::init(&make_emitter),
+           "settings: EmitSettings, copied; None: the defaults. sample_rate: of the device [Hz].\n"
+           "Further keywords are settings. Raises ValueError that names the setting and its bound.",
+           py::arg("settings") = py::none(), py::arg("sample_rate") = 40e3)
+      .def("submit", &submit,
+           "Hands a LiftedPlan over, which is copied; one that no fill() fetched yet is replaced.",
+           py::arg("plan"))
+      .def(
+          "lose",
+          [](SharedEmitter& self) {
+            const py::gil_scoped_release unlocked;
+            const std::lock_guard lock(self.planners_side);
+            self.emitter.lose();
+          },
+          "The hand is gone: fades out within 50 ms, until the next plan.")
+      .def(
+          "fill", &fill,
+          "The next samples, first ... first + samples - 1; call it with consecutive samples. A\n"
+          "plan that was submitted is fetched at the start of a call.\n\n"
+          "Returns (positions, intensities): (samples, foci, 3) float32 in the device's frame [m]\n"
+          "and (samples, foci) float32 in 0..1, linear in acoustic pressure amplitude. Both are\n"
+          "views of one array of (x, y, z, intensity).",
+          py::arg("first"), py::arg("samples"))
+      .def_property_readonly(
+          "foci", [](const SharedEmitter& self) { return self.emitter.foci(); },
+          "Focal points per sample.")
+      .def_readonly("sample_rate", &SharedEmitter::sample_rate, "[Hz].")
+      .def_property_readonly(
+          "settings", [](const SharedEmitter& self) { return EmitSettings(self.settings); },
+          "A copy of the settings.")
+      .def(
+          "next_take_over",
+          [](SharedEmitter& self) -> std::optional<TakeOver> {
+            const py::gil_scoped_release unlocked;
+            const std::lock_guard lock(self.planners_side);
+            TakeOver out;
+            if (!self.emitter.next_take_over(out)) return std::nullopt;
+            return out;
+          },
+          "The oldest TakeOver that was not read, or None.")
+      .def(
+          "stats",
+          [](SharedEmitter& self) {
+            const py::gil_scoped_release unlocked;
+            const std::lock_guard lock(self.planners_side);
+            return self.emitter.stats();
+          },
+          "EmitStats as of the last fill().");
+}
+
+/// The drive law over an array of any shape.
+py::array drive_intensities(const py::object& pressure, double full_scale, double silent_below) {
+  const py::array given = py::array::ensure(pressure);
+  const Numbers p = numbers(pressure, "pressure", given ? static_cast<int>(given.ndim()) : 0);
+  require_between("full_scale", full_scale, 1e-300, 1e300);
+  require_between("silent_below", silent_below, 0.0, 0.999);
+  py::array_t<double> out(std::vector<py::ssize_t>(p.shape(), p.shape() + p.ndim()));
+  for (py::ssize_t i = 0; i < p.size(); ++i) {
+    require_between("pressure", p.data()[i], -1e300, 1e300);
+    bool saturated = false;
+    out.mutable_data()[i] = drive_intensity(p.data()[i], full_scale, silent_below, saturated);
+  }
+  return out;
+}
+
+}  // namespace
+
+void bind_emit(py::module_& m) {
+  bind_lifted(m);
+  bind_emitter(m);
+  m.def(
+      "drive_intensity", &drive_intensities,
+      "The drive law: sqrt(pressure / full_scale), since radiation pressure goes with the square\n"
+      "of acoustic pressure; clipped to 1, 0 below the silent share. pressure: an array of any\n"
+      "shape, in the unit of full_scale. Returns intensities 0..1 of the same shape.",
+      py::arg("pressure"), py::arg("full_scale"),
+      py::arg("silent_below") = EmitSettings{}.silent_below);
+}
+
+}  // namespace prostm::python

@@ -1,0 +1,101 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "bindings.hpp"
+#include "core/file.hpp"
+#include "io/field_file.hpp"
+#include "io/plan_file.hpp"
+
+namespace prostm::python {
+namespace {
+
+using Path = std::filesystem::path;
+constexpr std::size_t kMaxPlanBytes = std::size_t{64} << 20;
+
+TargetField read_field_file(const Path& path, std::optional<double> cell_mm, int frame) {
+  FieldFileOptions options;
+  options.cell_mm = cell_mm;
+  options.frame = frame;
+  const py::gil_scoped_release unlocked;
+  return read_field(path.string(), options);
+}
+
+std::string plan_text(const Plan& plan, const TargetField& target, const PlanSettings& settings,
+                      const PlanStats* stats, const Metrics* metrics,
+                      const std::optional<std::vector<Control>>& controls,
+                      const std::string& method) {
+  PlanFileExtras extras;
+  extras.method = method;
+  extras.stats = stats;
+  extras.metrics = metrics;
+  extras.controls = controls ? &*controls : nullptr;
+  return plan_to_json(plan, target, settings, extras, "");
+}
+
+void write_plan_file(const Path& path, const Plan& plan, const TargetField& target,
+                     const PlanSettings& settings, const PlanStats* stats, const Metrics* metrics,
+                     const std::optional<std::vector<Control>>& controls,
+                     const std::string& method) {
+  const py::gil_scoped_release unlocked;
+  write_file(path.string(), plan_text(plan, target, settings, stats, metrics, controls, method));
+}
+
+void bind_fields(py::module_& m) {
+  m.def("read_field", &read_field_file,
+        "Reads a field by the ending of its name, as the command line does: .json\n"
+        "(prostm-field/1), .npy and .png (both need cell_mm), .h5 (frame says which).\n"
+        "Raises InputError, a ValueError, with a sentence that names the file.",
+        py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = 0);
+  m.def(
+      "write_field",
+      [](const Path& path, const TargetField& field) {
+        const py::gil_scoped_release unlocked;
+        write_file(path.string(), field_to_json(field));
+      },
+      "Writes prostm-field/1 (JSON).", py::arg("path"), py::arg("field"));
+  m.def("field_to_json", &field_to_json, "The field as prostm-field/1, a text.", py::arg("field"));
+  m.def("field_from_json", &field_from_json,
+        "Parses prostm-field/1; `name` stands for the file in messages.", py::arg("text"),
+        py::arg("name") = "the text");
+}
+
+void bind_plans(py::module_& m) {
+  py::class_<PlanFile>(m, "PlanFile", "What a plan file says.")
+      .def_readonly("plan", &PlanFile::plan, "The Plan.")
+      .def_readonly("raster", &PlanFile::raster,
+                    "TargetField with plane, skin and heights; its pressure is 0.");
+  m.def(
+      "read_plan",
+      [](const Path& path) {
+        const py::gil_scoped_release unlocked;
+        return plan_from_json(read_file(path.string(), kMaxPlanBytes), path.string());
+      },
+      "Reads a plan file (prostm-plan/1) as a PlanFile. Raises InputError, a ValueError.",
+      py::arg("path"));
+  m.def("plan_from_json", &plan_from_json,
+        "Parses prostm-plan/1; `name` stands for the file in messages.", py::arg("text"),
+        py::arg("name") = "the text");
+  m.def(
+      "write_plan", &write_plan_file,
+      "Writes a plan file (prostm-plan/1). target: the TargetField that was planned, whose plane\n"
+      "and heights are repeated in the file. What is None is left out.",
+      py::arg("path"), py::arg("plan"), py::arg("target"), py::arg("settings"),
+      py::arg("stats") = py::none(), py::arg("metrics") = py::none(),
+      py::arg("controls") = py::none(), py::arg("method") = "pro-stm");
+  m.def("plan_to_json", &plan_text, "What write_plan() writes, as a text.", py::arg("plan"),
+        py::arg("target"), py::arg("settings"), py::arg("stats") = py::none(),
+        py::arg("metrics") = py::none(), py::arg("controls") = py::none(),
+        py::arg("method") = "pro-stm");
+}
+
+}  // namespace
+
+void bind_io(py::module_& m) {
+  bind_fields(m);
+  bind_plans(m);
+}
+
+}  // namespace prostm::python

@@ -1,0 +1,165 @@
+#include <pybind11/stl.h>
+
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "core/require.hpp"
+#include "plan/planner.hpp"
+#include "plan/quasi_static.hpp"
+#include "plan_result.hpp"
+
+namespace prostm::python {
+namespace {
+
+constexpr double kLargestPressure = 1e300, kLargestCoordinate = 1e3;  // [unit of the target], [m]
+
+FocalPath make_path(const py::object& points, const py::object& pressure, double speed, int patch) {
+  const Numbers x = numbers(points, "points", 2);
+  const auto n = x.shape(0);
+  if (n < 1 || n > kMaxPathPoints || x.shape(1) != 2) {
+    throw std::invalid_argument(
+        "points has the shape " + std::string(py::str(py::tuple(x.attr("shape")))) +
+        "; it must be (n, 2) with n from 1 to " + std::to_string(kMaxPathPoints));
+  }
+  const bool constant = py::isinstance<py::float_>(pressure) || py::isinstance<py::int_>(pressure);
+  const Numbers p = constant ? numbers(pressure, "pressure", 0)
+                             : numbers(pressure, "pressure", std::vector<py::ssize_t>{n});
+  FocalPath path;
+  path.patch = patch;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const Vec2 point(x.data()[2 * i], x.data()[2 * i + 1]);
+    require_between("a coordinate of points", point.x(), -kLargestCoordinate, kLargestCoordinate,
+                    "m");
+    require_between("a coordinate of points", point.y(), -kLargestCoordinate, kLargestCoordinate,
+                    "m");
+    path.points.push_back(point);
+    path.pressure.push_back(p.data()[constant ? 0 : i]);
+    require_between("pressure", path.pressure.back(), 0.0, kLargestPressure);
+  }
+  require_between("speed", speed, 1e-3, 1e3, "m/s");
+  require_between("patch", patch, 0, kMaxPatches - 1);
+  path.length = closed_length(path);
+  path.speed = speed;
+  path.period = path.length / speed;
+  return path;
+}
+
+Plan make_plan(const std::vector<const FocalPath*>& paths) {
+  if (paths.size() > static_cast<std::size_t>(kMaxPaths)) {
+    throw std::invalid_argument("a plan has " + std::to_string(paths.size()) +
+                                " paths; it must have at most " + std::to_string(kMaxPaths));
+  }
+  Plan plan;
+  for (const FocalPath* path : paths) {
+    if (path == nullptr) throw py::type_error("a path must be a FocalPath, not None");
+    plan.paths.push_back(*path);
+  }
+  return plan;
+}
+
+py::array points_of(const py::object& self) {
+  static_assert(sizeof(Vec2) == 2 * sizeof(double));
+  const auto& points = self.cast<const FocalPath&>().points;
+  return view({static_cast<py::ssize_t>(points.size()), 2}, points.data()->data(), self);
+}
+
+py::array pressure_of(const py::object& self) {
+  const auto& pressure = self.cast<const FocalPath&>().pressure;
+  return view({static_cast<py::ssize_t>(pressure.size())}, pressure.data(), self);
+}
+
+std::string path_repr(const FocalPath& path) {
+  return "FocalPath(" + std::to_string(path.points.size()) +
+         " points, length=" + std::string(py::repr(py::float_(path.length))) +
+         " m, period=" + std::string(py::repr(py::float_(path.period))) + " s)";
+}
+
+py::list paths_of(const py::object& self) {
+  py::list paths;
+  for (const FocalPath& path : self.cast<const Plan&>().paths) {
+    paths.append(py::cast(&path, py::return_value_policy::reference_internal, self));
+  }
+  return paths;
+}
+
+void bind_classes(py::module_& m) {
+  py::class_<FocalPath>(m, "FocalPath",
+                        "A closed path of a focal point in a target's plane: the last point joins "
+                        "the first.")
+      .def(py::init(&make_path),
+           "points: (n, 2), n from 1 to 64, in the plane [m].\n"
+           "pressure: (n,) rendered at each point, >= 0, or one number for all.\n"
+           "speed: of the focal point [m/s]. patch: index of the target patch (hand).\n"
+           "Length and period follow from these. Raises ValueError, TypeError.",
+           py::arg("points"), py::arg("pressure"), py::arg("speed") = PlanSettings{}.speed,
+           py::arg("patch") = 0)
+      .def_property_readonly("points", &points_of, "(n, 2) points in the plane [m]; a view.")
+      .def_property_readonly("pressure", &pressure_of,
+                             "(n,) rendered pressure p_i = gain * p*, in the target's unit, linear "
+                             "between points; a view.")
+      .def_readonly("length", &FocalPath::length, "Of the closed polygon in the plane [m].")
+      .def_readonly("speed", &FocalPath::speed, "Of the focal point [m/s].")
+      .def_readonly("period", &FocalPath::period, "length / speed [s].")
+      .def_readonly("patch", &FocalPath::patch, "Index of the target patch (hand).")
+      .def("__repr__", &path_repr)
+      .def(py::pickle(
+          [](const py::object& self) {
+            return py::make_tuple(points_of(self), pressure_of(self), self.attr("speed"),
+                                  self.attr("patch"), self.attr("length"), self.attr("period"));
+          },
+          [](const py::tuple& t) {
+            FocalPath path = make_path(t[0], t[1], t[2].cast<double>(), t[3].cast<int>());
+            path.length = t[4].cast<double>();
+            path.period = t[5].cast<double>();
+            return path;
+          }));
+
+  py::class_<Plan>(m, "Plan", "What the focal points are to do: at most 8 closed paths.")
+      .def(py::init(&make_plan), "paths: FocalPaths, which are copied.", py::arg("paths"))
+      .def_property_readonly("paths", &paths_of, "The FocalPaths, as a new list.")
+      .def("__len__", [](const Plan& plan) { return plan.paths.size(); })
+      .def("__repr__",
+           [](const py::object& self) {
+             return "Plan(" + std::string(py::repr(paths_of(self))) + ")";
+           })
+      .def(py::pickle([](const py::object& self) { return py::make_tuple(paths_of(self)); },
+                      [](const py::tuple& t) {
+                        return make_plan(t[0].cast<std::vector<const FocalPath*>>());
+                      }));
+}
+
+}  // namespace
+
+void check_model(double sigma, double gain, int patch) {
+  require_between("sigma", sigma, 1e-4, 0.1, "m");
+  require_between("gain", gain, 0.01, 100.0);
+  require_between("patch", patch, 0, kMaxPatches - 1);
+}
+
+py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma, double gain,
+                             int patch) {
+  check_model(sigma, gain, patch);
+  py::array_t<double> out({raster.rows, raster.cols});
+  const std::span<double> cells(out.mutable_data(), raster.size());
+  {
+    const py::gil_scoped_release unlocked;
+    quasi_static_field(plan, patch, raster, sigma, gain, cells);
+  }
+  return out;
+}
+
+void bind_paths(py::module_& m) {
+  m.attr("kMaxPaths") = kMaxPaths;
+  m.attr("kMaxPathPoints") = kMaxPathPoints;
+  bind_classes(m);
+  m.def("closed_length", &closed_length, "Length of the closed polygon [m].", py::arg("path"));
+  m.def("quasi_static_field", &quasi_static_array,
+        "The paper's Eq. (1): p(x) = p_i / gain * exp(-|x - x_i|^2 / (2 sigma^2)), with x_i the\n"
+        "closest point to x over all paths of the patch. Returns (rows, cols) in the target's\n"
+        "unit, for every cell of the raster, skin or not.\n\n"
+        "sigma: fall-off of a focal point [m]. gain: rendered over effective pressure.",
+        py::arg("plan"), py::arg("raster"), py::arg("sigma") = PlanSettings{}.sigma,
+        py::arg("gain") = PlanSettings{}.gain, py::arg("patch") = 0);
+}
+
+}  // namespace prostm::python

@@ -1,0 +1,193 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "plan/planner.hpp"
+#include "plan_result.hpp"
+#include "settings.hpp"
+
+namespace prostm::python {
+namespace {
+
+constexpr std::size_t kDefaultCells = 128 * 128;
+
+/// A planner and the lock that lets several Python threads share it, one after the other.
+struct SharedPlanner {
+  SharedPlanner(const PlanSettings& settings, std::size_t cells)
+      : planner(settings, cells), max_cells(cells) {}
+  Planner planner;
+  std::size_t max_cells;
+  std::mutex mutex;
+};
+
+std::unique_ptr<SharedPlanner> make_planner(const PlanSettings* settings, long long max_cells,
+                                            const py::kwargs& values) {
+  if (max_cells < 1 || max_cells > static_cast<long long>(kMaxFieldCells)) {
+    throw std::invalid_argument("max_cells = " + std::to_string(max_cells) +
+                                " must be between 1 and " + std::to_string(kMaxFieldCells));
+  }
+  PlanSettings own = settings != nullptr ? *settings : PlanSettings{};
+  set_settings(visit_of(own), "PlanSettings", values);
+  return std::make_unique<SharedPlanner>(own, static_cast<std::size_t>(max_cells));
+}
+
+void check_cells(const TargetField& target, const SharedPlanner& planner) {
+  if (target.size() <= planner.max_cells) return;
+  throw std::invalid_argument(
+      "a raster of " + std::to_string(target.rows) + " x " + std::to_string(target.cols) +
+      " cells must have at most the planner's max_cells = " + std::to_string(planner.max_cells));
+}
+
+/// What InvalidTarget means for a field that passed validate().
+void check_status(PlanStatus status) {
+  if (status != PlanStatus::InvalidTarget) return;
+  throw std::invalid_argument(
+      "the field cannot be planned: pressures must be at most 1e300 and cells 1e-6 to 1 m wide");
+}
+
+std::unique_ptr<PlanResult> plan_field(SharedPlanner& self, const py::object& target, bool trace) {
+  const auto& field = target.cast<const TargetField&>();
+  check_cells(field, self);
+  auto result = std::make_unique<PlanResult>(target, self.planner.settings());
+  if (trace) result->trace.emplace();
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard lock(self.mutex);
+    result->status =
+        self.planner.plan(field, result->plan, result->stats, trace ? &*result->trace : nullptr);
+  }
+  check_status(result->status);
+  return result;
+}
+
+std::unique_ptr<PlanResult> plan_frame(SharedPlanner& self, const py::object& target) {
+  const auto& frame = target.cast<const TargetFrame&>();
+  for (const TargetField& patch : frame.patches) check_cells(patch, self);
+  auto result = std::make_unique<PlanResult>(target, self.planner.settings());
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard lock(self.mutex);
+    result->status = self.planner.plan(frame, result->plan, result->stats);
+  }
+  check_status(result->status);
+  return result;
+}
+
+void bind_planner(py::module_& m) {
+  py::enum_<PlanStatus>(m, "PlanStatus", "How a call of the planner ended.")
+      .value("Planned", PlanStatus::Planned, "the plan holds 1..paths paths")
+      .value("EmptyTarget", PlanStatus::EmptyTarget,
+             "no skin, or no pressure on it: the plan holds no path")
+      .value("InvalidTarget", PlanStatus::InvalidTarget,
+             "raised as ValueError in Python, never returned");
+
+  py::class_<SharedPlanner>(
+      m, "Planner",
+      "PRO-STM: from a target pressure field to a few closed focal-point paths.\n\n"
+      "Keeps its buffers between calls, so make one and use it for many fields. Deterministic: "
+      "the\n"
+      "same settings and target give the same plan to the bit. The interpreter's lock is released\n"
+      "while it plans; threads that share a planner wait for each other.")
+      .def(py::init(&make_planner),
+           "settings: PlanSettings, copied; None: the defaults.\n"
+           "max_cells: the largest raster, rows * cols, that plan() will be given.\n"
+           "Further keywords are settings, e.g. Planner(preset=\"paper\", paths=2).\n\n"
+           "Raises ValueError that names the setting, its value and its bound.",
+           py::arg("settings") = py::none(), py::arg("max_cells") = kDefaultCells)
+      .def_property_readonly(
+          "settings",
+          [](const SharedPlanner& self) { return PlanSettings(self.planner.settings()); },
+          "A copy of the settings.")
+      .def_readonly("max_cells", &SharedPlanner::max_cells, "The largest raster.")
+      .def(
+          "plan",
+          [](SharedPlanner& self, const py::object& target, bool trace) {
+            if (py::isinstance<TargetField>(target)) return plan_field(self, target, trace);
+            if (!py::isinstance<TargetFrame>(target)) {
+              throw py::type_error("target must be a TargetField or a TargetFrame, not " +
+                                   std::string(py::repr(py::type::of(target))));
+            }
+            if (trace) throw std::invalid_argument("a trace is kept of a TargetField only");
+            return plan_frame(self, target);
+          },
+          "Plans a TargetField, or a TargetFrame (the paths are shared out between its patches,\n"
+          "and no path spans two). trace=True keeps the intermediate results of a field.\n\n"
+          "Returns a PlanResult. A field without pressure gives a plan without paths. Raises\n"
+          "ValueError for more than max_cells cells, a pressure above 1e300, a cell that is not\n"
+          "1e-6 to 1 m wide.",
+          py::arg("target"), py::arg("trace") = false);
+}
+
+// ---- what came out
+
+py::array points_array(const std::vector<Vec2>& points) {
+  py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{2}});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    array.mutable_data()[2 * i] = points[i].x();
+    array.mutable_data()[2 * i + 1] = points[i].y();
+  }
+  return array;
+}
+
+template <class T>
+py::array array_of(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+void bind_stats(py::module_& m) {
+  Record<PlanStats>(m, "PlanStats",
+                    "What a call did and how long each stage took [s]. `refine` includes making "
+                    "paths valid.")
+      .field("init", &PlanStats::init, "[s]")
+      .field("kmeans", &PlanStats::kmeans, "[s]")
+      .field("tour", &PlanStats::tour, "[s]")
+      .field("split", &PlanStats::split, "[s]")
+      .field("resample", &PlanStats::resample, "[s]")
+      .field("refine", &PlanStats::refine, "[s]")
+      .field("total", &PlanStats::total, "[s]")
+      .field("clusters", &PlanStats::clusters, "Clusters with pressure.")
+      .field("lloyd_iterations", &PlanStats::lloyd_iterations, "Of the clustering.")
+      .field("refine_iterations", &PlanStats::refine_iterations, "Gradient steps.")
+      .field("cost_evaluations", &PlanStats::cost_evaluations, "In the refinement.")
+      .field("leaves", &PlanStats::leaves, "Paths after splitting, before the heaviest are kept.")
+      .field("cost", &PlanStats::cost, "Of the paper's Eqs. (2)-(5) after refinement.")
+      .field("long_paths", &PlanStats::long_paths, "Paths longer than the limit by > 0.5 mm.")
+      .field("crossings", &PlanStats::crossings,
+             "Pairs of segments that cross, within and between paths.")
+      .done();
+
+  py::class_<PlanTrace>(m, "PlanTrace", "The intermediate results of the paper's Fig. 2.")
+      .def_property_readonly(
+          "clusters", [](const PlanTrace& t) { return points_array(t.clusters); },
+          "(k, 2) centroids [m].")
+      .def_property_readonly(
+          "cluster_mass", [](const PlanTrace& t) { return array_of(t.cluster_mass); },
+          "(k,) sum of p* of each, p* over its maximum.")
+      .def_property_readonly(
+          "tour", [](const PlanTrace& t) { return array_of(t.tour); },
+          "(k,) the closed tour, indices of clusters.")
+      .def_property_readonly(
+          "split",
+          [](const PlanTrace& t) {
+            py::list tours;
+            for (const std::vector<int>& tour : t.split) tours.append(array_of(tour));
+            return tours;
+          },
+          "The kept tours, each an array of indices of clusters.");
+}
+
+}  // namespace
+
+void bind_plan(py::module_& m) {
+  bind_settings<PlanSettings>(
+      m, "PlanSettings",
+      "Settings of the planner, in SI units; the defaults are the paper's where it gives one.\n"
+      "src/plan/planner.hpp says what each of them does.");
+  bind_stats(m);
+  bind_planner(m);
+}
+
+}  // namespace prostm::python

@@ -1,0 +1,82 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "core/require.hpp"
+#include "plan/planner.hpp"
+#include "plan_result.hpp"
+#include "score/score.hpp"
+
+namespace prostm::python {
+namespace {
+
+Metrics score_array(const TargetField& target, const py::object& rendered, double coverage) {
+  const Numbers given = numbers(rendered, "rendered", {target.rows, target.cols});
+  const std::vector<double> cells(given.data(), given.data() + given.size());
+  if (!std::all_of(cells.begin(), cells.end(), [](double x) { return std::isfinite(x); })) {
+    throw std::invalid_argument("rendered must be finite in every cell");
+  }
+  require_between("coverage", coverage, 0.0, 1.0);
+  const py::gil_scoped_release unlocked;
+  return score_field(target, cells, coverage);
+}
+
+Metrics score(const TargetField& target, const Plan& plan, double sigma, double gain, int patch) {
+  check_model(sigma, gain, patch);
+  const py::gil_scoped_release unlocked;
+  return score_plan(target, plan, patch, sigma, gain);
+}
+
+std::vector<Control> controls_of(const TargetField& target, double sigma, double gain,
+                                 double length, const Plan* other, std::uint64_t seed) {
+  check_model(sigma, gain, 0);
+  require_between("length", length, 0.01, 1.0, "m");
+  const py::gil_scoped_release unlocked;
+  return controls(target, sigma, gain, length, other, seed);
+}
+
+}  // namespace
+
+void bind_score(py::module_& m) {
+  const PlanSettings defaults;
+  Record<Metrics>(m, "Metrics",
+                  "How well a field renders its target, over the skin, both divided by max p*\n"
+                  "(docs/design.md, Quality).")
+      .field("rmse", &Metrics::rmse, "Root mean square difference.")
+      .field("correlation", &Metrics::correlation, "Pearson's; 0 when either field is constant.")
+      .field("coverage", &Metrics::coverage, "Share of the sum of p* within sigma of a path.")
+      .field("skill_0", &Metrics::skill_0,
+             "1 - min_g sum (p* - g p)^2 / sum (p* - mean)^2; 0 = a flat field.")
+      .field("skill_8", &Metrics::skill_8, "The same after a Gaussian blur of 8.5 mm of both.")
+      .field("overlap", &Metrics::overlap,
+             "sum min(p*, g p) / sum max(p*, g p), with the g of skill_0.")
+      .field("spill", &Metrics::spill, "Share of the rendered field on skin where p* < 0.1 max p*.")
+      .done();
+  Record<Control>(m, "Control", "What the metrics say about something that must lose.")
+      .field("name", &Control::name, "What it is.")
+      .field("metrics", &Control::metrics, "Its Metrics.")
+      .done();
+
+  m.def("score_plan", &score,
+        "Metrics of a plan on a target, through Eq. (1) with sigma [m] and gain; all zeros for a\n"
+        "target without pressure.",
+        py::arg("target"), py::arg("plan"), py::arg("sigma") = defaults.sigma,
+        py::arg("gain") = defaults.gain, py::arg("patch") = 0);
+  m.def("score_field", &score_array,
+        "Metrics of any field: rendered (rows, cols), finite, the effective field in the target's\n"
+        "unit. coverage is passed through.",
+        py::arg("target"), py::arg("rendered"), py::arg("coverage") = 0.0);
+  m.def("controls", &controls_of,
+        "The controls of a plan on a target, which must lose to it, as a list of Control; empty\n"
+        "for a target without pressure: a flat field; four circles at the mass centres; random\n"
+        "circles with solved pressures (the median of 20 draws); and, when `other` is given, the\n"
+        "paths of that Plan moved here. sigma and length (of a circle) in metres.",
+        py::arg("target"), py::arg("sigma") = defaults.sigma, py::arg("gain") = defaults.gain,
+        py::arg("length") = defaults.max_length, py::arg("other") = py::none(),
+        py::arg("seed") = 1);
+}
+
+}  // namespace prostm::python

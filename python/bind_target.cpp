@@ -1,0 +1,215 @@
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "target/target_field.hpp"
+
+namespace prostm::python {
+namespace {
+
+const char* const kTargetFieldDoc =
+    R"(What is to be felt: a pressure on the skin, on a regular raster of a plane.
+
+Row-major: the centre of cell (row, col) lies at origin + cell * (col, row) in the plane, row 0 has
+the smallest y. A field does not change once it is made: its arrays are read-only views, and one
+field may be planned by several threads at once.)";
+
+const char* const kTargetFieldInitDoc =
+    R"(pressure: (rows, cols) numbers, NaN = no skin, else finite and >= 0 in any unit.
+cell or cell_mm: edge of a cell [m] or [mm]; exactly one of them.
+origin: (2,) centre of cell (0, 0) in the plane [m].
+height: None (flat) or (rows, cols), the skin's distance from the plane along its normal [m],
+    positive away from the array; values off the skin do not count.
+X_DP: None (parallel to the array, 200 mm above its centre) or the plane's pose in the device's
+    frame, a homogeneous (4, 4) matrix in metres.
+
+A masked array's masked cells are no skin. Raises ValueError, TypeError.)";
+
+/// The user's pressure as numbers; what a numpy.ma array masks is NaN.
+Numbers pressures(py::handle given) {
+  if (!py::hasattr(given, "filled")) return numbers(given, "pressure", 2, kMaxFieldCells);
+  return numbers(given.attr("astype")("float64").attr("filled")(std::nan("")), "pressure", 2,
+                 kMaxFieldCells);
+}
+
+void set_shape(TargetField& field, const Numbers& pressure) {
+  const auto rows = pressure.shape(0), cols = pressure.shape(1);
+  if (rows < 1 || cols < 1) {
+    throw std::invalid_argument("a raster of " + std::to_string(rows) + " x " +
+                                std::to_string(cols) +
+                                " cells must have at least one row and one column");
+  }
+  field.resize(static_cast<int>(rows), static_cast<int>(cols));
+}
+
+void set_heights(TargetField& field, const py::object& height) {
+  if (height.is_none()) return;
+  const Numbers given = numbers(height, "height", {field.rows, field.cols});
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.skin[i] != 0) field.height[i] = given.data()[i];
+  }
+  validate(field);
+  fill_heights(field);
+}
+
+TargetField make_field(const py::object& pressure, std::optional<double> cell,
+                       std::optional<double> cell_mm, const py::object& origin,
+                       const py::object& height, const py::object& X_DP) {
+  if (cell.has_value() == cell_mm.has_value()) {
+    throw std::invalid_argument(
+        "the edge of a cell must be given once: as cell in metres or as cell_mm in millimetres");
+  }
+  const Numbers p = pressures(pressure);
+  TargetField field;
+  set_shape(field, p);
+  // a file's millimetres become metres by the same division
+  field.cell = cell ? *cell : *cell_mm / 1000.0;
+  const Numbers corner = numbers(origin, "origin", std::vector<py::ssize_t>{2});
+  field.origin = Vec2(corner.data()[0], corner.data()[1]);
+  if (!X_DP.is_none()) field.X_DP = pose_from(X_DP, "X_DP");
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (std::isnan(p.data()[i])) continue;
+    field.skin[i] = 1;
+    field.pressure[i] = p.data()[i];
+  }
+  validate(field);
+  set_heights(field, height);
+  return field;
+}
+
+std::vector<py::ssize_t> shape_of(const TargetField& field) {
+  return {field.rows, field.cols};
+}
+
+py::array heights_at(const TargetField& field, const py::object& x) {
+  const Numbers points = numbers(x, "x", 2);
+  if (points.shape(1) != 2) {
+    throw std::invalid_argument("x must have the shape (n, 2), a point in each row");
+  }
+  py::array_t<double> heights(points.shape(0));
+  const auto p = points.unchecked<2>();
+  auto out = heights.mutable_unchecked<1>();
+  for (py::ssize_t i = 0; i < points.shape(0); ++i) {
+    if (!std::isfinite(p(i, 0)) || !std::isfinite(p(i, 1))) {
+      throw std::invalid_argument("x must be finite, and is not in row " + std::to_string(i));
+    }
+    out(i) = height_at(field, Vec2(p(i, 0), p(i, 1)));
+  }
+  return heights;
+}
+
+TargetFrame make_frame(const std::vector<const TargetField*>& patches, double time) {
+  if (patches.size() > static_cast<std::size_t>(kMaxPatches)) {
+    throw std::invalid_argument("a frame has " + std::to_string(patches.size()) +
+                                " patches; it must have at most " + std::to_string(kMaxPatches));
+  }
+  if (!std::isfinite(time)) throw std::invalid_argument("the time of a frame must be finite");
+  TargetFrame frame;
+  frame.time = time;
+  for (const TargetField* patch : patches) {
+    if (patch == nullptr) throw py::type_error("a patch must be a TargetField, not None");
+    frame.patches.push_back(*patch);
+  }
+  return frame;
+}
+
+void bind_field(py::module_& m) {
+  py::class_<TargetField>(m, "TargetField", kTargetFieldDoc)
+      .def(py::init(&make_field), kTargetFieldInitDoc, py::arg("pressure"),
+           py::arg("cell") = py::none(), py::kw_only(), py::arg("cell_mm") = py::none(),
+           py::arg("origin") = py::make_tuple(0.0, 0.0), py::arg("height") = py::none(),
+           py::arg("X_DP") = py::none())
+      .def_readonly("rows", &TargetField::rows, "Number of rows.")
+      .def_readonly("cols", &TargetField::cols, "Number of columns.")
+      .def_property_readonly(
+          "shape", [](const TargetField& f) { return py::make_tuple(f.rows, f.cols); },
+          "(rows, cols).")
+      .def_readonly("cell", &TargetField::cell, "Edge of a cell [m].")
+      .def_property_readonly(
+          "origin",
+          [](const py::object& self) {
+            return view({2}, self.cast<const TargetField&>().origin.data(), self);
+          },
+          "(2,) centre of cell (0, 0) in the plane [m]; a view.")
+      .def_property_readonly(
+          "pressure",
+          [](const py::object& self) {
+            const auto& f = self.cast<const TargetField&>();
+            return view(shape_of(f), f.pressure.data(), self);
+          },
+          "(rows, cols) target pressure p*, >= 0, 0 where there is no skin; a view.")
+      .def_property_readonly(
+          "skin",
+          [](const py::object& self) {
+            const auto& f = self.cast<const TargetField&>();
+            return view(py::dtype::of<bool>(), shape_of(f), f.skin.data(), self);
+          },
+          "(rows, cols) of bool: where there is skin; a view.")
+      .def_property_readonly(
+          "height",
+          [](const py::object& self) {
+            const auto& f = self.cast<const TargetField&>();
+            return view(shape_of(f), f.height.data(), self);
+          },
+          "(rows, cols) height of the skin along the plane's normal [m], continued off the skin; "
+          "a view.")
+      .def_property_readonly(
+          "X_DP", [](const TargetField& f) { return pose_matrix(f.X_DP); },
+          "(4, 4) pose of the plane in the device's frame [m]; a copy.")
+      .def("__repr__",
+           [](const TargetField& f) {
+             return "TargetField(" + std::to_string(f.rows) + " x " + std::to_string(f.cols) +
+                    " cells of " + std::string(py::repr(py::float_(f.cell))) + " m)";
+           })
+      .def(py::pickle(
+          [](const TargetField& f) {
+            const auto copy = [&](const std::vector<double>& values) {
+              return py::array_t<double>(shape_of(f), values.data());
+            };
+            py::array_t<double> pressure = copy(f.pressure);
+            for (std::size_t i = 0; i < f.size(); ++i) {
+              if (f.skin[i] == 0) pressure.mutable_data()[i] = std::nan("");
+            }
+            return py::make_tuple(pressure, f.cell, py::make_tuple(f.origin.x(), f.origin.y()),
+                                  copy(f.height), pose_matrix(f.X_DP));
+          },
+          [](const py::tuple& t) {
+            return make_field(t[0], t[1].cast<double>(), std::nullopt, t[2], t[3], t[4]);
+          }));
+}
+
+}  // namespace
+
+void bind_target(py::module_& m) {
+  m.attr("kMaxFieldCells") = kMaxFieldCells;
+  m.attr("kMaxPatches") = kMaxPatches;
+  bind_field(m);
+  py::class_<TargetFrame>(m, "TargetFrame",
+                          "One frame of targets: a patch per hand, each with its own plane.")
+      .def(py::init(&make_frame),
+           "patches: at most 2 TargetFields, which are copied. time: of the hand frame [s].",
+           py::arg("patches"), py::arg("time") = 0.0)
+      .def_readonly("time", &TargetFrame::time, "[s].")
+      .def_property_readonly(
+          "patches",
+          [](const py::object& self) {
+            py::list patches;
+            for (const TargetField& patch : self.cast<const TargetFrame&>().patches) {
+              patches.append(py::cast(&patch, py::return_value_policy::reference_internal, self));
+            }
+            return patches;
+          },
+          "The TargetFields, as a new list.");
+
+  m.def("max_pressure", &max_pressure, "Largest pressure; 0 for a field without skin.",
+        py::arg("field"));
+  m.def("height_at", &heights_at,
+        "Height of the skin at points of the plane: x (n, 2) [m] gives (n,) [m], bilinear between "
+        "cell centres, clamped to the raster's border.",
+        py::arg("field"), py::arg("x"));
+}
+
+}  // namespace prostm::python

@@ -1,0 +1,88 @@
+#pragma once
+/// The parts of the module `prostm`, one function for each source file, and what they share.
+///
+/// Conventions: the names of C++, SI units; lengths in millimetres only where a name ends in _mm.
+/// Objects of data (fields, paths, plans) do not change once made, so that arrays are views of
+/// their memory and the interpreter's lock can be released while they are read.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+
+namespace prostm::python {
+
+namespace py = pybind11;
+
+void bind_target(py::module_& m);
+void bind_paths(py::module_& m);
+void bind_plan(py::module_& m);
+void bind_result(py::module_& m);
+void bind_score(py::module_& m);
+void bind_emit(py::module_& m);
+void bind_io(py::module_& m);
+
+/// Numbers given by the user: any array or nested sequence of booleans, integers or floats, as
+/// doubles in rows.
+/// @throws py::type_error when it holds no numbers, std::invalid_argument unless it has
+/// `dimensions` dimensions.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+inline constexpr std::size_t kMostNumbers = 100'000'000;
+Numbers numbers(py::handle value, const std::string& name, int dimensions,
+                std::size_t most = kMostNumbers);
+
+/// The same with an exact shape, e.g. {2} for a point.
+Numbers numbers(py::handle value, const std::string& name, const std::vector<py::ssize_t>& shape);
+
+/// A read-only array on memory that `owner` keeps alive. T is double, or bool for 0 and 1 in bytes.
+py::array view(const py::dtype& type, const std::vector<py::ssize_t>& shape, const void* data,
+               py::handle owner);
+py::array view(const std::vector<py::ssize_t>& shape, const double* data, py::handle owner);
+
+/// The pose as a homogeneous 4 × 4 matrix, and back (its last row must be 0 0 0 1).
+py::array pose_matrix(const Pose& pose);
+Pose pose_from(py::handle matrix, const std::string& name);
+
+/// A struct of results: its fields as attributes, in a repr and as a dictionary.
+template <class S>
+class Record {
+ public:
+  Record(py::module_& m, const char* name, const char* doc) : class_(m, name, doc) {}
+
+  template <class T>
+  Record& field(const char* name, T S::*member, const char* doc) {
+    class_.def_readonly(name, member, doc);
+    names_.append(name);
+    return *this;
+  }
+  /// Call last.
+  void done() {
+    const py::tuple names(names_);
+    class_.def(
+        "as_dict",
+        [names](const py::object& self) {
+          py::dict values;
+          for (const py::handle name : names) values[name] = self.attr(name);
+          return values;
+        },
+        "The fields by name, as a new dictionary.");
+    class_.def("__repr__", [names](const py::object& self) {
+      std::string text = py::str(py::type::of(self).attr("__name__"));
+      const char* before = "(";
+      for (const py::handle name : names) {
+        text += before + std::string(py::str(name)) + "=" + std::string(py::repr(self.attr(name)));
+        before = ", ";
+      }
+      return text + ")";
+    });
+  }
+
+ private:
+  py::class_<S> class_;
+  py::list names_;
+};
+
+}  // namespace prostm::python

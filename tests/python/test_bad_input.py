@@ -1,0 +1,193 @@
+"""Bad input raises ValueError (TypeError for a wrong type) with a sentence that says what is wrong."""
+
+import numpy as np
+import prostm
+import pytest
+
+from conftest import blobs
+
+
+def changed(row, col, value):
+    pressure = blobs()
+    pressure[row, col] = value
+    return pressure
+
+
+@pytest.mark.parametrize("pressure, words", [
+    (changed(3, 4, -2.5), "pressure = -2.5 at row 3, column 4 must be at least 0 and finite"),
+    (changed(3, 4, np.inf), "pressure = inf at row 3, column 4"),
+    (np.zeros(5), "2 dimensions"),
+    (np.zeros((2, 3, 4)), "2 dimensions"),
+    (3.0, "2 dimensions"),
+    (np.zeros((0, 4)), "0 x 4"),
+    (np.zeros((4, 0)), "4 x 0"),
+    (np.broadcast_to(0.0, (1001, 1000)), r"\(1001, 1000\); it must have at most 1000000"),
+    (np.broadcast_to(0.0, (2**30, 2**29)), "1000000"),
+])
+def test_arrays_that_are_no_field(pressure, words):
+    with pytest.raises(ValueError, match=words):
+        prostm.plan(pressure, cell_mm=5)
+
+
+@pytest.mark.parametrize("pressure", [
+    "palm", None, [["a", "b"]], np.zeros((3, 3), complex), np.zeros((3, 3), "M8[s]"), [[1, 2], [3]], {"a": 1},
+])
+def test_things_that_are_no_numbers(pressure):
+    with pytest.raises(TypeError, match="pressure must be an array of numbers"):
+        prostm.TargetField(pressure, 5e-3)
+
+
+@pytest.mark.parametrize("options, words", [
+    ({}, "cell in metres or as cell_mm"),
+    ({"cell": 5e-3, "cell_mm": 5}, "cell in metres or as cell_mm"),
+    ({"cell": 0}, "cell = 0 m must be positive and finite"),
+    ({"cell": -1}, "positive"),
+    ({"cell": np.nan}, "positive"),
+    ({"cell": 5e-3, "origin": (0, np.inf)}, "origin must be finite"),
+    ({"cell": 5e-3, "origin": (0, 0, 0)}, "origin has the shape"),
+    ({"cell": 5e-3, "height": np.zeros((3, 3))}, "height has the shape"),
+    ({"cell": 5e-3, "height": np.full((24, 30), np.inf)}, "height = inf m at row 0"),
+    ({"cell": 5e-3, "X_DP": 2 * np.eye(4)}, "last row"),
+    ({"cell": 5e-3, "X_DP": np.diag([2, 2, 2, 1])}, "orthonormal"),
+    ({"cell": 5e-3, "X_DP": np.eye(3)}, "X_DP has the shape"),
+])
+def test_fields_that_cannot_be(pressure, options, words):
+    with pytest.raises(ValueError, match=words):
+        prostm.TargetField(pressure, **options)
+
+
+def test_fields_beyond_the_planner(field):
+    with pytest.raises(ValueError, match="24 x 30 cells must have at most the planner's max_cells = 100"):
+        prostm.Planner(max_cells=100).plan(field)
+    with pytest.raises(ValueError, match="cannot be planned"):
+        prostm.plan(np.ones((4, 4)), cell=2.0)
+    with pytest.raises(ValueError, match="cannot be planned"):
+        prostm.plan(np.full((4, 4), 1.1e300), cell=5e-3)
+    for cells in (0, -1, 1_000_001):
+        with pytest.raises(ValueError, match="max_cells"):
+            prostm.Planner(max_cells=cells)
+    with pytest.raises(TypeError, match="TargetField"):
+        prostm.Planner().plan(field.pressure)
+
+
+@pytest.mark.parametrize("settings, words", [
+    ({"paths": 9}, "paths = 9 must be between 1 and 8"),
+    ({"sigma": 0}, "sigma = 0 m must be between"),
+    ({"speed": np.nan}, "speed"),
+    ({"preset": "papre"}, "preset 'papre' is unknown"),
+    ({"pathz": 4}, "PlanSettings has no setting 'pathz'; did you mean 'paths'"),
+    ({"xyzzy": 4}, "known are preset, paths"),
+    ({"seed": 2**40}, "32 bits"),
+])
+def test_settings_out_of_bounds(field, settings, words):
+    with pytest.raises(ValueError, match=words):
+        prostm.plan(field, **settings)
+
+
+@pytest.mark.parametrize("name, value", [
+    ("paths", 2.5), ("paths", "4"), ("paths", True), ("paths", None), ("sigma", "wide"), ("sigma", True),
+    ("sigma", [1.0]), ("preset", 3), ("sigma", np.True_), ("paths", np.float64(3)),
+])
+def test_settings_of_another_type(name, value):
+    settings = prostm.PlanSettings()
+    with pytest.raises(TypeError, match=f"PlanSettings.{name} must be"):
+        setattr(settings, name, value)
+    assert settings == prostm.PlanSettings()
+
+
+def test_a_cell_that_is_given_twice(field, tmp_path):
+    with pytest.raises(ValueError, match="says itself"):
+        prostm.plan(field, cell_mm=5)
+    with pytest.raises(ValueError, match="cell_mm"):
+        prostm.plan(tmp_path / "x.npy", cell=5e-3)
+
+
+def test_files_are_refused_in_the_words_of_the_command_line(program, tmp_path):
+    np.save(tmp_path / "three.npy", np.zeros((2, 2, 2)))
+    (tmp_path / "cut.json").write_text('{"format": "prostm-field/1", "cell_mm"')
+    (tmp_path / "negative.json").write_text(
+        '{"format":"prostm-field/1","cell_mm":5,"origin_mm":[0,0],"rows":1,"cols":2,"pressure":[[1,-2]]}')
+    for name, cell in [("three.npy", 5), ("cut.json", None), ("negative.json", None), ("absent.json", None),
+                       ("three.npy", None), ("field.txt", None)]:
+        there = program("plan", tmp_path / name, *(["--cell-mm", cell] if cell else []), status=2).stderr
+        with pytest.raises(prostm.InputError) as refused:
+            prostm.read_field(tmp_path / name, cell_mm=cell)
+        assert isinstance(refused.value, ValueError)
+        assert str(refused.value) in there
+
+
+def test_plan_files_that_are_wrong(tmp_path, field):
+    with pytest.raises(ValueError, match="absent.json"):
+        prostm.read_plan(tmp_path / "absent.json")
+    text = prostm.plan_to_json(prostm.plan(field).plan, field, prostm.PlanSettings())
+    with pytest.raises(ValueError, match="mine.*prostm-plan/1"):
+        prostm.plan_from_json(text.replace("prostm-plan/1", "prostm-plan/9"), "mine")
+    with pytest.raises(ValueError):
+        prostm.plan_from_json(text[:200])
+    with pytest.raises(ValueError, match="nowhere"):
+        prostm.plan(field).write(tmp_path / "nowhere" / "plan.json")
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (([[0, 0, 0]], 1.0), r"\(n, 2\)"),
+    (([], 1.0), "points has"),
+    ((np.zeros((65, 2)), 1.0), "64"),
+    (([[0, np.nan]], 1.0), "coordinate"),
+    (([[0, 0], [1e4, 0]], 1.0), "coordinate"),
+    (([[0, 0], [0.1, 0]], [1.0]), "pressure has the shape"),
+    (([[0, 0], [0.1, 0]], -1.0), "pressure = -1"),
+    (([[0, 0], [0.1, 0]], np.inf), "pressure"),
+    (([[0, 0], [0.1, 0]], 1.0, 0.0), "speed = 0"),
+    (([[0, 0], [0.1, 0]], 1.0, 7.0, 2), "patch = 2"),
+])
+def test_paths_that_cannot_be(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        prostm.FocalPath(*arguments)
+
+
+def test_plans_and_their_uses(field):
+    path = prostm.FocalPath([[0.05, 0.05], [0.07, 0.05]], 1.0, patch=1)
+    with pytest.raises(ValueError, match="at most 8"):
+        prostm.Plan([path] * 9)
+    with pytest.raises(TypeError):
+        prostm.Plan([None])
+    with pytest.raises(ValueError, match="patch 1; the target has 1"):
+        prostm.lift(prostm.Plan([path]), field)
+    plan = prostm.plan(field).plan
+    with pytest.raises(ValueError, match="sigma = 0"):
+        prostm.quasi_static_field(plan, field, sigma=0)
+    with pytest.raises(ValueError, match="gain"):
+        prostm.score_plan(field, plan, gain=-1)
+    with pytest.raises(ValueError, match="rendered has the shape"):
+        prostm.score_field(field, np.zeros((3, 3)))
+    with pytest.raises(ValueError, match="finite"):
+        prostm.score_field(field, np.full(field.shape, np.nan))
+    with pytest.raises(ValueError, match="length"):
+        prostm.controls(field, length=0)
+    with pytest.raises(ValueError, match="at most 2"):
+        prostm.TargetFrame([field] * 3)
+    with pytest.raises(ValueError, match=r"\(n, 2\)"):
+        prostm.height_at(field, [[1.0, 2.0, 3.0]])
+
+
+@pytest.mark.parametrize("settings, words", [
+    ({}, "full_scale_pressure = 0 Pa"),
+    ({"full_scale_pressure": 1.0, "foci": 0}, "foci = 0"),
+    ({"full_scale_pressure": 1.0, "switch_at": "never"}, "switch_at"),
+    ({"full_scale_pressure": 1.0, "sample_rate": 10.0}, "sample_rate"),
+    ({"full_scale_pressure": 1.0, "focii": 3}, "did you mean 'foci'"),
+])
+def test_emitters_that_cannot_be(settings, words):
+    with pytest.raises(ValueError, match=words):
+        prostm.PathEmitter(**settings)
+
+
+def test_samples_that_cannot_be(field):
+    emitter = prostm.PathEmitter(full_scale_pressure=1.0)
+    for first, samples in [(-1, 40), (0, 0), (0, -4), (0, 10**9)]:
+        with pytest.raises(ValueError):
+            emitter.fill(first, samples)
+    with pytest.raises(ValueError):
+        prostm.emit(prostm.plan(field).plan, field, float("nan"), 1.0)
+    with pytest.raises(ValueError, match="full_scale"):
+        prostm.drive_intensity([1.0], 0.0)

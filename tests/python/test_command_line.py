@@ -1,0 +1,125 @@
+"""The module and the command line are one planner: same field in, same numbers out, to the bit."""
+
+import json
+import re
+
+import numpy as np
+import prostm
+import pytest
+
+from conftest import ROOT, blobs, shared_file
+
+def known(preset):
+    try:
+        prostm.Planner(preset=preset, max_cells=1)
+    except ValueError:
+        return False
+    return True
+
+
+def assert_same_plan(result, document):
+    """A PlanResult and a plan file hold the same paths, metrics and counts."""
+    assert len(result.paths) == len(document["paths"]) > 0
+    for path, saved in zip(result.paths, document["paths"]):
+        np.testing.assert_array_equal(path.points, np.array(saved["points_mm"]) / 1000)
+        np.testing.assert_array_equal(path.pressure, saved["pressure"])
+        assert path.length == saved["length_mm"] / 1000
+        assert path.speed == saved["speed_m_s"]
+        assert path.period == pytest.approx(saved["period_ms"] / 1000, rel=1e-15)
+        assert path.patch == saved["patch"]
+    assert result.metrics().as_dict() == document["metrics"]
+    stats = result.stats.as_dict()
+    assert {name: stats[name] for name in document["counts"]} == document["counts"]
+    assert {name: stats[name] for name in document["violations"]} == document["violations"]
+
+
+@pytest.mark.parametrize("preset", ["paper", "paper-valid", "best", "fast"])
+def test_an_array_is_planned_as_its_file_is(program, tmp_path, pressure, preset):
+    if not known(preset):
+        program("plan", "x.npy", "--cell-mm", "5", "--preset", preset, status=2)
+        pytest.skip(f"neither the program nor the module has the preset {preset} yet")
+    np.save(tmp_path / "field.npy", pressure)
+    program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--preset", preset, "--json", tmp_path / "plan.json")
+    document = json.loads((tmp_path / "plan.json").read_text())
+    assert_same_plan(prostm.plan(pressure, preset, cell_mm=5), document)
+    assert_same_plan(prostm.plan(pressure, preset, cell=0.005), document)
+    assert_same_plan(prostm.plan(tmp_path / "field.npy", preset, cell_mm=5), document)
+
+
+def test_the_controls_are_those_of_the_command_line(program, tmp_path, pressure, field):
+    np.save(tmp_path / "field.npy", pressure)
+    program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--json", tmp_path / "plan.json")
+    saved = json.loads((tmp_path / "plan.json").read_text())["controls"]
+    ours = prostm.controls(field)
+    assert [c.name for c in ours] == [c["name"] for c in saved[:3]]
+    assert [c.metrics.as_dict() for c in ours] == [c["metrics"] for c in saved[:3]]
+    assert len(prostm.controls(field, other=prostm.plan(field).plan)) == 4
+
+
+def test_settings_are_those_of_a_settings_file(program, tmp_path, pressure):
+    np.save(tmp_path / "field.npy", pressure)
+    (tmp_path / "s.toml").write_text("[plan]\npaths = 3\nmax_length = 0.1\nsigma = 6e-3\nseed = 7\n")
+    program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--settings", tmp_path / "s.toml", "--json",
+            tmp_path / "plan.json")
+    document = json.loads((tmp_path / "plan.json").read_text())
+    result = prostm.plan(pressure, cell_mm=5, paths=3, max_length=0.1, sigma=6e-3, seed=7)
+    assert_same_plan(result, document)
+    assert result.settings.as_dict() == document["settings"]["plan"]
+
+
+@pytest.mark.parametrize("preset", ["paper", "paper-valid"])
+def test_the_papers_figure_2(program, tmp_path, preset):
+    name = shared_file("data/paper/fig2.field.json")
+    program("plan", name, "--preset", preset, "--json", tmp_path / "plan.json")
+    document = json.loads((tmp_path / "plan.json").read_text())
+    assert_same_plan(prostm.plan(name, preset), document)
+
+    # the same field from its numbers
+    saved = json.loads(name.read_text())
+    pressure = np.array(saved["pressure"], dtype=float)
+    field = prostm.TargetField(pressure, cell_mm=saved["cell_mm"], origin=np.array(saved["origin_mm"]) / 1000)
+    assert_same_plan(prostm.plan(field, preset), document)
+
+
+def test_fields_written_here_are_read_there_and_back(program, tmp_path, field):
+    prostm.write_field(tmp_path / "field.json", field)
+    program("plan", tmp_path / "field.json", "--json", tmp_path / "plan.json")
+    assert_same_plan(prostm.plan(field), json.loads((tmp_path / "plan.json").read_text()))
+    again = prostm.read_field(tmp_path / "field.json")
+    for name in ["pressure", "skin", "height", "origin", "X_DP", "cell"]:
+        np.testing.assert_array_equal(getattr(again, name), getattr(field, name))
+
+
+def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field):
+    prostm.write_field(tmp_path / "field.json", field)
+    program("plan", tmp_path / "field.json", "--json", tmp_path / "there.json")
+    result = prostm.plan(field)
+    result.write(tmp_path / "here.json")
+    here, there = (json.loads((tmp_path / name).read_text()) for name in ["here.json", "there.json"])
+    assert here["settings"] == {"plan": there["settings"]["plan"]}
+    for document in (here, there):
+        del document["stage_us"], document["settings"]
+    del there["controls"]
+    assert here == there
+
+    for name in ["here.json", "there.json"]:
+        file = prostm.read_plan(tmp_path / name)
+        for a, b in zip(file.plan.paths, result.paths, strict=True):
+            np.testing.assert_array_equal(a.points, b.points)
+            np.testing.assert_array_equal(a.pressure, b.pressure)
+            assert a.length == b.length
+        np.testing.assert_array_equal(file.raster.skin, field.skin)
+    text = prostm.plan_to_json(result.plan, field, result.settings, result.stats, result.metrics(),
+                               prostm.controls(field))
+    assert len(json.loads(text)["controls"]) == 3
+
+
+def test_the_example_of_the_page_works(tmp_path, monkeypatch):
+    """Every block of docs/python.md runs, one after the other, in a folder that holds its field."""
+    monkeypatch.chdir(tmp_path)
+    np.save("palm.npy", blobs())
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), flags=re.S)
+    assert len(blocks) >= 3
+    names = {}
+    for block in blocks:
+        exec(compile(block, "docs/python.md", "exec"), names)

@@ -1,0 +1,245 @@
+"""How the module's objects live: views, copies, threads, memory, settings, help."""
+
+import copy
+import gc
+import inspect
+import os
+import pickle
+import pydoc
+import re
+import threading
+
+import numpy as np
+import prostm
+import pytest
+
+from conftest import ROOT, blobs
+
+
+def test_views_are_read_only_and_keep_what_they_show(field):
+    points = prostm.plan(field).paths[0].points
+    pressure, skin = prostm.TargetField(blobs(), cell_mm=5).pressure, field.skin
+    before = points.copy(), pressure.copy()
+    gc.collect()
+    churn = [prostm.plan(field, paths=k).plan for k in (1, 2, 3)]
+    np.testing.assert_array_equal(points, before[0])
+    np.testing.assert_array_equal(pressure, before[1])
+    assert len(churn) == 3 and skin.dtype == bool
+    for array in (points, pressure, skin, field.height, field.origin):
+        assert not array.flags.writeable and array.base is not None
+        with pytest.raises(ValueError):
+            array[...] = 0
+    path = prostm.plan(field).paths[0]
+    assert np.shares_memory(path.points, path.points)
+
+
+def test_the_array_that_a_field_was_made_from_may_change(pressure):
+    field = prostm.TargetField(pressure, 5e-3)
+    kept = field.pressure.copy()
+    pressure[:] = 7
+    np.testing.assert_array_equal(field.pressure, kept)
+
+
+@pytest.mark.parametrize("make", [
+    lambda p: p.astype(np.float32).astype(np.float64).astype(np.float32),
+    lambda p: np.asfortranarray(p.astype(np.float32)),
+    lambda p: np.repeat(p.astype(np.float32), 2, axis=1)[:, ::2],
+    lambda p: p.astype(np.float32).astype(">f8"),
+    lambda p: p.astype(np.float32).tolist(),
+    lambda p: np.ma.masked_invalid(p.astype(np.float32)),
+    lambda p: np.ma.array(np.nan_to_num(p.astype(np.float32), nan=3.0), mask=np.isnan(p)),
+])
+def test_any_layout_of_the_same_numbers(pressure, make):
+    expected = prostm.TargetField(pressure.astype(np.float32).astype(float), 5e-3)
+    field = prostm.TargetField(make(pressure), 5e-3)
+    np.testing.assert_array_equal(field.pressure, expected.pressure)
+    np.testing.assert_array_equal(field.skin, expected.skin)
+
+
+def test_whole_numbers_and_truth_values_are_pressures():
+    for dtype in (bool, np.uint8, np.int16, np.int64):
+        ones = np.ones((6, 6), dtype)
+        assert prostm.TargetField(ones, 5e-3).pressure.sum() == 36
+
+
+def test_a_field_without_pressure_gives_a_plan_without_paths():
+    for nothing in (np.zeros((5, 5)), np.full((5, 5), np.nan)):
+        result = prostm.plan(nothing, cell_mm=5)
+        assert result.status == prostm.PlanStatus.EmptyTarget and len(result.plan) == 0 and result.paths == []
+        assert not result.quasi_static_field().any() and set(result.metrics().as_dict().values()) == {0.0}
+        assert prostm.controls(result.target) == []
+        _, intensities = prostm.emit(result.plan, result.target, 0.01, 1.0)
+        assert not intensities.any()
+
+
+def test_settings_follow_the_header():
+    """Names and order are those of PlanSettings::visit, whatever it lists."""
+    source = (ROOT / "src" / "plan" / "planner_settings.cpp").read_text()
+    listed = re.findall(r'v\.field\("(\w+)"', source)
+    settings = prostm.PlanSettings()
+    assert list(settings.as_dict()) == listed and len(listed) >= 16
+    for name, value in settings.as_dict().items():
+        assert getattr(settings, name) == value and name in dir(settings) and f"{name}=" in repr(settings)
+        assert getattr(prostm.PlanSettings(**{name: value}), name) == value
+    assert eval(repr(settings), {"PlanSettings": prostm.PlanSettings}) == settings
+
+
+def test_settings_are_values():
+    settings = prostm.PlanSettings(paths=2, sigma=5e-3, preset="paper")
+    settings.speed = 6
+    planner = prostm.Planner(settings, gain=1.2)
+    settings.paths = np.int32(3)
+    assert planner.settings.paths == 2 and planner.settings.speed == 6.0 and planner.settings.gain == 1.2
+    assert settings.gain == 1.4 and settings.paths == 3
+    for twin in (copy.copy(settings), copy.deepcopy(settings), settings.copy(), pickle.loads(pickle.dumps(settings))):
+        assert twin == settings and twin is not settings
+        twin.paths = 1
+        assert twin != settings and settings.paths == 3
+    assert settings != 4
+    with pytest.raises(AttributeError):
+        settings.pathz
+    with pytest.raises(ValueError, match="did you mean 'paths'"):
+        settings.pathz = 4
+
+
+def test_pickles_are_the_same_to_the_bit(field):
+    result = prostm.plan(field)
+    again = pickle.loads(pickle.dumps(result.plan))
+    for a, b in zip(again.paths, result.paths, strict=True):
+        np.testing.assert_array_equal(a.points, b.points)
+        np.testing.assert_array_equal(a.pressure, b.pressure)
+        assert (a.length, a.speed, a.period, a.patch) == (b.length, b.speed, b.period, b.patch)
+    height = np.linspace(0, 0.01, 720).reshape(24, 30)
+    tilted = prostm.TargetField(blobs(), 5e-3, origin=(0.1, 0.2), height=height)
+    twin = pickle.loads(pickle.dumps(tilted))
+    for name in ["pressure", "skin", "height", "origin", "X_DP", "cell", "shape"]:
+        np.testing.assert_array_equal(getattr(twin, name), getattr(tilted, name))
+
+
+def test_a_planner_gives_the_same_plan_again(field):
+    planner = prostm.Planner()
+    first, second, other = planner.plan(field), planner.plan(field), prostm.plan(field)
+    for a, b, c in zip(first.paths, second.paths, other.paths, strict=True):
+        np.testing.assert_array_equal(a.points, b.points)
+        np.testing.assert_array_equal(a.points, c.points)
+
+
+def test_threads_may_share_planner_and_field(field):
+    """The lock of the interpreter is released, and each plan is whole all the same."""
+    planner = prostm.Planner(clusters=20, refine_iterations=20)
+    expected = planner.plan(field).paths[0].points.copy()
+    wrong, done = [], []
+
+    def work():
+        for _ in range(50):
+            if not np.array_equal(planner.plan(field).paths[0].points, expected):
+                wrong.append(threading.get_ident())
+        done.append(True)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(done) == 4 and not wrong
+
+
+def test_python_runs_on_while_a_plan_is_made():
+    """Another thread counts while one long call plans: with the lock held it could not count at all."""
+    planner = prostm.Planner(max_cells=40_000, refine_iterations=20_000, preset="paper")
+    field = prostm.TargetField(np.random.default_rng(1).random((200, 200)), 1e-3)
+    inside, counted = threading.Event(), []
+
+    def work():
+        inside.set()
+        planner.plan(field)
+        inside.clear()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    inside.wait()
+    count = 0
+    while inside.is_set():
+        count += 1
+    counted.append(count)
+    thread.join()
+    assert counted[0] > 10_000
+
+
+def resident_pages():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1])
+
+
+def test_ten_thousand_plans_take_no_memory(pressure):
+    planner = prostm.Planner(clusters=8, refine_iterations=2)
+
+    def once():
+        field = prostm.TargetField(pressure, 5e-3)
+        result = planner.plan(field)
+        for path in result.paths:
+            path.points, path.pressure, path.length
+        return result
+
+    for _ in range(1000):
+        once()
+    before = resident_pages()
+    for _ in range(10_000):
+        once()
+    # a plan is 13 kB, a field 12 kB: keeping one in a hundred of them would be 2.5 MB
+    assert (resident_pages() - before) * os.sysconf("SC_PAGE_SIZE") < 1 << 20
+
+
+def test_other_calls_take_no_memory(field, tmp_path):
+    plan = prostm.plan(field).plan
+    emitter = prostm.PathEmitter(full_scale_pressure=1.0)
+    sample = 0
+
+    def once():
+        nonlocal sample
+        prostm.quasi_static_field(plan, field)
+        prostm.score_plan(field, plan)
+        prostm.plan_from_json(prostm.plan_to_json(plan, field, prostm.PlanSettings(paths=2)))
+        emitter.submit(prostm.lift(plan, field))
+        emitter.fill(sample, 40)
+        sample += 40
+        for bad in (lambda: prostm.PlanSettings(nothing=1), lambda: prostm.TargetField([[-1.0]], 1.0)):
+            with pytest.raises(ValueError):
+                bad()
+
+    for _ in range(100):
+        once()
+    before = resident_pages()
+    for _ in range(1000):
+        once()
+    assert (resident_pages() - before) * os.sysconf("SC_PAGE_SIZE") < 1 << 20
+
+
+def public_names():
+    return [(name, getattr(prostm, name)) for name in prostm.__all__]
+
+
+def test_every_public_name_is_explained():
+    for name, value in public_names():
+        if isinstance(value, int):
+            continue
+        assert value.__doc__ and value.__module__ == "prostm", name
+        for member, attribute in vars(value).items() if inspect.isclass(value) else []:
+            if not member.startswith("_") and member not in ("name", "value"):  # an enumeration's own
+                assert (attribute.__doc__ or "").strip(), f"{name}.{member}"
+    text = pydoc.plain(pydoc.render_doc(prostm))
+    assert "_prostm." not in text and "Planner" in text and "(rows, cols)" in text
+
+
+def test_the_types_name_what_there_is():
+    stub = (ROOT / "python" / "prostm" / "__init__.pyi").read_text()
+    declared = set(re.findall(r"^(?:def|class) (\w+)", stub, flags=re.M)) - {"_Settings"}
+    declared |= set(re.findall(r"^(k\w+):", stub, flags=re.M))
+    assert declared == set(prostm.__all__)
+    for name, value in public_names():
+        block = re.search(rf"^class {name}\b.*?(?=^\S|\Z)", stub, flags=re.M | re.S)
+        if not inspect.isclass(value) or block is None:
+            continue
+        for member in vars(value):
+            if not member.startswith("_") and name not in ("PlanStatus",):
+                assert re.search(rf"\b{member}\b", block.group() + stub.split("class PlanSettings")[0]), f"{name}.{member}"
