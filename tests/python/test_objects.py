@@ -8,6 +8,7 @@ import pickle
 import pydoc
 import re
 import threading
+import time
 
 import numpy as np
 import prostm
@@ -144,26 +145,34 @@ def test_threads_may_share_planner_and_field(field):
     assert len(done) == 4 and not wrong
 
 
-def test_python_runs_on_while_a_plan_is_made():
-    """Another thread counts while one long call plans: with the lock held it could not count at all."""
-    planner = prostm.Planner(max_cells=40_000, refine_iterations=20_000, preset="paper")
-    field = prostm.TargetField(np.random.default_rng(1).random((200, 200)), 1e-3)
-    inside, counted = threading.Event(), []
+def longest_pause_beside(work):
+    """The longest pause of this thread while another is in work(), as a share of the time that work() took."""
+    times = []
 
-    def work():
-        inside.set()
-        planner.plan(field)
-        inside.clear()
+    def timed():
+        times.append(time.perf_counter())
+        work()
+        times.append(time.perf_counter())
 
-    thread = threading.Thread(target=work)
+    thread = threading.Thread(target=timed)
+    longest, last = 0.0, time.perf_counter()
     thread.start()
-    inside.wait()
-    count = 0
-    while inside.is_set():
-        count += 1
-    counted.append(count)
+    while len(times) < 2:
+        now = time.perf_counter()
+        longest, last = max(longest, now - last), now
+    longest = max(longest, time.perf_counter() - last)
     thread.join()
-    assert counted[0] > 10_000
+    return longest / (times[1] - times[0])
+
+
+def test_python_runs_on_while_a_plan_is_made_and_scored():
+    """One call with the lock held would be one pause, as long as the call."""
+    planner = prostm.Planner(max_cells=160_000, preset="paper")
+    field = prostm.TargetField(np.random.default_rng(1).random((400, 400)), 1e-4)
+    plan = planner.plan(field).plan
+    assert longest_pause_beside(lambda: planner.plan(field)) < 0.6
+    assert longest_pause_beside(lambda: prostm.score_plan(field, plan)) < 0.6
+    assert longest_pause_beside(lambda: pow(7, 3_000_000)) > 0.6  # holds it
 
 
 def resident_pages():
