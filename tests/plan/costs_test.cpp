@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/random.hpp"
 #include "fields/fields.hpp"
 #include "plan/refine.hpp"
 
@@ -74,8 +75,8 @@ TEST(Costs, GradientsAgreeWithCentralDifferences) {
   Refiner refiner(CostSettings(PlanSettings{}), kPaths, kSamples, 0);
   PressureRaster raster(fields::kCells * fields::kCells);
   for (int trial = 0; trial < 24; ++trial) {
-    const TargetField field =
-        fields::make(fields::kPatterns[static_cast<std::size_t>(trial % 8)], trial);
+    const TargetField field = fields::make(
+        fields::kPatterns[static_cast<std::size_t>(trial) % fields::kPatterns.size()], trial);
     raster.set(field, max_pressure(field));
     std::vector<Vec2> x = random_paths(random, trial % 2 == 0);
     for (const NamedCost& entry : all_costs(raster, refiner)) {
@@ -111,8 +112,8 @@ TEST(Costs, TurningPathsAndFieldTogetherChangesNothing) {
   PressureRaster raster(fields::kCells * fields::kCells),
       turned_raster(fields::kCells * fields::kCells);
   for (int trial = 0; trial < 16; ++trial) {
-    const TargetField field =
-        fields::make(fields::kPatterns[static_cast<std::size_t>(trial % 8)], trial);
+    const TargetField field = fields::make(
+        fields::kPatterns[static_cast<std::size_t>(trial) % fields::kPatterns.size()], trial);
     raster.set(field, max_pressure(field));
     turned_raster.set(fields::rotated(field), max_pressure(field));
     const std::vector<Vec2> x = random_paths(random, trial % 2 == 0);

@@ -82,8 +82,8 @@ TEST(PlanQuality, TurningTheFieldLeavesTheMeanErrorAlone) {
   Planner planner(settings, fields::kCells * fields::kCells);
   double upright = 0.0, turned = 0.0;
   for (int frame = 0; frame < frames; ++frame) {
-    const TargetField field =
-        fields::make(fields::kPatterns[static_cast<std::size_t>(frame % 8)], frame);
+    const TargetField field = fields::make(
+        fields::kPatterns[static_cast<std::size_t>(frame) % fields::kPatterns.size()], frame);
     const TargetField rotated = fields::rotated(field);
     Plan plan;
     PlanStats stats;

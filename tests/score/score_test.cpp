@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "../../bench/fields/fields.hpp"
+#include "core/random.hpp"
+#include "fields/fields.hpp"
 
 namespace prostm {
 namespace {
