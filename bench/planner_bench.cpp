@@ -1,128 +1,107 @@
-/// Table I of the paper on generated fields: stage times and quality of the textbook planner and of
-/// this one.
+/// What the planners are worth: quality and speed of every preset on the gallery of bench/fields or
+/// on captured fields, beside a textbook planner and controls.
 ///
-/// usage: planner_bench [--json FILE]
+/// usage: planner_bench [--json FILE] [--frames N] [--seeds N] [RECORDING.h5 ...]
 
 #include <fmt/core.h>
 
-#include <array>
-#include <functional>
+#include <charconv>
+#include <cstring>
 #include <string>
 #include <vector>
 
-#include "core/distribution.hpp"
-#include "fields/fields.hpp"
-#include "plan/planner.hpp"
+#include "planner/contenders.hpp"
+#include "planner/quality.hpp"
+#include "planner/sequences.hpp"
 #include "report.hpp"
-#include "score/score.hpp"
-#include "textbook/textbook.hpp"
 
-namespace prostm {
+namespace prostm::bench {
 namespace {
 
-struct Stage {
-  const char* name;
-  double PlanStats::*time;
-};
-constexpr std::array kStages{
-    Stage{"init", &PlanStats::init},         Stage{"k-means", &PlanStats::kmeans},
-    Stage{"tour", &PlanStats::tour},         Stage{"split", &PlanStats::split},
-    Stage{"resample", &PlanStats::resample}, Stage{"refine", &PlanStats::refine},
-    Stage{"total", &PlanStats::total}};
+constexpr const char* kUsage =
+    "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [RECORDING.h5 ...]\n"
+    "  --frames N   scored of each field, spread over its sequence (20)\n"
+    "  --seeds N    of the textbook planner, whose median counts (20)\n"
+    "Recordings of prostm capture take the place of the generated fields.\n";
 
-/// One planner that is measured: its times by stage [µs] and the sums of its quality.
-struct Contender {
-  std::string name;
-  std::function<void(const TargetField&, Plan&, PlanStats&)> plan;
-  std::vector<Distribution> times = std::vector<Distribution>(kStages.size());
-  Metrics sum{};
-  int frames = 0;
-
-  void measure(const TargetField& field, const PlanSettings& settings) {
-    Plan result;
-    PlanStats stats;
-    plan(field, result, stats);
-    for (std::size_t s = 0; s < kStages.size(); ++s) times[s].add(1e6 * stats.*kStages[s].time);
-    const Metrics m = score_plan(field, result, 0, settings.sigma, settings.gain);
-    sum.rmse += m.rmse;
-    sum.correlation += m.correlation;
-    sum.coverage += m.coverage;
-    sum.skill_0 += m.skill_0;
-    sum.skill_8 += m.skill_8;
-    ++frames;
-  }
+struct Options {
+  std::string json;
+  QualityOptions quality;
+  std::vector<std::string> recordings;
 };
 
-std::vector<Contender> contenders(const PlanSettings& settings, std::vector<Planner>& planners) {
-  std::vector<Contender> list;
-  list.push_back({"textbook", [settings](const TargetField& field, Plan& plan, PlanStats& stats) {
-                    textbook::plan(field, settings, plan, stats);
-                  }});
-  for (Planner& planner : planners) {
-    list.push_back({planner.settings().preset,
-                    [&planner](const TargetField& field, Plan& plan, PlanStats& stats) {
-                      planner.plan(field, plan, stats);
-                    }});
+int number(const char* option, const char* text, int low, int high) {
+  int value = 0;
+  const char* end = text + std::strlen(text);
+  const auto [last, error] = std::from_chars(text, end, value);
+  if (error != std::errc() || last != end || value < low || value > high) {
+    throw InputError(
+        fmt::format("{} {} must be a whole number between {} and {}", option, text, low, high));
   }
-  return list;
+  return value;
 }
 
-void print(const std::string& pattern, const std::vector<Contender>& list) {
-  fmt::print("\n{} ({} frames), times in µs\n{:<12} {:<9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", pattern,
-             list[0].frames, "planner", "stage", "mean", "sd", "p50", "p99", "max");
-  for (const Contender& c : list) {
-    for (std::size_t s = 0; s < kStages.size(); ++s) {
-      const Summary t = c.times[s].summary();
-      fmt::print("{:<12} {:<9} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f}\n",
-                 s == 0 ? c.name : "", kStages[s].name, t.mean, t.deviation, t.p50, t.p99, t.max);
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.rfind("--", 0) != 0) {
+      options.recordings.push_back(argument);
+      continue;
+    }
+    if (i + 1 == argc) throw InputError(argument + " needs a value");
+    const char* value = argv[++i];
+    if (argument == "--json") {
+      options.json = value;
+    } else if (argument == "--frames") {
+      options.quality.frames = number("--frames", value, 1, 10'000);
+    } else if (argument == "--seeds") {
+      options.quality.seeds = number("--seeds", value, 1, 1000);
+    } else {
+      throw InputError("there is no option " + argument);
     }
   }
-  fmt::print("{:<12} {:>9} {:>11} {:>9} {:>9} {:>9}\n", "quality", "RMSE", "correlation",
-             "coverage", "skill_0", "skill_8");
-  for (const Contender& c : list) {
-    const double n = c.frames;
-    fmt::print("{:<12} {:>9.4f} {:>11.3f} {:>9.3f} {:>9.3f} {:>9.3f}\n", c.name, c.sum.rmse / n,
-               c.sum.correlation / n, c.sum.coverage / n, c.sum.skill_0 / n, c.sum.skill_8 / n);
-  }
+  return options;
 }
 
-/// Each planner's total beside the textbook's.
-void append_rows(const std::string& pattern, const std::vector<Contender>& list,
-                 std::vector<bench::Row>& rows) {
-  const Summary textbook = list[0].times.back().summary();
-  for (std::size_t c = 1; c < list.size(); ++c) {
-    rows.push_back({fmt::format("planner/{}/{}", list[c].name, pattern), "us",
-                    list[c].times.back().summary(), list[0].name, textbook.p50});
-  }
-}
+std::vector<Row> measure_all(const Options& options) {
+  std::vector<Sequence> sequences;
+  for (const std::string& file : options.recordings) sequences.push_back(captured(file));
+  const std::vector<Sequence> generated = gallery();
+  if (sequences.empty()) sequences = generated;
 
-std::vector<bench::Row> measure() {
-  constexpr int kFrames = 100;
-  const PlanSettings settings;
-  std::vector<Planner> planners;
-  for (const char* preset : {"paper", "paper-valid"}) {
-    PlanSettings own = settings;
-    own.preset = preset;
-    planners.emplace_back(own, fields::kCells * fields::kCells);
+  std::vector<Contender> contenders = available_contenders();
+  std::vector<SequenceOutcome> outcomes;
+  for (std::size_t s = 0; s < sequences.size(); ++s) {
+    // three patterns on, so that it is another kind of field
+    const TargetField other = generated[(s + 3) % generated.size()].field(1);
+    outcomes.push_back(measure(sequences[s], other, contenders, options.quality));
+    print(outcomes.back());
   }
-  std::vector<bench::Row> rows;
-  for (const fields::Pattern pattern : fields::kPatterns) {
-    // frame by frame in turn, so that what else the machine does weighs on all alike
-    std::vector<Contender> list = contenders(settings, planners);
-    for (int frame = 0; frame < kFrames; ++frame) {
-      const TargetField field = fields::make(pattern, frame);
-      for (Contender& c : list) c.measure(field, settings);
-    }
-    print(to_string(pattern), list);
-    append_rows(to_string(pattern), list, rows);
-  }
-  fmt::print("\n");
+  print_summary(outcomes);
+  std::vector<Row> rows;
+  append_rows(outcomes, rows);
   return rows;
 }
 
 }  // namespace
-}  // namespace prostm
+}  // namespace prostm::bench
 
 int main(int argc, char** argv) {
-  return prostm::bench::run(argc, argv, prostm::measure);
+  using namespace prostm;
+  try {
+    if (argc == 2 && std::strcmp(argv[1], "--help") == 0) {
+      fmt::print("{}", bench::kUsage);
+      return 0;
+    }
+    const bench::Options options = bench::parse(argc, argv);
+    const std::vector<bench::Row> rows = bench::measure_all(options);
+    fmt::print("\n");
+    bench::print(rows);
+    if (!options.json.empty()) write_file(options.json, bench::to_json(rows));
+    return 0;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}: {}\n{}", argv[0], error.what(), bench::kUsage);
+    return 2;
+  }
 }
