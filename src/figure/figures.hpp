@@ -32,6 +32,41 @@ struct PlanFigure {
 void draw_plan(const PlanFigure& figure, const std::string& path,
                const PlanFigure* beside = nullptr);
 
+/// What one planner makes of a target.
+struct GalleryPlan {
+  std::string name;
+  Plan plan;
+  std::vector<double> rendered;  ///< Eq. (1), rows·cols of the target
+  Metrics metrics;
+};
+/// A target, and what each planner makes of it.
+struct GalleryField {
+  std::string name;
+  TargetField target;
+  std::vector<GalleryPlan> plans;  ///< the same planners in the same order for every field
+};
+/// For each field its target and beside it every plan's field with the paths, all coloured by
+/// pressure over the target's maximum; RMSE and S_8.5 under each plan, those of the better RMSE in
+/// bold. @throws std::invalid_argument: no field, plans that differ in number, or sizes that
+/// disagree. @throws InputError when the file cannot be written.
+void draw_gallery(const std::string& title, const std::vector<GalleryField>& fields,
+                  const std::string& path);
+
+/// One line of a chart; x ascends.
+struct ChartSeries {
+  std::string name;
+  std::vector<double> x, y;  ///< as many of each, > 0
+};
+struct Chart {
+  std::string title, x_label, y_label;
+  bool logarithmic_x = true;  ///< else x are small whole numbers
+  std::vector<ChartSeries> series;
+};
+/// Charts side by side, y logarithmic, with a faint line of slope 1 where x is logarithmic too.
+/// @throws std::invalid_argument: no chart, or a chart without points or with values that are not
+/// finite and positive. @throws InputError when the file cannot be written.
+void draw_charts(const std::vector<Chart>& charts, const std::string& path);
+
 /// One instant of the whole pipeline.
 struct SceneFigure {
   // the scene from the side: the x–z plane through the hand's middle, frame D
