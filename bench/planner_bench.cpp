@@ -1,31 +1,41 @@
 /// What the planners are worth: quality and speed of every preset on the gallery of bench/fields or
 /// on captured fields, beside a textbook planner and controls.
 ///
-/// usage: planner_bench [--json FILE] [--frames N] [--seeds N] [RECORDING.h5 ...]
+/// usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]
+///                      [--scaling-figure FILE] [RECORDING.h5 ...]
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "figure/figures.hpp"
 #include "planner/contenders.hpp"
+#include "planner/nlopt_baseline.hpp"
+#include "planner/picture.hpp"
 #include "planner/quality.hpp"
+#include "planner/scaling.hpp"
 #include "planner/sequences.hpp"
+#include "planner/steadiness.hpp"
 #include "report.hpp"
 
 namespace prostm::bench {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [RECORDING.h5 ...]\n"
+    "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]\n"
+    "                     [--scaling-figure FILE] [RECORDING.h5 ...]\n"
     "  --frames N   scored of each field, spread over its sequence (20)\n"
     "  --seeds N    of the textbook planner, whose median counts (20)\n"
+    "  --figure FILE, --scaling-figure FILE   draw the gallery, and time against size; .png or "
+    ".svg\n"
     "Recordings of prostm capture take the place of the generated fields.\n";
 
 struct Options {
-  std::string json;
+  std::string json, figure, scaling_figure;
   QualityOptions quality;
   std::vector<std::string> recordings;
 };
@@ -53,6 +63,10 @@ Options parse(int argc, char** argv) {
     const char* value = argv[++i];
     if (argument == "--json") {
       options.json = value;
+    } else if (argument == "--figure") {
+      options.figure = value;
+    } else if (argument == "--scaling-figure") {
+      options.scaling_figure = value;
     } else if (argument == "--frames") {
       options.quality.frames = number("--frames", value, 1, 10'000);
     } else if (argument == "--seeds") {
@@ -60,6 +74,9 @@ Options parse(int argc, char** argv) {
     } else {
       throw InputError("there is no option " + argument);
     }
+  }
+  for (const std::string& figure : {options.figure, options.scaling_figure}) {
+    if (!figure.empty()) check_figure(figure);
   }
   return options;
 }
@@ -81,6 +98,11 @@ std::vector<Row> measure_all(const Options& options) {
   print_summary(outcomes);
   std::vector<Row> rows;
   append_rows(outcomes, rows);
+  if (!options.recordings.empty()) return rows;
+  measure_steadiness(contenders, rows);
+  compare_with_nlopt(std::min(options.quality.frames, 10), rows);
+  measure_scaling(options.scaling_figure, rows);
+  if (!options.figure.empty()) draw_gallery_picture(options.figure);
   return rows;
 }
 

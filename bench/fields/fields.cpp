@@ -48,9 +48,9 @@ bool is_hand(const Vec2& x) {
 
 /// Where a pattern is and how it looks at one instant.
 struct Look {
-  Vec2 shift = Vec2::Zero();                      // [m]
+  Vec2 shift = Vec2::Zero();                       // [m]
   double size = 1.0, phase = 0.0, strength = 1.0;  // phase turns the pattern [rad]
-  double travel = 0.0;                            // of the moving edge [m]
+  double travel = 0.0;                             // of the moving edge [m]
 };
 
 /// A hand moves the pattern by up to 2 mm a frame, the edge sweeps by up to 2.7 mm; each pattern
@@ -122,8 +122,8 @@ double pressure_at(Pattern pattern, const Vec2& point, const Look& look) {
     case Pattern::Palm:
       return step((point - 0.3 * look.shift - kPalm).norm() - 0.031 * look.size, 0.002);
     case Pattern::Edge: {
-      const double ahead = (point - Vec2(0.0, -0.01)).dot(unit(0.5 * kPi + 0.1 * look.phase)) -
-                           look.travel;
+      const double ahead =
+          (point - Vec2(0.0, -0.01)).dot(unit(0.5 * kPi + 0.1 * look.phase)) - look.travel;
       return step(ahead, 0.0015) * std::exp(std::min(ahead, 0.0) / 0.025);
     }
   }
@@ -158,9 +158,8 @@ std::string to_string(Pattern pattern) {
 
 TargetField make(Pattern pattern, int frame, int cells) {
   const Look look = look_at(pattern, frame);
-  return raster(cells, kCell * kCells, is_hand, [&](const Vec2& x) {
-    return look.strength * pressure_at(pattern, x, look);
-  });
+  return raster(cells, kCell * kCells, is_hand,
+                [&](const Vec2& x) { return look.strength * pressure_at(pattern, x, look); });
 }
 
 Vec2 displacement(int frame) {

@@ -30,14 +30,11 @@ class SetNumber : public SettingsVisitor {
 };
 
 const std::vector<Variant>& variants() {
-  static const std::vector<Variant> list{{"paper-valid", "paper-valid"},
-                                         {"fast", "fast"},
-                                         {"fast, warm", "fast", 0.0, true},
-                                         {"best", "best"},
-                                         {"best, warm", "best", 0.0, true},
-                                         {"best, 1 ms", "best", 1.0},
-                                         {"best, 1 ms, warm", "best", 1.0, true},
-                                         {"best, 20 ms", "best", 20.0}};
+  static const std::vector<Variant> list{
+      {"paper-valid", "paper-valid"},          {"fast", "fast"},
+      {"fast, warm", "fast", 0.0, true},       {"best", "best"},
+      {"best, warm", "best", 0.0, true},       {"best, 1 ms", "best", 1.0},
+      {"best, 1 ms, warm", "best", 1.0, true}, {"best, 20 ms", "best", 20.0}};
   return list;
 }
 

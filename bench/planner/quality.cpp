@@ -168,8 +168,8 @@ void show_progress(const std::string& name, int done, int of) {
 }  // namespace
 
 void StageTimes::add(const PlanStats& s) {
-  constexpr std::array kTimes{&PlanStats::init,     &PlanStats::kmeans, &PlanStats::tour,
-                              &PlanStats::split,    &PlanStats::resample, &PlanStats::refine,
+  constexpr std::array kTimes{&PlanStats::init,  &PlanStats::kmeans,   &PlanStats::tour,
+                              &PlanStats::split, &PlanStats::resample, &PlanStats::refine,
                               &PlanStats::total};
   for (std::size_t i = 0; i < kTimes.size(); ++i) stage[i].add(1e6 * s.*kTimes[i]);
 }

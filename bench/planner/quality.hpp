@@ -42,12 +42,12 @@ struct Outcome {
 /// All planners on one sequence.
 struct SequenceOutcome {
   std::string name;
-  std::vector<int> frames;       ///< the scored ones
-  Outcome textbook;              ///< each metric's median over the seeds
-  Outcome tuned;                 ///< the same with the weights of least RMSE on this sequence
-  std::string tuned_weights;     ///< which those are
-  std::vector<Outcome> planners; ///< the first is paper-valid
-  std::vector<Control> controls; ///< means over the scored frames
+  std::vector<int> frames;        ///< the scored ones
+  Outcome textbook;               ///< each metric's median over the seeds
+  Outcome tuned;                  ///< the same with the weights of least RMSE on this sequence
+  std::string tuned_weights;      ///< which those are
+  std::vector<Outcome> planners;  ///< the first is paper-valid
+  std::vector<Control> controls;  ///< means over the scored frames
 };
 
 /// @param other a target of another kind, for the control "paths of another target".

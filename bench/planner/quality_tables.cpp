@@ -21,9 +21,9 @@ struct Comparison {
 };
 
 void add_share(Metrics& sum, const Metrics& m, double share) {
-  for (const auto member : {&Metrics::rmse, &Metrics::correlation, &Metrics::coverage,
-                            &Metrics::skill_0, &Metrics::skill_8, &Metrics::overlap,
-                            &Metrics::spill}) {
+  for (const auto member :
+       {&Metrics::rmse, &Metrics::correlation, &Metrics::coverage, &Metrics::skill_0,
+        &Metrics::skill_8, &Metrics::overlap, &Metrics::spill}) {
     sum.*member += share * m.*member;
   }
 }
@@ -45,7 +45,8 @@ Comparison compare(const Outcome& ours, const SequenceOutcome& all) {
     add_share(textbook, all.textbook.metrics[f], 1.0 / c.frames);
     add_share(paper, valid.metrics[f], 1.0 / c.frames);
     const Metrics &m = ours.metrics[f], &a = all.textbook.metrics[f], &b = valid.metrics[f];
-    const bool worse = m.rmse > std::min(a.rmse, b.rmse) || m.skill_8 < std::max(a.skill_8, b.skill_8);
+    const bool worse =
+        m.rmse > std::min(a.rmse, b.rmse) || m.skill_8 < std::max(a.skill_8, b.skill_8);
     c.frames_worse += worse ? 1.0 : 0.0;
   }
   c.rmse = std::min(textbook.rmse, paper.rmse);
@@ -91,9 +92,8 @@ void print_stages(const SequenceOutcome& all) {
     const char* scene;
     std::array<double, kStages> mean;
   };
-  constexpr std::array kPaper{
-      PaperRow{"one-plume", {285, 1548, 2550, 744, 12, 17896, 24303}},
-      PaperRow{"four-plumes", {142, 948, 1224, 324, 10, 11120, 14640}}};
+  constexpr std::array kPaper{PaperRow{"one-plume", {285, 1548, 2550, 744, 12, 17896, 24303}},
+                              PaperRow{"four-plumes", {142, 948, 1224, 324, 10, 11120, 14640}}};
   for (const PaperRow& paper : kPaper) {
     if (all.name != paper.scene) continue;
     fmt::print("{:<42}", "stages, p50 us");
@@ -156,19 +156,23 @@ void print_means(const std::vector<SequenceOutcome>& outcomes) {
   for (std::size_t p = 0; p < outcomes.front().planners.size(); ++p) {
     const Means m = means_of(outcomes, p);
     if (m.sequences == 0.0) continue;
-    fmt::print("{:<20} {:>7.4f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>+8.3f}   {}, {}, {}; {:.0f} of {:.0f}\n",
-               outcomes.front().planners[p].name, m.ours.rmse / m.sequences,
-               m.ours.correlation / m.sequences, m.ours.skill_8 / m.sequences, m.ours.rmse / m.rmse,
-               (m.sequences - m.ours.skill_8) / m.blur_error, m.least_coverage, m.worse_rmse,
-               m.worse_skill, m.worse_coverage, m.frames_worse, m.frames);
+    fmt::print(
+        "{:<20} {:>7.4f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>+8.3f}   {}, {}, {}; {:.0f} of "
+        "{:.0f}\n",
+        outcomes.front().planners[p].name, m.ours.rmse / m.sequences,
+        m.ours.correlation / m.sequences, m.ours.skill_8 / m.sequences, m.ours.rmse / m.rmse,
+        (m.sequences - m.ours.skill_8) / m.blur_error, m.least_coverage, m.worse_rmse,
+        m.worse_skill, m.worse_coverage, m.frames_worse, m.frames);
   }
 }
 
 /// S_8.5 and RMSE of each planner under each disturbance, and how often it beats paper-valid.
 void print_disturbances(const std::vector<SequenceOutcome>& outcomes) {
   const std::vector<Disturbance> list = disturbances(PlanSettings{}.sigma);
-  fmt::print("\nDisturbed: mean RMSE, mean S_8.5, and share of frames where S_8.5 is above "
-             "paper-valid's\n{:<20}", "");
+  fmt::print(
+      "\nDisturbed: mean RMSE, mean S_8.5, and share of frames where S_8.5 is above "
+      "paper-valid's\n{:<20}",
+      "");
   for (const Disturbance& d : list) fmt::print(" {:>25}", d.name);
   fmt::print("\n");
   for (std::size_t p = 0; p < outcomes.front().planners.size(); ++p) {
@@ -246,8 +250,8 @@ void append_rows(const std::vector<SequenceOutcome>& outcomes, std::vector<Row>&
           {name, "us", planner.times.total(), "textbook", all.textbook.times.total().p50});
       rows.push_back(
           value_row(name + "/rmse", planner.metrics, all.textbook.metrics, &Metrics::rmse));
-      rows.push_back(value_row(name + "/skill_8", planner.metrics, all.textbook.metrics,
-                               &Metrics::skill_8));
+      rows.push_back(
+          value_row(name + "/skill_8", planner.metrics, all.textbook.metrics, &Metrics::skill_8));
     }
   }
 }

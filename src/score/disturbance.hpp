@@ -19,8 +19,9 @@ struct Disturbance {
 /// Directions of a shift: 0°, 45°, …, 315°.
 inline constexpr int kShiftDirections = 8;
 
-/// The disturbances that plans for `sigma` [m] are judged under: the array's own focus (σ = 3.9 mm),
-/// σ 30 % less and 30 % more, the hand displaced by 3 mm, and the tracker's pose wrong by 5 mm.
+/// The disturbances that plans for `sigma` [m] are judged under: the array's own focus (σ = 3.9
+/// mm), σ 30 % less and 30 % more, the hand displaced by 3 mm, and the tracker's pose wrong by 5
+/// mm.
 std::vector<Disturbance> disturbances(double sigma);
 
 /// score_plan() with every path moved by `shift` [m] in the plane: p̂(x) becomes p̂(x − shift), (Q8).

@@ -115,8 +115,7 @@ TEST(ScoreDisturbed, MoreDisturbanceIsWorseForAPlanThatFits) {
   double before = score_plan(target, point, 0, kSigma, kGain).skill_8;
   EXPECT_NEAR(before, 1.0, 1e-6);
   for (const double shift : {2e-3, 4e-3, 8e-3}) {
-    const double skill =
-        score_disturbed(target, point, 0, {"shift", kSigma, shift}, kGain).skill_8;
+    const double skill = score_disturbed(target, point, 0, {"shift", kSigma, shift}, kGain).skill_8;
     EXPECT_LT(skill, before);
     before = skill;
   }

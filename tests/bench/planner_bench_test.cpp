@@ -1,0 +1,120 @@
+/// What the planner's bench counts and measures, on plans whose answer is known.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/units.hpp"
+#include "planner/contenders.hpp"
+#include "planner/sequences.hpp"
+#include "planner/steadiness.hpp"
+#include "planner/violations.hpp"
+
+namespace prostm::bench {
+namespace {
+
+constexpr double kSigma = 8.6e-3, kMaxLength = 0.14;
+
+/// A regular polygon, begun at corner `first`, the other way round if `reversed`.
+FocalPath polygon(const Vec2& centre, double length, int first = 0, bool reversed = false) {
+  constexpr int kCorners = 20;
+  const double radius = length / (2.0 * kCorners * std::sin(kPi / kCorners));
+  FocalPath path;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2.0 * kPi * (reversed ? first - i : first + i) / kCorners;
+    path.points.push_back(centre + radius * Vec2(std::cos(angle), std::sin(angle)));
+    path.pressure.push_back(1.0);
+  }
+  path.length = closed_length(path);
+  return path;
+}
+
+Plan plan_of(const std::vector<FocalPath>& paths) {
+  Plan plan;
+  for (const FocalPath& path : paths) plan.paths.push_back(path);
+  return plan;
+}
+
+Violations violations_of(const Plan& plan) {
+  Violations v;
+  v.add(plan, kSigma, kMaxLength);
+  return v;
+}
+
+TEST(Motion, ARigidlyMovedPlanMovesByItsDisplacement) {
+  const Plan before =
+      plan_of({polygon(Vec2(0.0, 0.0), 0.14), polygon(Vec2(0.06, 0.0), 0.10)});
+  EXPECT_EQ(motion(before, before), 0.0);
+  // the paths in another order, begun elsewhere, one the other way round
+  const Vec2 d(1e-3, -2e-3);
+  const Plan after = plan_of({polygon(Vec2(0.06, 0.0) + d, 0.10, 4, true),
+                              polygon(d, 0.14, 12)});
+  EXPECT_NEAR(motion(before, after), d.norm(), 1e-9);
+}
+
+TEST(Motion, APathWithoutAPartnerHasMovedFromTheNearestOne) {
+  const FocalPath inner = polygon(Vec2::Zero(), 0.10), outer = polygon(Vec2::Zero(), 0.14);
+  // the circles' radii differ by 40 mm / 2π; the outer one stays
+  const double gap = 0.04 / (2.0 * kPi);
+  EXPECT_NEAR(motion(plan_of({outer}), plan_of({inner, outer})), 0.5 * gap, 0.02 * gap);
+  EXPECT_NEAR(motion(plan_of({inner, outer}), plan_of({outer})), 0.5 * gap, 0.02 * gap);
+}
+
+TEST(Violations, AGoodPlanHasNone) {
+  const Violations v = violations_of(
+      plan_of({polygon(Vec2::Zero(), 0.14), polygon(Vec2(0.06, 0.0), 0.14)}));
+  EXPECT_EQ(v.plans, 1);
+  EXPECT_EQ(v.long_paths + v.crossings + v.near_plans + v.near_pairs + v.non_finite, 0);
+}
+
+TEST(Violations, EachKindIsCounted) {
+  EXPECT_EQ(violations_of(plan_of({polygon(Vec2::Zero(), 0.1404)})).long_paths, 0);
+  EXPECT_EQ(violations_of(plan_of({polygon(Vec2::Zero(), 0.1406)})).long_paths, 1);
+
+  // two circles that overlap cross twice
+  const Violations crossed =
+      violations_of(plan_of({polygon(Vec2::Zero(), 0.14), polygon(Vec2(0.0301, 0.0), 0.14)}));
+  EXPECT_EQ(crossed.crossings, 2);
+  EXPECT_EQ(crossed.near_plans, 1);
+
+  // an eight of two of its points
+  FocalPath eight = polygon(Vec2::Zero(), 0.14);
+  std::swap(eight.points[4], eight.points[5]);
+  eight.length = closed_length(eight);
+  EXPECT_GT(violations_of(plan_of({eight})).crossings, 0);
+
+  // concentric circles 0.85 σ apart: every sample has its neighbour on the other
+  const double apart = 0.85 * kSigma;
+  const Violations near = violations_of(
+      plan_of({polygon(Vec2::Zero(), 0.14), polygon(Vec2::Zero(), 0.14 - 2.0 * kPi * apart)}));
+  EXPECT_EQ(near.near_plans, 1);
+  EXPECT_GE(near.near_pairs, 20);
+
+  // neighbours along a path are near and may be, opposite sides of a narrow loop may not
+  EXPECT_EQ(violations_of(plan_of({polygon(Vec2::Zero(), 0.05)})).near_pairs, 0);
+  FocalPath narrow = polygon(Vec2::Zero(), 0.14);
+  for (Vec2& x : narrow.points) x.y() *= 0.1;
+  narrow.length = closed_length(narrow);
+  EXPECT_GT(violations_of(plan_of({narrow})).near_pairs, 0);
+
+  FocalPath broken = polygon(Vec2::Zero(), 0.14);
+  broken.pressure[3] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(violations_of(plan_of({broken})).non_finite, 1);
+}
+
+TEST(Sequences, FramesAreSpreadEvenly) {
+  EXPECT_EQ(spread(100, 4), (std::vector<int>{12, 37, 62, 87}));
+  EXPECT_EQ(spread(3, 20), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(spread(100, 1), std::vector<int>{50});
+}
+
+TEST(Contenders, UnknownPresetsAreLeftOutWithAReason) {
+  std::string why;
+  EXPECT_TRUE(settings_of({"paper-valid", "paper-valid"}, why).has_value());
+  EXPECT_FALSE(settings_of({"odd", "odd"}, why).has_value());
+  EXPECT_NE(why.find("odd"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace prostm::bench
