@@ -2,7 +2,7 @@
 /// on captured fields, beside a textbook planner and controls.
 ///
 /// usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]
-///                      [--scaling-figure FILE] [RECORDING.h5 ...]
+///                      [--scaling-figure FILE] [FIELDS ...]
 
 #include <fmt/core.h>
 
@@ -27,17 +27,18 @@ namespace {
 
 constexpr const char* kUsage =
     "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]\n"
-    "                     [--scaling-figure FILE] [RECORDING.h5 ...]\n"
+    "                     [--scaling-figure FILE] [FIELDS ...]\n"
     "  --frames N   scored of each field, spread over its sequence (20)\n"
     "  --seeds N    of the textbook planner, whose median counts (20)\n"
     "  --figure FILE, --scaling-figure FILE   draw the gallery, and time against size; .png or "
     ".svg\n"
-    "Recordings of prostm capture take the place of the generated fields.\n";
+    "FIELDS, recordings of prostm capture or field files, take the place of the generated "
+    "fields.\n";
 
 struct Options {
   std::string json, figure, scaling_figure;
   QualityOptions quality;
-  std::vector<std::string> recordings;
+  std::vector<std::string> files;
 };
 
 int number(const char* option, const char* text, int low, int high) {
@@ -56,7 +57,7 @@ Options parse(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument.rfind("--", 0) != 0) {
-      options.recordings.push_back(argument);
+      options.files.push_back(argument);
       continue;
     }
     if (i + 1 == argc) throw InputError(argument + " needs a value");
@@ -83,7 +84,7 @@ Options parse(int argc, char** argv) {
 
 std::vector<Row> measure_all(const Options& options) {
   std::vector<Sequence> sequences;
-  for (const std::string& file : options.recordings) sequences.push_back(captured(file));
+  for (const std::string& file : options.files) sequences.push_back(read_sequence(file));
   const std::vector<Sequence> generated = gallery();
   if (sequences.empty()) sequences = generated;
 
@@ -98,7 +99,7 @@ std::vector<Row> measure_all(const Options& options) {
   print_summary(outcomes);
   std::vector<Row> rows;
   append_rows(outcomes, rows);
-  if (!options.recordings.empty()) return rows;
+  if (!options.files.empty()) return rows;
   measure_steadiness(contenders, rows);
   compare_with_nlopt(std::min(options.quality.frames, 10), rows);
   measure_scaling(options.scaling_figure, rows);

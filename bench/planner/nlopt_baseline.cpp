@@ -79,7 +79,8 @@ Minimum with_nlopt(const PressureRaster& raster, const PlanSettings& settings,
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(
       nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(x.size())), nlopt_destroy);
   nlopt_set_min_objective(opt.get(), cost, &problem);
-  nlopt_set_vector_storage(opt.get(), 10);  // pairs that are kept; its own choice takes 15 times as long
+  nlopt_set_vector_storage(opt.get(),
+                           10);  // pairs that are kept; its own choice takes 15 times as long
   nlopt_set_ftol_rel(opt.get(), 1e-10);
   nlopt_set_maxeval(opt.get(), 50'000);
   Minimum minimum;
@@ -141,16 +142,17 @@ void compare_with_nlopt(int frames, std::vector<Row>& rows) {
       converged.add(with_descent(raster, settings, start, 100'000), nlopt);
     }
   }
-  fmt::print("\nThe paper's costs from the same {} starts: (ours - NLopt's) / |NLopt's| of the "
-             "final cost\n{:<34} {:>11} {:>11} {:>11} {:>12} {:>12}\n",
-             theirs.difference.count(), "", "mean", "median", "worst", "p50 us", "evaluations");
+  fmt::print(
+      "\nThe paper's costs from the same {} starts: (ours - NLopt's) / |NLopt's| of the "
+      "final cost\n{:<34} {:>11} {:>11} {:>11} {:>12} {:>12}\n",
+      theirs.difference.count(), "", "mean", "median", "worst", "p50 us", "evaluations");
   preset.print("our descent, the preset's steps");
   converged.print("our descent, until it gains no more");
   theirs.print("NLopt, L-BFGS to convergence");
   rows.push_back({"planner/refinement, the preset's steps", "us", preset.time.summary(),
                   "NLopt L-BFGS", theirs.time.summary().p50});
-  rows.push_back({"planner/refinement, cost over NLopt's", "1", preset.difference.summary(), {},
-                  0.0});
+  rows.push_back(
+      {"planner/refinement, cost over NLopt's", "1", preset.difference.summary(), {}, 0.0});
 }
 
 }  // namespace prostm::bench

@@ -16,6 +16,7 @@ struct Comparison {
   double frames = 0, frames_worse = 0;  // RMSE or S_8.5 worse than both baselines on that frame
   Metrics ours;
   double rmse = 0, blur_error = 0, coverage = 0;  // of the better baseline; blur error = 1 − S_8.5
+  double textbook_rmse = 0;
   double rmse_ratio() const { return ours.rmse / rmse; }
   double blur_ratio() const { return (1.0 - ours.skill_8) / blur_error; }
 };
@@ -50,6 +51,7 @@ Comparison compare(const Outcome& ours, const SequenceOutcome& all) {
     c.frames_worse += worse ? 1.0 : 0.0;
   }
   c.rmse = std::min(textbook.rmse, paper.rmse);
+  c.textbook_rmse = textbook.rmse;
   c.blur_error = 1.0 - std::max(textbook.skill_8, paper.skill_8);
   c.coverage = std::max(textbook.coverage, paper.coverage);
   return c;
@@ -120,7 +122,8 @@ double mean_of(const std::vector<Metrics>& all, double Metrics::*member) {
 /// One planner over all sequences: each counts alike.
 struct Means {
   Metrics ours;
-  double rmse = 0, blur_error = 0, coverage = 0, sequences = 0;
+  double rmse = 0, blur_error = 0, sequences = 0, textbook_rmse = 0;
+  double time = 0, textbook_time = 0, longest = 0;  // sums of medians, largest p99 [µs]
   double least_coverage = HUGE_VAL;  // smallest difference to the baselines' of any sequence
   double frames = 0, frames_worse = 0;
   int worse_rmse = 0, worse_skill = 0, worse_coverage = 0;
@@ -134,6 +137,11 @@ Means means_of(const std::vector<SequenceOutcome>& outcomes, std::size_t planner
     add_share(m.ours, c.ours, 1.0);
     m.rmse += c.rmse;
     m.blur_error += c.blur_error;
+    m.textbook_rmse += c.textbook_rmse;
+    const Summary time = all.planners[planner].times.total();
+    m.time += time.p50;
+    m.textbook_time += all.textbook.times.total().p50;
+    m.longest = std::max(m.longest, time.p99);
     m.sequences += 1.0;
     m.least_coverage = std::min(m.least_coverage, c.ours.coverage - c.coverage);
     m.frames += c.frames;
@@ -147,22 +155,29 @@ Means means_of(const std::vector<SequenceOutcome>& outcomes, std::size_t planner
 
 void print_means(const std::vector<SequenceOutcome>& outcomes) {
   fmt::print(
-      "\nMean over {} fields, against the better of paper-valid and the textbook's medians "
-      "(warm planners from frame {} on)\n{:<20} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8}   {}\n",
-      outcomes.size(), kWarmFrom, "", "RMSE", "corr.", "S_8.5", "RMSE", "1-S_8.5", "least",
-      "fields worse in");
-  fmt::print("{:<20} {:>23} {:>7} {:>7} {:>8}   {}\n", "", "", "ratio", "ratio", "cover",
-             "RMSE, S_8.5, cover > .01; frames");
+      "\nMean over {} fields, against the better of paper-valid and the textbook's medians (warm "
+      "planners from frame {} on)\n",
+      outcomes.size(), kWarmFrom);
+  fmt::print(
+      "{:<20} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8}   {:<25} {:>9} {:>10} {:>10} {:>9} {:>9}\n", "",
+      "RMSE", "corr.", "S_8.5", "RMSE", "1-S_8.5", "least", "fields worse in", "frames", "mean p50",
+      "worst p99", "textbook", "RMSE over");
+  fmt::print(
+      "{:<20} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8}   {:<25} {:>9} {:>10} {:>10} {:>9} {:>9}\n", "",
+      "", "", "", "ratio", "ratio", "cover", "RMSE, S_8.5, cover by .01", "worse", "us", "us",
+      "/ ours", "textbook");
   for (std::size_t p = 0; p < outcomes.front().planners.size(); ++p) {
     const Means m = means_of(outcomes, p);
     if (m.sequences == 0.0) continue;
     fmt::print(
-        "{:<20} {:>7.4f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>+8.3f}   {}, {}, {}; {:.0f} of "
-        "{:.0f}\n",
+        "{:<20} {:>7.4f} {:>7.3f} {:>7.3f} {:>7.3f} {:>8.3f} {:>+8.3f}   {:<25} {:>9} {:>10.1f} "
+        "{:>10.1f} {:>9.2f} {:>9.3f}\n",
         outcomes.front().planners[p].name, m.ours.rmse / m.sequences,
         m.ours.correlation / m.sequences, m.ours.skill_8 / m.sequences, m.ours.rmse / m.rmse,
-        (m.sequences - m.ours.skill_8) / m.blur_error, m.least_coverage, m.worse_rmse,
-        m.worse_skill, m.worse_coverage, m.frames_worse, m.frames);
+        (m.sequences - m.ours.skill_8) / m.blur_error, m.least_coverage,
+        fmt::format("{}, {}, {}", m.worse_rmse, m.worse_skill, m.worse_coverage),
+        fmt::format("{:.0f}/{:.0f}", m.frames_worse, m.frames), m.time / m.sequences, m.longest,
+        m.textbook_time / m.time, m.ours.rmse / m.textbook_rmse);
   }
 }
 

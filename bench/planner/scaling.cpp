@@ -2,9 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
-#include <memory>
+#include <string>
 
 #include "fields/fields.hpp"
 #include "figure/figures.hpp"
@@ -53,30 +52,37 @@ std::vector<Summary> times_at(const TargetField& field, int paths, int repeats) 
 
 /// One table: a line for each size.
 struct Table {
-  std::string quantity;                     // that is varied
-  std::vector<std::string> names;           // of the planners
+  std::string quantity;            // that is varied
+  std::vector<std::string> names;  // of the planners
   std::vector<double> sizes;
   std::vector<std::vector<Summary>> times;  // [size][planner]
 
   void print() const {
-    fmt::print("\nTime against the number of {}, p50 us\n{:>12}", quantity, quantity);
+    fmt::print(
+        "\nTime against the number of {}, p50 us; slope of its logarithm at the large end\n{:>12}",
+        quantity, quantity);
     for (const std::string& name : names) fmt::print(" {:>14}", name);
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       fmt::print("\n{:>12.0f}", sizes[i]);
       for (const Summary& t : times[i]) fmt::print(" {:>14.1f}", t.p50);
     }
-    // d log t / d log n between the two largest sizes
-    fmt::print("\n{:>12}", "last slope");
+    // d log t / d log n between the largest size and the largest of at most a third of it
+    std::size_t third = sizes.size() - 1;
+    while (third > 0 && sizes[third] > sizes.back() / 3.0) --third;
+    fmt::print("\n{:>12}", "slope");
     for (std::size_t p = 0; p < names.size(); ++p) {
-      const std::size_t n = sizes.size();
-      fmt::print(" {:>14.2f}", std::log(times[n - 1][p].p50 / times[n - 2][p].p50) /
-                                   std::log(sizes[n - 1] / sizes[n - 2]));
+      fmt::print(" {:>14.2f}", std::log(times.back()[p].p50 / times[third][p].p50) /
+                                   std::log(sizes.back() / sizes[third]));
     }
     fmt::print("\n");
   }
 
   Chart chart(bool logarithmic) const {
-    Chart chart{"Time against the number of " + quantity, "number of " + quantity, "median time / µs", logarithmic, {}};
+    Chart chart{"Time against the number of " + quantity,
+                "number of " + quantity,
+                "median time / µs",
+                logarithmic,
+                {}};
     for (std::size_t p = 0; p < names.size(); ++p) {
       ChartSeries series{names[p], sizes, {}};
       for (const std::vector<Summary>& at : times) series.y.push_back(at[p].p50);

@@ -6,6 +6,7 @@
 
 #include "core/input_error.hpp"
 #include "fields/fields.hpp"
+#include "io/field_file.hpp"
 #include "io/recorder.hpp"
 
 namespace prostm::bench {
@@ -20,20 +21,29 @@ std::vector<Sequence> gallery() {
   return list;
 }
 
-Sequence captured(const std::string& file) {
-  const RecordingReader recording(file);
+Sequence read_sequence(const std::string& file) {
+  const std::filesystem::path path(file);
   const auto targets = std::make_shared<std::vector<TargetField>>();
-  Sequence sequence;
-  for (int i = 0; i < recording.frames(); ++i) {
-    for (const TargetField& target : recording.frame(i).patches) {
-      if (!(max_pressure(target) > 0.0)) continue;
-      sequence.cells = std::max(sequence.cells, target.size());
-      targets->push_back(target);
-      break;
+  if (path.extension() == ".h5") {
+    const RecordingReader recording(file);
+    for (int i = 0; i < recording.frames(); ++i) {
+      const TargetFrame frame = recording.frame(i);
+      const auto patch =
+          std::find_if(frame.patches.begin(), frame.patches.end(),
+                       [](const TargetField& target) { return max_pressure(target) > 0.0; });
+      if (patch != frame.patches.end()) targets->push_back(*patch);
     }
+  } else {
+    const TargetField target = read_field(file);
+    if (max_pressure(target) > 0.0) targets->push_back(target);
   }
   if (targets->empty()) throw InputError(file + ": none of its fields has pressure to plan for");
-  sequence.name = std::filesystem::path(file).stem().string();
+
+  Sequence sequence;
+  for (const TargetField& target : *targets) {
+    sequence.cells = std::max(sequence.cells, target.size());
+  }
+  sequence.name = path.stem().string();
   sequence.frames = static_cast<int>(targets->size());
   sequence.field = [targets](int frame) { return (*targets)[static_cast<std::size_t>(frame)]; };
   return sequence;

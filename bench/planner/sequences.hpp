@@ -20,9 +20,10 @@ struct Sequence {
 /// The nine of bench/fields.
 std::vector<Sequence> gallery();
 
-/// The first patch of each frame of a recording that has pressure on it. @throws InputError: not a
-/// recording, or without such a frame.
-Sequence captured(const std::string& file);
+/// The fields of a file: of a recording (.h5) the first patch of each frame that has pressure on
+/// it, of any other field file its one field. @throws InputError: no such file, or no pressure in
+/// it.
+Sequence read_sequence(const std::string& file);
 
 /// n frames spread evenly over a sequence, from 0 up; all of them when it has no more.
 std::vector<int> spread(int frames, int n);

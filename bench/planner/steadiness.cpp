@@ -108,8 +108,8 @@ constexpr int kPatience = 6;  // updates
 int updates_to_render(Contender& contender, int which) {
   constexpr int kBefore = 15;
   contender.begin(static_cast<std::size_t>(fields::kCells) * fields::kCells);
-  for (int frame = fields::kAppearingFrame - kBefore;
-       frame < fields::kAppearingFrame + kPatience; ++frame) {
+  for (int frame = fields::kAppearingFrame - kBefore; frame < fields::kAppearingFrame + kPatience;
+       ++frame) {
     const fields::Appearing target = fields::appearing(which, frame);
     Plan plan;
     PlanStats stats;
@@ -123,8 +123,10 @@ int updates_to_render(Contender& contender, int which) {
 }
 
 void measure_moved(std::vector<Contender>& contenders, std::vector<Row>& rows) {
-  fmt::print("\nSteadiness: mean motion of paths per frame over the field's {:.3f} mm, and RMSE\n"
-             "{:<20}", 1e3 * fields::kMovedStep, "");
+  fmt::print(
+      "\nSteadiness: mean motion of paths per frame over the field's {:.3f} mm, and RMSE\n"
+      "{:<20}",
+      1e3 * fields::kMovedStep, "");
   for (const fields::Pattern pattern : fields::kPatterns) fmt::print(" {:>14}", to_string(pattern));
   fmt::print(" {:>14}\n", "mean");
   for (Contender& contender : contenders) {
@@ -140,8 +142,11 @@ void measure_moved(std::vector<Contender>& contenders, std::vector<Row>& rows) {
       std::fflush(stdout);
     }
     fmt::print(" {:>6.2f}x {:>6.4f}\n", ratio.summary().mean, mean_rmse);
-    rows.push_back({fmt::format("planner/{}/motion over displacement", contender.name()), "1",
-                    ratio.summary(), {}, 0.0});
+    rows.push_back({fmt::format("planner/{}/motion over displacement", contender.name()),
+                    "1",
+                    ratio.summary(),
+                    {},
+                    0.0});
   }
 }
 
@@ -157,8 +162,11 @@ void measure_appearing(std::vector<Contender>& contenders, std::vector<Row>& row
       fmt::print(" {:>4}", n > kPatience ? fmt::format(">{}", kPatience) : std::to_string(n));
     }
     fmt::print("\n");
-    rows.push_back({fmt::format("planner/{}/updates until a contact is rendered",
-                                contender.name()), "1", updates.summary(), {}, 0.0});
+    rows.push_back({fmt::format("planner/{}/updates until a contact is rendered", contender.name()),
+                    "1",
+                    updates.summary(),
+                    {},
+                    0.0});
   }
 }
 
@@ -175,8 +183,8 @@ double motion(const Plan& before, const Plan& after) {
       costs[m][f] = distance(loop, at_equal_arcs(fewer.paths[f]));
     }
   }
-  const auto partner = match_paths(costs, static_cast<int>(more.paths.size()),
-                                   static_cast<int>(fewer.paths.size()));
+  const auto partner =
+      match_paths(costs, static_cast<int>(more.paths.size()), static_cast<int>(fewer.paths.size()));
   double sum = 0.0;
   for (std::size_t m = 0; m < more.paths.size(); ++m) {
     sum += partner[m] == kNoPath ? distance_to_plan(more.paths[m], fewer)

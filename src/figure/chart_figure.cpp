@@ -91,8 +91,9 @@ class ChartDrawing {
     const Vec2 at = is_x ? to_page(value, y_.low) : to_page(x_.low, value);
     const Vec2 across = is_x ? Vec2(0.0, -box_.height) : Vec2(box_.width, 0.0);
     const std::array<Vec2, 2> ends{at, at + across};
-    canvas_.line(ends, false, text.empty() ? figure::mix(figure::kPaper, figure::kNoSkin, 0.6)
-                                           : figure::kSkin, 0.7);
+    canvas_.line(ends, false,
+                 text.empty() ? figure::mix(figure::kPaper, figure::kNoSkin, 0.6) : figure::kSkin,
+                 0.7);
     if (text.empty()) return;
     canvas_.text(is_x ? Vec2(at + Vec2(0.0, 16.0)) : Vec2(at + Vec2(-7.0, 4.0)), text,
                  {.size = 10.5, .align = is_x ? Align::Centre : Align::Right});
@@ -170,9 +171,8 @@ class ChartDrawing {
 
 void check(const Chart& chart) {
   const auto good = [](const std::vector<double>& values) {
-    return !values.empty() && std::all_of(values.begin(), values.end(), [](double v) {
-      return std::isfinite(v) && v > 0.0;
-    });
+    return !values.empty() && std::all_of(values.begin(), values.end(),
+                                          [](double v) { return std::isfinite(v) && v > 0.0; });
   };
   if (chart.series.empty()) {
     throw std::invalid_argument("the chart '" + chart.title + "' must have at least one line");
@@ -192,8 +192,8 @@ void draw_charts(const std::vector<Chart>& charts, const std::string& path) {
   const double step = kLeft + kWidth + kRight;
   Canvas canvas(path, step * static_cast<double>(charts.size()), kTop + kHeight + kBottom);
   for (std::size_t i = 0; i < charts.size(); ++i) {
-    ChartDrawing(canvas, charts[i],
-                 {step * static_cast<double>(i) + kLeft, kTop, kWidth, kHeight}).draw();
+    ChartDrawing(canvas, charts[i], {step * static_cast<double>(i) + kLeft, kTop, kWidth, kHeight})
+        .draw();
   }
   canvas.save();
 }

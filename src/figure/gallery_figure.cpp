@@ -104,7 +104,8 @@ void draw_gallery(const std::string& title, const std::vector<GalleryField>& fie
   Canvas canvas(path, width, height);
   canvas.text(Vec2(kMargin, 36.0), title, {.size = 20.0, .bold = true});
   canvas.text(Vec2(kMargin, 56.0),
-              "Pressure over the target's maximum, on the skin; the focal points run along the white lines.",
+              "Pressure over the target's maximum, on the skin; the focal points run along the "
+              "white lines.",
               {.size = 12.0, .colour = figure::kFaintInk});
   for (std::size_t i = 0; i < fields.size(); ++i) {
     draw_field(canvas, fields[i],

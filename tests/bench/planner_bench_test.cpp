@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "core/file.hpp"
 #include "core/units.hpp"
+#include "io/field_file.hpp"
 #include "planner/contenders.hpp"
 #include "planner/sequences.hpp"
 #include "planner/steadiness.hpp"
 #include "planner/violations.hpp"
+#include "support/input_errors.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -43,13 +46,11 @@ Violations violations_of(const Plan& plan) {
 }
 
 TEST(Motion, ARigidlyMovedPlanMovesByItsDisplacement) {
-  const Plan before =
-      plan_of({polygon(Vec2(0.0, 0.0), 0.14), polygon(Vec2(0.06, 0.0), 0.10)});
+  const Plan before = plan_of({polygon(Vec2(0.0, 0.0), 0.14), polygon(Vec2(0.06, 0.0), 0.10)});
   EXPECT_EQ(motion(before, before), 0.0);
   // the paths in another order, begun elsewhere, one the other way round
   const Vec2 d(1e-3, -2e-3);
-  const Plan after = plan_of({polygon(Vec2(0.06, 0.0) + d, 0.10, 4, true),
-                              polygon(d, 0.14, 12)});
+  const Plan after = plan_of({polygon(Vec2(0.06, 0.0) + d, 0.10, 4, true), polygon(d, 0.14, 12)});
   EXPECT_NEAR(motion(before, after), d.norm(), 1e-9);
 }
 
@@ -62,8 +63,8 @@ TEST(Motion, APathWithoutAPartnerHasMovedFromTheNearestOne) {
 }
 
 TEST(Violations, AGoodPlanHasNone) {
-  const Violations v = violations_of(
-      plan_of({polygon(Vec2::Zero(), 0.14), polygon(Vec2(0.06, 0.0), 0.14)}));
+  const Violations v =
+      violations_of(plan_of({polygon(Vec2::Zero(), 0.14), polygon(Vec2(0.06, 0.0), 0.14)}));
   EXPECT_EQ(v.plans, 1);
   EXPECT_EQ(v.long_paths + v.crossings + v.near_plans + v.near_pairs + v.non_finite, 0);
 }
@@ -107,6 +108,26 @@ TEST(Sequences, FramesAreSpreadEvenly) {
   EXPECT_EQ(spread(100, 4), (std::vector<int>{12, 37, 62, 87}));
   EXPECT_EQ(spread(3, 20), (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(spread(100, 1), std::vector<int>{50});
+}
+
+TEST(Sequences, AFieldFileIsASequenceOfOneFrame) {
+  const test::TemporaryFolder folder;
+  TargetField target;
+  target.resize(3, 4);
+  target.cell = 2e-3;
+  target.skin.assign(target.size(), 1);
+  const auto write = [&] { write_file(folder.file("mine.json"), field_to_json(target)); };
+  write();
+  EXPECT_THAT(test::input_error([&] { read_sequence(folder.file("mine.json")); }),
+              testing::HasSubstr("no"));
+  target.pressure[5] = 7.0;
+  write();
+  const Sequence sequence = read_sequence(folder.file("mine.json"));
+  EXPECT_EQ(sequence.name, "mine");
+  EXPECT_EQ(sequence.frames, 1);
+  EXPECT_EQ(sequence.cells, 12u);
+  EXPECT_EQ(sequence.field(0).pressure, target.pressure);
+  test::input_error([&] { read_sequence(folder.file("absent.h5")); });
 }
 
 TEST(Contenders, UnknownPresetsAreLeftOutWithAReason) {

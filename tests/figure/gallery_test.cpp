@@ -20,8 +20,12 @@ std::vector<GalleryField> gallery_of(int fields, int plans) {
 }
 
 Chart chart() {
-  return {"Time", "points", "µs", true, {{"ours", {1e3, 1e4, 1e5}, {100, 700, 8000}},
-                                         {"theirs", {1e3, 1e4, 1e5}, {9e3, 8e4, 9e5}}}};
+  return {
+      "Time",
+      "points",
+      "µs",
+      true,
+      {{"ours", {1e3, 1e4, 1e5}, {100, 700, 8000}}, {"theirs", {1e3, 1e4, 1e5}, {9e3, 8e4, 9e5}}}};
 }
 
 TEST(DrawGallery, ShowsEveryPartOfWhatItIsGiven) {
