@@ -38,6 +38,7 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.preset) settings.plan.preset = *options.preset;
   if (options.paths) settings.plan.paths = settings.emit.foci = *options.paths;
+  if (options.budget_ms) settings.plan.budget = 1e-3 * *options.budget_ms;
   if (options.grid) settings.fluid.cells = *options.grid;
   return settings;
 }

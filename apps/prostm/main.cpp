@@ -48,7 +48,7 @@ void add_common(CLI::App& command, CommonOptions& o) {
   command.add_option("--seed", o.seed, "of everything that is drawn at random");
   command.add_option("--preset", o.preset, "best, fast, paper, or paper-valid (default)");
   command.add_option("--paths", o.paths, "focal points, 1 to 8");
-  refuse_unbuilt(command, "--budget-ms", "time for a plan");
+  command.add_option("--budget-ms", o.budget_ms, "time for a plan of preset best; 0: a fixed amount of work");
   only(command, "--method", "pro-stm", "am", "how the field is rendered");
 }
 

@@ -16,6 +16,7 @@ struct CommonOptions {
   std::optional<int> seed;
   std::optional<std::string> preset;
   std::optional<int> paths;
+  std::optional<double> budget_ms;
   std::optional<int> grid;
 };
 

@@ -47,7 +47,6 @@ SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   }
   search.starts = s.fit_starts;
   search.kicks = s.fit_kicks;
-  search.budget = s.budget;
   return search;
 }
 
@@ -150,13 +149,13 @@ void FitPlanner::append(const TargetField& target, double maximum, int patch, Pl
 }
 
 void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch, int paths,
-                            bool continues, Plan& plan, PlanStats& stats) {
+                            double budget, Plan& plan, PlanStats& stats) {
   StageTimer timer;
-  search_.set_target(target, maximum);
+  search_.set_target(target, maximum, budget);
   stats.init += timer.lap();
 
   stats.cost_evaluations +=
-      search_.run(paths, continues ? previous_loops(target, paths) : nullptr, fit_);
+      search_.run(paths, previous_loops(target, paths), fit_);
   std::array<float, kMaxPaths> most{};
   for (int k = 0; k < fit_.loops.paths; ++k) {
     most[static_cast<std::size_t>(k)] =

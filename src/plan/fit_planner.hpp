@@ -19,8 +19,9 @@ class FitPlanner {
   /// Forgets the last plan.
   void reset() { has_previous_ = false; }
   /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
-  /// @param continues whether the last plan is a candidate. @pre maximum > 0.
-  void plan_patch(const TargetField& target, double maximum, int patch, int paths, bool continues,
+  /// @param budget time
+  /// that it may take [s]; 0: the counts of the settings bind. @pre maximum > 0.
+  void plan_patch(const TargetField& target, double maximum, int patch, int paths, double budget,
                   Plan& plan, PlanStats& stats);
 
  private:

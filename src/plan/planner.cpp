@@ -86,8 +86,7 @@ struct Planner::Scratch {
   }
 
   /// Appends at most `paths` paths for one patch to `plan` and adds to `stats` (all but the total).
-  /// @param continues whether the patch's last plan is a candidate.
-  PlanStatus plan_patch(const TargetField& target, int patch, int paths, bool continues, Plan& plan,
+  PlanStatus plan_patch(const TargetField& target, int patch, int paths, double budget, Plan& plan,
                         PlanStats& stats, PlanTrace* trace);
   void collect_points(const TargetField& target, double maximum);
   void initial_paths(int paths, PlanStats& stats, StageTimer& timer, const Vec2& origin,
@@ -189,15 +188,18 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
 }
 
 PlanStatus Planner::Scratch::plan_patch(const TargetField& target, int patch, int paths,
-                                        bool continues, Plan& plan, PlanStats& stats,
+                                        double budget, Plan& plan, PlanStats& stats,
                                         PlanTrace* trace) {
   StageTimer timer;
   const double maximum = checked_maximum(target, max_cells);
   if (maximum < 0.0) return PlanStatus::InvalidTarget;
-  if (maximum == 0.0) return PlanStatus::EmptyTarget;
+  if (maximum == 0.0) {
+    if (!fits.empty()) fits[static_cast<std::size_t>(patch)].reset();
+    return PlanStatus::EmptyTarget;
+  }
   if (!fits.empty()) {
     if (trace != nullptr) *trace = {};
-    fits[static_cast<std::size_t>(patch)].plan_patch(target, maximum, patch, paths, continues, plan,
+    fits[static_cast<std::size_t>(patch)].plan_patch(target, maximum, patch, paths, budget, plan,
                                                      stats);
     return PlanStatus::Planned;
   }
@@ -242,7 +244,8 @@ PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats
   plan.paths.clear();
   stats = {};
   const PlanStatus status =
-      scratch_->plan_patch(target, 0, scratch_->settings.paths, false, plan, stats, trace);
+      scratch_->plan_patch(target, 0, scratch_->settings.paths,
+                                                 scratch_->settings.budget, plan, stats, trace);
   stats.total = timer.seconds();
   return status;
 }
@@ -259,10 +262,17 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
     pressure[i] = total_pressure(frame.patches[i]);
   }
   const std::array<int, kMaxPatches> share = share_paths(pressure, scratch_->settings.paths);
+  const auto planned = std::count_if(share.begin(), share.end(), [](int n) { return n > 0; });
+  const double budget =
+      scratch_->settings.budget / static_cast<double>(std::max<std::ptrdiff_t>(planned, 1));
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
-    if (share[i] == 0) continue;
-    scratch_->plan_patch(frame.patches[i], static_cast<int>(i), share[i], true, plan, stats,
+    if (share[i] == 0 && pressure[i] > 0.0) continue;
+    scratch_->plan_patch(frame.patches[i], static_cast<int>(i), share[i], budget, plan, stats,
                          nullptr);
+  }
+  // a hand that has left starts anew when it comes back
+  for (std::size_t i = frame.patches.size(); i < scratch_->fits.size(); ++i) {
+    scratch_->fits[i].reset();
   }
   stats.total = timer.seconds();
   return plan.paths.empty() ? PlanStatus::EmptyTarget : PlanStatus::Planned;

@@ -80,8 +80,8 @@ struct PlanTrace {
   std::vector<std::vector<int>> split;  ///< (d) the kept tours, indices of clusters
 };
 
-/// Plans the paths of one target. Deterministic: the same settings and targets give the same plans
-/// to the bit, unless a budget is set.
+/// Plans the paths of targets. Deterministic: the same settings and targets give the same plans to
+/// the bit, unless a budget is set.
 class Planner {
  public:
   /// @param max_cells the largest raster that plan() will be given.
@@ -93,19 +93,19 @@ class Planner {
 
   const PlanSettings& settings() const;
 
-  /// Paths for one patch; they are appended to nothing: `plan` is overwritten. Allocates and throws
-  /// nothing (with a trace it does allocate). Leaves `plan` valid in every case.
+  /// Paths for one patch; `plan` is overwritten. Allocates and throws nothing (with a trace it does
+  /// allocate). Leaves `plan` valid in every case. The presets best and fast continue from the plan
+  /// before, where there is one: call reset() first for a plan that depends on nothing else.
   PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats,
                   PlanTrace* trace = nullptr) noexcept;
 
   /// Paths for every patch of a frame: settings.paths are shared out in proportion to Σ p*
   /// (d'Hondt), at least one to each patch that has pressure (with one path in all, to the
   /// strongest), and no path spans two patches. One invalid patch makes the frame invalid. Stage
-  /// times and counts are summed over patches. The presets best and fast continue from the paths of
-  /// the frame before, patch by patch.
+  /// times and counts are summed over patches.
   PlanStatus plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept;
 
-  /// Forgets the frame before.
+  /// Forgets the plan before.
   void reset() noexcept;
 
  private:

@@ -82,6 +82,9 @@ void check_settings(const PlanSettings& s) {
   require_between("fit_starts", s.fit_starts, 1, 10000);
   require_between("fit_kicks", s.fit_kicks, 0, 100000);
   require_between("budget", s.budget, 0.0, 60.0, "s");
+  if (s.budget > 0.0 && preset_from_name(s.preset) != Preset::Best) {
+    throw std::invalid_argument("a budget is for preset best, not " + s.preset);
+  }
 }
 
 }  // namespace planning

@@ -109,6 +109,37 @@ void ReconstructionScratch::clear(const Loops& loops) {
   std::fill_n(normal_end.begin(), loops.nodes(), 0.0F);
 }
 
+namespace {
+
+/// The sweeps with the number of lanes known, so that the lanes of a sample become one vector.
+template <std::size_t kLanes>
+void sweep(const Loops& loops, const NodeArray& right, const NodeArray& after,
+           const NodeArray& inverse, float most, NodeArray& pressure) {
+  const std::size_t n = loops.nodes();
+  const auto relax = [&](std::size_t a) {
+    const std::size_t b = a + kLanes < n ? a + kLanes : 0;
+    const std::size_t before = a > 0 ? a - kLanes : n - kLanes;
+    std::array<float, kLanes> p;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      p[k] = (right[a + k] - after[a + k] * pressure[b + k] -
+              after[before + k] * pressure[before + k]) *
+             inverse[a + k];
+    }
+    for (std::size_t k = 0; k < kLanes; ++k) pressure[a + k] = p[k] < 0.0F ? 0.0F : p[k];
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      pressure[a + k] = pressure[a + k] < most ? pressure[a + k] : most;
+    }
+  };
+  // red-black where the number of samples is even, so that the nodes of a sweep do not wait for
+  // each other
+  for (int round = 0; round < kSweeps; ++round) {
+    for (std::size_t a = 0; a < n; a += 2 * kLanes) relax(a);
+    for (std::size_t a = kLanes; a < n; a += 2 * kLanes) relax(a);
+  }
+}
+
+}  // namespace
+
 void solve_pressures(const Loops& loops, const ReconstructionSettings& settings,
                      const ReconstructionScratch& scratch, Reconstruction& out) {
   const std::size_t n = loops.nodes(), lanes = static_cast<std::size_t>(loops.lanes);
@@ -122,22 +153,10 @@ void solve_pressures(const Loops& loops, const ReconstructionSettings& settings,
     right[a] = scratch.normal[4 * a + 3] + scratch.normal_end[before];
     out.pressure[a] = std::clamp(right[a] * inverse[a], 0.0F, settings.most_pressure);
   }
-  // red-black where the number of samples is even, so that the nodes of a sweep do not wait for
-  // each other
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (int colour = 0; colour < 2; ++colour) {
-      for (int i = colour; i < loops.samples; i += 2) {
-        const std::size_t a = static_cast<std::size_t>(i) * lanes;
-        const std::size_t b = i + 1 == loops.samples ? 0 : a + lanes;
-        const std::size_t before = i == 0 ? n - lanes : a - lanes;
-        for (std::size_t k = 0; k < lanes; ++k) {
-          const float p = (right[a + k] - after[a + k] * out.pressure[b + k] -
-                           after[before + k] * out.pressure[before + k]) *
-                          inverse[a + k];
-          out.pressure[a + k] = std::min(std::max(p, 0.0F), settings.most_pressure);
-        }
-      }
-    }
+  if (lanes == 4) {
+    sweep<4>(loops, right, after, inverse, settings.most_pressure, out.pressure);
+  } else {
+    sweep<8>(loops, right, after, inverse, settings.most_pressure, out.pressure);
   }
 }
 

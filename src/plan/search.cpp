@@ -9,6 +9,12 @@ namespace {
 
 constexpr float kFelt = 0.2F;   // share of the maximum from which a cell asks for paths
 constexpr double kWidth = 1.5;  // of a path in σ: how much area a path of full length serves
+constexpr float kLost = 1.4F;  // rise of the cost, relative to the target's, that calls for starts
+constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
+constexpr double kFinishShare = 0.35;  // of a budget, at most
+constexpr double kMendEvaluations = 3.0;
+constexpr double kFinishMargin = 1.2;  // since times vary
+constexpr double kForgetting = 0.95;
 constexpr int kFewestStops = 9, kMoreStops = 6;
 
 Vec2 centroid(const Loops& loops, int path) {
@@ -41,11 +47,51 @@ Search::Search(std::size_t max_cells, const FitSettings& fit, const SearchSettin
       descent_(std::min(max_cells, CellTiles::kMaxTiles), settings.samples, fit),
       random_(settings.seed) {}
 
-void Search::set_target(const TargetField& target, double maximum) {
+void Search::set_target(const TargetField& target, double maximum, double budget) {
   timer_.restart();
+  budget_ = budget;
   coarse_.set(target, maximum, settings_.coarse_width);
   fine_.set(target, maximum, settings_.fine_width);
-  reserve_ = 0.75 * settings_.budget;
+  share_budget();
+}
+
+/// Sets apart what the finish takes.
+void Search::share_budget() {
+  finish_evaluations_ = settings_.final_evaluations;
+  finish_fine_ = true;
+  if (budget_ <= 0.0) return;
+  const auto evaluations = [&](const CellTiles& cells, double share) {
+    const double each = tile_time_ * static_cast<double>(cells.tiles().size());
+    return std::min(static_cast<int>(share * budget_ / each),
+                    settings_.final_evaluations);
+  };
+  finish_evaluations_ = evaluations(fine_, kFinishShare);
+  finish_fine_ = finish_evaluations_ >= kFewestEvaluations;
+  if (!finish_fine_) finish_evaluations_ = evaluations(coarse_, 0.5 * kFinishShare);
+  const CellTiles& cells = finish_fine_ ? fine_ : coarse_;
+  // pressures are solved on the fine cells at the end in any case
+  const double finish =
+      tile_time_ * (finish_evaluations_ * static_cast<double>(cells.tiles().size()) +
+                    kMendEvaluations * static_cast<double>(fine_.tiles().size()));
+  search_end_ = budget_ - kFinishMargin * finish;
+}
+
+/// How many evaluations of a start or a kick there is time for; 0 for too few to be worth it.
+int Search::affordable(int evaluations) const {
+  if (budget_ <= 0.0) return evaluations;
+  const double each = tile_time_ * static_cast<double>(coarse_.tiles().size());
+  const double left = (search_end_ - timer_.seconds()) / each;
+  return left < kFewestEvaluations ? 0 : static_cast<int>(std::min(left, static_cast<double>(evaluations)));
+}
+
+/// Descent::run, timed.
+int Search::descend(const CellTiles& cells, int evaluations, Fit& fit) {
+  const double start = timer_.seconds();
+  const int used = descent_.run(cells, fit, evaluations);
+  const double each = (timer_.seconds() - start) / (used * static_cast<double>(cells.tiles().size()));
+  // quick to believe that it takes longer, slow to believe that it takes less
+  tile_time_ = std::max(each, kForgetting * tile_time_ + (1.0 - kForgetting) * each);
+  return used;
 }
 
 StartSettings Search::draw_start(int paths) {
@@ -76,10 +122,14 @@ int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
   const int needed = needed_paths(paths);
   initial_.set(coarse_, static_cast<float>(settings_.weak));
   if (initial_.size() == 0) initial_.set(coarse_, 0.0F);
-  for (int start = 0; start < starts && (start == 0 || !is_over()); ++start) {
-    const int count = paths - start % (paths - needed + 1);
+  for (int start = 0; start < starts; ++start) {
+    int evaluations = affordable(settings_.start_evaluations);
+    // without any paths yet, one start there must be
+    if (best.cost == std::numeric_limits<float>::max()) evaluations = std::max(evaluations, 4);
+    if (evaluations == 0) break;
+    const int count = start == 0 ? paths : paths - random_.below(paths - needed + 1);
     initial_.make(draw_start(count), settings_.samples, random_, trial_.loops);
-    used += descent_.run(coarse_, trial_, settings_.start_evaluations);
+    used += descend(coarse_, evaluations, trial_);
     if (trial_.cost < best.cost - hysteresis) {
       best = trial_;
       hysteresis = 0.0F;
@@ -90,7 +140,9 @@ int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
 
 int Search::try_kicks(Fit& best) {
   int used = 0;
-  for (int kick = 0; kick < settings_.kicks && !is_over(); ++kick) {
+  for (int kick = 0; kick < settings_.kicks || budget_ > 0.0; ++kick) {
+    const int evaluations = affordable(settings_.kick_evaluations);
+    if (evaluations == 0) break;
     const int first = random_.below(best.loops.paths);
     const int second = random_.below(3) == 0 ? first : draw_neighbour(best.loops, first, random_);
     const int count = first == second ? 1 : 2;
@@ -110,7 +162,7 @@ int Search::try_kicks(Fit& best) {
       trial_.loops.set_point(i, first, laid_.point(i, 0));
       if (count == 2) trial_.loops.set_point(i, second, laid_.point(i, 1));
     }
-    used += descent_.run(coarse_, trial_, settings_.kick_evaluations);
+    used += descend(coarse_, evaluations, trial_);
     if (trial_.cost < best.cost) best = trial_;
   }
   return used;
@@ -118,23 +170,28 @@ int Search::try_kicks(Fit& best) {
 
 int Search::run(int paths, const Loops* previous, Fit& best) {
   int used = 0;
+  const auto norm = static_cast<float>(coarse_.square_norm());
   if (previous == nullptr) {
     random_ = Random(settings_.seed);
     best.cost = std::numeric_limits<float>::max();
     used += try_starts(paths, settings_.starts, 0.0F, best);
   } else {
     best.loops = *previous;
-    used += descent_.run(coarse_, best, settings_.warm_evaluations);
+    used += descend(coarse_, std::max(affordable(settings_.warm_evaluations), 1), best);
+    // where the target has changed more than the paths can follow, start as if there were none
+    const bool lost = best.cost > kLost * last_cost_ * norm;
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
-    used += try_starts(paths, settings_.warm_starts, margin, best);
+    used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, margin, best);
   }
-  return used + try_kicks(best);
+  used += try_kicks(best);
+  last_cost_ = best.cost / norm;
+  return used;
 }
 
 int Search::finish(const std::array<float, kMaxPaths>& most_length, Fit& fit) {
   const std::array<float, kMaxPaths> unbound = descent_.settings().shape.most_length;
   descent_.settings().shape.most_length = most_length;
-  const int used = descent_.run(fine_, fit, settings_.final_evaluations);
+  const int used = descend(finish_fine_ ? fine_ : coarse_, std::max(finish_evaluations_, 1), fit);
   descent_.settings().shape.most_length = unbound;
   return used;
 }

@@ -35,8 +35,9 @@ class Search {
  public:
   Search(std::size_t max_cells, const FitSettings& fit, const SearchSettings& settings);
 
-  /// Begins a plan: takes over the target. @pre maximum > 0.
-  void set_target(const TargetField& target, double maximum);
+  /// Begins a plan: takes over the target. @param budget time for the plan, in place of the number
+  /// of kicks [s]; 0: the counts bind. @pre maximum > 0.
+  void set_target(const TargetField& target, double maximum, double budget);
 
   /// Fits at most `paths` paths. @param previous the paths of the plan before, or null.
   /// @return evaluations used.
@@ -51,7 +52,9 @@ class Search {
   int needed_paths(int paths) const;
   int try_starts(int paths, int starts, float hysteresis, Fit& best);
   int try_kicks(Fit& best);
-  bool is_over() const { return settings_.budget > 0.0 && timer_.seconds() > reserve_; }
+  void share_budget();
+  int affordable(int evaluations) const;
+  int descend(const CellTiles& cells, int evaluations, Fit& fit);
 
   SearchSettings settings_;
   CellTiles coarse_, fine_;
@@ -61,7 +64,12 @@ class Search {
   Fit trial_;
   Loops laid_;
   StageTimer timer_;
-  double reserve_ = 0.0;  // when starts and kicks must end, so that the finish is in time [s]
+  float last_cost_ = 0.0F;  // over the target's square norm
+  // for a budget: time of an evaluation per tile, as measured; when starts and kicks must end, so
+  // that the finish is in time; and what the finish may cost [s]
+  double budget_ = 0.0, tile_time_ = 1.5e-7, search_end_ = 0.0;
+  int finish_evaluations_ = 0;
+  bool finish_fine_ = true;
 };
 
 }  // namespace prostm::planning

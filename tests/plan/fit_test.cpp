@@ -242,6 +242,8 @@ TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
     Plan plan;
     PlanStats stats;
     Planner& planner = seed % 4 == 0 ? best : fast;
+    // half of them continue from a plan of something else
+    if (seed % 8 < 4) planner.reset();
     const PlanStatus status = planner.plan(input.field, plan, stats);
     if (status != PlanStatus::Planned) {
       ASSERT_TRUE(status == PlanStatus::InvalidTarget || max_pressure(input.field) == 0.0);
@@ -267,6 +269,7 @@ TEST(FitPresets, BestRendersEveryPatternBetterThanPaperValid) {
       Plan theirs, ours;
       PlanStats stats;
       paper.plan(field, theirs, stats);
+      best.reset();
       best.plan(field, ours, stats);
       const Metrics a = score_plan(field, theirs, 0, 8.6e-3, 1.4);
       const Metrics b = score_plan(field, ours, 0, 8.6e-3, 1.4);
