@@ -14,6 +14,8 @@ namespace {
 constexpr double kSpacingShare = 0.9;  // of σ: what valid paths keep
 constexpr double kAlongShare = 2.0;    // of σ: nearer along the path, spacing is not asked for
 constexpr double kRounding = 1e-4;     // share of a bound that single precision may cost
+constexpr double kFastWidth = 6.0;     // of the cells of preset fast [mm]
+constexpr int kFastEvaluations = 9, kFastWarmEvaluations = 5;
 constexpr double kUneven = 1e-6;       // a skin that lengthens paths by less is flat
 constexpr int kMendRounds = 3;         // on uneven skin
 
@@ -39,10 +41,10 @@ SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   if (preset == Preset::Fast) {
     search.starts = 1;
     search.kicks = search.warm_starts = 0;
-    search.start_evaluations = 8;
-    search.warm_evaluations = 2;
-    search.final_evaluations = 1;
-    search.coarse_width = search.fine_width = 5.0;
+    search.start_evaluations = kFastEvaluations;
+    search.warm_evaluations = kFastWarmEvaluations;
+    search.final_evaluations = 0;
+    search.coarse_width = search.fine_width = kFastWidth;
     return search;
   }
   search.starts = s.fit_starts;
@@ -71,6 +73,7 @@ const Loops* FitPlanner::previous_loops(const TargetField& target, int paths) {
 
 /// Length on the skin over length in the plane.
 double FitPlanner::skin_factor(const TargetField& target, int path) {
+  if (is_flat_) return 1.0;
   flat_.points.clear();
   flat_.pressure.assign(static_cast<std::size_t>(fit_.loops.samples), 0.0);
   for (int i = 0; i < fit_.loops.samples; ++i) {
@@ -151,6 +154,8 @@ void FitPlanner::append(const TargetField& target, double maximum, int patch, Pl
 void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch, int paths,
                             double budget, Plan& plan, PlanStats& stats) {
   StageTimer timer;
+  is_flat_ = std::all_of(target.height.begin(), target.height.end(),
+                         [&](double height) { return height == target.height.front(); });
   search_.set_target(target, maximum, budget);
   stats.init += timer.lap();
 

@@ -36,7 +36,7 @@ class FitPlanner {
   Fit fit_;
   Loops previous_;  // of the last plan, in P [mm]
   Loops shifted_;   // the same from the target's cell (0, 0)
-  bool has_previous_ = false;
+  bool has_previous_ = false, is_flat_ = false;
   // scratch
   FocalPath flat_;
   std::array<Vec2, kMaxLoopNodes> points_;

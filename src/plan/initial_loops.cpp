@@ -16,6 +16,7 @@ InitialLoops::InitialLoops(std::size_t max_cells) {
   for (std::vector<float>* v : {&x_, &y_, &pressure_, &weight_}) v->reserve(max_cells);
   for (std::vector<float>& v : sorted_) v.resize(max_cells);
   label_.reserve(max_cells);
+  distance2_.resize(max_cells);
 }
 
 void InitialLoops::set(const CellTiles& cells, float weak) {
@@ -52,12 +53,31 @@ void InitialLoops::weigh(double exponent) {
   }
 }
 
+/// The nearest centre of each cell of the group. Centre by centre, since that vectorises.
+void InitialLoops::assign(Group group, std::size_t count, const Centres& cx, const Centres& cy) {
+  const std::size_t n = group.end - group.begin;
+  const float* const x = x_.data() + group.begin;
+  const float* const y = y_.data() + group.begin;
+  float* const least = distance2_.data();
+  std::int32_t* const label = label_.data() + group.begin;
+  std::fill_n(least, n, std::numeric_limits<float>::max());
+  for (std::size_t c = 0; c < count; ++c) {
+    const float centre_x = cx[c], centre_y = cy[c];
+    const auto own = static_cast<std::int32_t>(c);
+    for (std::size_t i = 0; i < n; ++i) {
+      const float dx = x[i] - centre_x, dy = y[i] - centre_y, squared = dx * dx + dy * dy;
+      label[i] = squared < least[i] ? own : label[i];
+      least[i] = squared < least[i] ? squared : least[i];
+    }
+  }
+}
+
 /// Lloyd's iteration from points at equal steps of the cumulative weight: fills centres_ and
 /// label_.
 void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
   centres_.centre.clear();
   centres_.mass.clear();
-  std::array<float, kMaxClusters> cx{}, cy{}, mass{}, sum_x{}, sum_y{};
+  Centres cx{}, cy{}, mass{}, sum_x{}, sum_y{};
   const auto count = static_cast<std::size_t>(k);
 
   float total = 0.0F;
@@ -79,17 +99,9 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
     mass.fill(0.0F);
     sum_x.fill(0.0F);
     sum_y.fill(0.0F);
+    assign(group, count, cx, cy);
     for (std::size_t i = group.begin; i < group.end; ++i) {
-      float least = std::numeric_limits<float>::max();
-      std::size_t nearest = 0;
-      for (std::size_t c = 0; c < count; ++c) {
-        const float dx = x_[i] - cx[c], dy = y_[i] - cy[c], distance2 = dx * dx + dy * dy;
-        if (distance2 < least) {
-          least = distance2;
-          nearest = c;
-        }
-      }
-      label_[i] = static_cast<std::uint8_t>(nearest);
+      const auto nearest = static_cast<std::size_t>(label_[i]);
       mass[nearest] += weight_[i];
       sum_x[nearest] += weight_[i] * x_[i];
       sum_y[nearest] += weight_[i] * y_[i];
@@ -110,13 +122,13 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
 /// Puts the cells in the order of their labels. @return one group for each label.
 void InitialLoops::sort_by_label(int k, std::array<Group, kMaxPaths>& groups) {
   std::array<std::size_t, kMaxPaths + 1> start{};
-  for (const std::uint8_t label : label_) ++start[label + 1U];
+  for (const std::int32_t label : label_) ++start[static_cast<std::size_t>(label) + 1];
   for (std::size_t c = 0; c < static_cast<std::size_t>(k); ++c) {
     start[c + 1] += start[c];
     groups[c] = {start[c], start[c]};
   }
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const std::size_t to = groups[label_[i]].end++;
+    const std::size_t to = groups[static_cast<std::size_t>(label_[i])].end++;
     sorted_[0][to] = x_[i];
     sorted_[1][to] = y_[i];
     sorted_[2][to] = pressure_[i];

@@ -128,26 +128,31 @@ void SpacedPairs::update(const Loops& loops, const ShapeSettings& settings) {
         std::min(std::max(total[k], settings.least_length), settings.most_length[k]);
     chord[k] = kLeastChord * longest / static_cast<float>(loops.samples);
   }
-  const float reach = settings.spacing + kPairMargin;
-  for (int i = 0; i < loops.samples; ++i) {
-    for (int k = 0; k < loops.paths; ++k) {
-      const std::size_t a = loops.node(i, k);
-      for (int j = i; j < loops.samples; ++j) {
-        for (int l = j == i ? k + 1 : 0; l < loops.paths; ++l) {
-          const std::size_t b = loops.node(j, l);
-          const float dx = loops.x[a] - loops.x[b], dy = loops.y[a] - loops.y[b];
-          if (dx * dx + dy * dy >= reach * reach) continue;
-          float distance = settings.spacing;
-          if (k == l) {
-            const int steps = std::min(j - i, loops.samples - (j - i));
-            if (steps < 2) continue;
-            distance =
-                std::min(distance, chord[static_cast<std::size_t>(k)] * static_cast<float>(steps));
-          }
-          pairs_.push_back(
-              {static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), distance});
-        }
+  const float reach = settings.spacing + kPairMargin, reach2 = reach * reach;
+  const std::size_t n = loops.nodes();
+  const auto paths = static_cast<std::size_t>(loops.paths);
+  alignas(64) NodeArray squared;
+  for (std::size_t a = 0; a < n; ++a) {
+    const std::size_t k = a % lanes;
+    if (k >= paths) continue;
+    // all distances first, since that vectorises
+    const float x = loops.x[a], y = loops.y[a];
+    for (std::size_t b = a + 1; b < n; ++b) {
+      const float dx = loops.x[b] - x, dy = loops.y[b] - y;
+      squared[b] = dx * dx + dy * dy;
+    }
+    for (std::size_t b = a + 1; b < n; ++b) {
+      if (squared[b] >= reach2) continue;
+      const std::size_t l = b % lanes;
+      if (l >= paths) continue;
+      float distance = settings.spacing;
+      if (k == l) {
+        const auto apart = static_cast<int>((b - a) / lanes);
+        const int steps = std::min(apart, loops.samples - apart);
+        if (steps < 2) continue;
+        distance = std::min(distance, chord[k] * static_cast<float>(steps));
       }
+      pairs_.push_back({static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), distance});
     }
   }
 }

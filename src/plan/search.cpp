@@ -12,9 +12,11 @@ constexpr double kWidth = 1.5;  // of a path in σ: how much area a path of full
 constexpr float kLost = 1.4F;  // rise of the cost, relative to the target's, that calls for starts
 constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
 constexpr double kFinishShare = 0.35;  // of a budget, at most
-constexpr double kMendEvaluations = 3.0;
-constexpr double kFinishMargin = 1.2;  // since times vary
-constexpr double kForgetting = 0.95;
+constexpr double kMendEvaluations = 3.5;  // what mending takes, at most, but for rare cases
+constexpr double kLearning = 0.2;
+constexpr int kAmple = 80;         // evaluations that a search on the usual cells should have
+constexpr double kCoarser = 1.5;   // wider cells where it cannot
+constexpr double kWarmShare = 0.4;  // of a budget: for the paths before, at most
 constexpr int kFewestStops = 9, kMoreStops = 6;
 
 Vec2 centroid(const Loops& loops, int path) {
@@ -51,36 +53,39 @@ void Search::set_target(const TargetField& target, double maximum, double budget
   timer_.restart();
   budget_ = budget;
   coarse_.set(target, maximum, settings_.coarse_width);
-  fine_.set(target, maximum, settings_.fine_width);
+  if (settings_.fine_width < settings_.coarse_width) {
+    fine_.set(target, maximum, settings_.fine_width);
+  }
   share_budget();
+  // where there is little time, many evaluations on coarser cells are worth more than few
+  if (budget_ > 0.0 && affordable(kAmple) < kAmple) {
+    coarse_.set(target, maximum, kCoarser * settings_.coarse_width);
+  }
+}
+
+/// Time of one evaluation [s].
+double Search::evaluation_time(const CellTiles& cells) const {
+  return tile_time_ * static_cast<double>(cells.tiles().size());
 }
 
 /// Sets apart what the finish takes.
 void Search::share_budget() {
-  finish_evaluations_ = settings_.final_evaluations;
-  finish_fine_ = true;
   if (budget_ <= 0.0) return;
-  const auto evaluations = [&](const CellTiles& cells, double share) {
-    const double each = tile_time_ * static_cast<double>(cells.tiles().size());
-    return std::min(static_cast<int>(share * budget_ / each),
-                    settings_.final_evaluations);
-  };
-  finish_evaluations_ = evaluations(fine_, kFinishShare);
-  finish_fine_ = finish_evaluations_ >= kFewestEvaluations;
-  if (!finish_fine_) finish_evaluations_ = evaluations(coarse_, 0.5 * kFinishShare);
-  const CellTiles& cells = finish_fine_ ? fine_ : coarse_;
-  // pressures are solved on the fine cells at the end in any case
-  const double finish =
-      tile_time_ * (finish_evaluations_ * static_cast<double>(cells.tiles().size()) +
-                    kMendEvaluations * static_cast<double>(fine_.tiles().size()));
-  search_end_ = budget_ - kFinishMargin * finish;
+  const double most = kFinishShare * budget_;
+  finish_fine_ = most >= kFewestEvaluations * evaluation_time(fine());
+  const double finish = settings_.final_evaluations * evaluation_time(finish_cells());
+  search_end_ = mend_start() - std::min(finish, finish_fine_ ? most : 0.5 * most);
+}
+
+/// When the finish must end, so that there is time to mend the paths and solve their pressures.
+double Search::mend_start() const {
+  return budget_ - kMendEvaluations * evaluation_time(fine());
 }
 
 /// How many evaluations of a start or a kick there is time for; 0 for too few to be worth it.
 int Search::affordable(int evaluations) const {
   if (budget_ <= 0.0) return evaluations;
-  const double each = tile_time_ * static_cast<double>(coarse_.tiles().size());
-  const double left = (search_end_ - timer_.seconds()) / each;
+  const double left = (search_end_ - timer_.seconds()) / evaluation_time(coarse_);
   return left < kFewestEvaluations ? 0 : static_cast<int>(std::min(left, static_cast<double>(evaluations)));
 }
 
@@ -89,8 +94,8 @@ int Search::descend(const CellTiles& cells, int evaluations, Fit& fit) {
   const double start = timer_.seconds();
   const int used = descent_.run(cells, fit, evaluations);
   const double each = (timer_.seconds() - start) / (used * static_cast<double>(cells.tiles().size()));
-  // quick to believe that it takes longer, slow to believe that it takes less
-  tile_time_ = std::max(each, kForgetting * tile_time_ + (1.0 - kForgetting) * each);
+  // a single call may have been interrupted
+  tile_time_ += kLearning * (std::clamp(each, 0.5 * tile_time_, 2.0 * tile_time_) - tile_time_);
   return used;
 }
 
@@ -177,7 +182,9 @@ int Search::run(int paths, const Loops* previous, Fit& best) {
     used += try_starts(paths, settings_.starts, 0.0F, best);
   } else {
     best.loops = *previous;
-    used += descend(coarse_, std::max(affordable(settings_.warm_evaluations), 1), best);
+    // something new is to be tried in every plan
+    const int few = static_cast<int>(kWarmShare * affordable(kAmple));
+    used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), best);
     // where the target has changed more than the paths can follow, start as if there were none
     const bool lost = best.cost > kLost * last_cost_ * norm;
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
@@ -191,7 +198,12 @@ int Search::run(int paths, const Loops* previous, Fit& best) {
 int Search::finish(const std::array<float, kMaxPaths>& most_length, Fit& fit) {
   const std::array<float, kMaxPaths> unbound = descent_.settings().shape.most_length;
   descent_.settings().shape.most_length = most_length;
-  const int used = descend(finish_fine_ ? fine_ : coarse_, std::max(finish_evaluations_, 1), fit);
+  int evaluations = settings_.final_evaluations;
+  if (budget_ > 0.0) {
+    const double left = (mend_start() - timer_.seconds()) / evaluation_time(finish_cells());
+    evaluations = std::clamp(static_cast<int>(left), 1, evaluations);
+  }
+  const int used = evaluations > 0 ? descend(finish_cells(), evaluations, fit) : 0;
   descent_.settings().shape.most_length = unbound;
   return used;
 }

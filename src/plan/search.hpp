@@ -45,13 +45,20 @@ class Search {
   /// Lowers the cost of `fit` further on the fine cells, under the given bounds of length [mm].
   int finish(const std::array<float, kMaxPaths>& most_length, Fit& fit);
   /// Solves the pressures at the places of `fit`, on the fine cells.
-  void solve(Fit& fit) { descent_.evaluate(fine_, fit); }
+  void solve(Fit& fit) { descent_.evaluate(fine(), fit); }
 
  private:
+  /// The fine cells; the coarse ones are fine enough where both have the same width.
+  const CellTiles& fine() const {
+    return settings_.fine_width < settings_.coarse_width ? fine_ : coarse_;
+  }
   StartSettings draw_start(int paths);
   int needed_paths(int paths) const;
   int try_starts(int paths, int starts, float hysteresis, Fit& best);
   int try_kicks(Fit& best);
+  const CellTiles& finish_cells() const { return finish_fine_ ? fine() : coarse_; }
+  double evaluation_time(const CellTiles& cells) const;
+  double mend_start() const;
   void share_budget();
   int affordable(int evaluations) const;
   int descend(const CellTiles& cells, int evaluations, Fit& fit);
@@ -65,11 +72,10 @@ class Search {
   Loops laid_;
   StageTimer timer_;
   float last_cost_ = 0.0F;  // over the target's square norm
-  // for a budget: time of an evaluation per tile, as measured; when starts and kicks must end, so
-  // that the finish is in time; and what the finish may cost [s]
+  // for a budget: time of an evaluation per tile, as measured, and when starts and kicks must end,
+  // so that the finish is in time [s]
   double budget_ = 0.0, tile_time_ = 1.5e-7, search_end_ = 0.0;
-  int finish_evaluations_ = 0;
-  bool finish_fine_ = true;
+  bool finish_fine_ = true;  // whether there is time to finish on the fine cells
 };
 
 }  // namespace prostm::planning
