@@ -103,6 +103,14 @@ void bind_planner(py::module_& m) {
           "A copy of the settings.")
       .def_readonly("max_cells", &SharedPlanner::max_cells, "The largest raster.")
       .def(
+          "reset",
+          [](SharedPlanner& self) {
+            const py::gil_scoped_release unlocked;
+            const std::lock_guard lock(self.mutex);
+            self.planner.reset();
+          },
+          "Forgets the plan before, which the presets best and fast continue from.")
+      .def(
           "plan",
           [](SharedPlanner& self, const py::object& target, bool trace) {
             if (py::isinstance<TargetField>(target)) return plan_field(self, target, trace);

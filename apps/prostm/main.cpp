@@ -17,16 +17,6 @@ using namespace prostm::app;
 
 constexpr int kBadInput = 2;
 
-/// A value that is known to the design but not built: the sentence says so.
-void refuse_unbuilt(CLI::App& command, const std::string& option, const std::string& help) {
-  command.add_option_function<std::string>(
-      option,
-      [option](const std::string&) {
-        throw prostm::InputError(option + " is not built yet in this version");
-      },
-      help + " (not built yet)");
-}
-
 void only(CLI::App& command, const std::string& option, const std::string& built,
           const std::string& unbuilt, const std::string& help) {
   command.add_option_function<std::string>(
@@ -46,9 +36,10 @@ void add_common(CLI::App& command, CommonOptions& o) {
                      "settings of any stage, a TOML file (docs/files.md)");
   command.add_option("--json", o.json, "write the result as JSON; - is standard output");
   command.add_option("--seed", o.seed, "of everything that is drawn at random");
-  command.add_option("--preset", o.preset, "best, fast, paper, or paper-valid (default)");
+  command.add_option("--preset", o.preset, "best (default), fast, paper, or paper-valid");
   command.add_option("--paths", o.paths, "focal points, 1 to 8");
-  command.add_option("--budget-ms", o.budget_ms, "time for a plan of preset best; 0: a fixed amount of work");
+  command.add_option("--budget-ms", o.budget_ms,
+                     "time for a plan of preset best; 0: a fixed amount of work");
   only(command, "--method", "pro-stm", "am", "how the field is rendered");
 }
 
@@ -100,7 +91,8 @@ void add_plan(CLI::App& app, int& status) {
   command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
   command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
   command->add_option("--figure", o->common.figure,
-                      "the six panels of the paper's Fig. 2 (.png or .svg)");
+                      "target, paths and field; the six panels of the paper's Fig. 2 for its "
+                      "presets (.png or .svg)");
   command->add_option("--beside", o->beside, "draw these digitised panels beside ours (JSON)");
   command->footer(
       "Example:\n  prostm plan palm.npy --cell-mm 5 --preset paper --figure palm.png --json "

@@ -20,9 +20,11 @@ namespace {
 
 void print_plan(std::FILE* out, const Plan& plan, const PlanStats& stats, const Metrics& metrics,
                 const std::vector<Control>& controls) {
-  fmt::print(out, "{} clusters, {} leaves, {} paths; {} too long, {} crossings; {:.2f} ms\n",
-             stats.clusters, stats.leaves, plan.paths.size(), stats.long_paths, stats.crossings,
-             stats.total * 1e3);
+  const std::string work = stats.clusters > 0
+                               ? fmt::format("{} clusters, {} leaves", stats.clusters, stats.leaves)
+                               : fmt::format("{} evaluations of the field", stats.cost_evaluations);
+  fmt::print(out, "{}, {} paths; {} too long, {} crossings; {:.2f} ms\n", work, plan.paths.size(),
+             stats.long_paths, stats.crossings, 1e3 * stats.total);
   for (std::size_t i = 0; i < plan.paths.size(); ++i) {
     const FocalPath& path = plan.paths[i];
     fmt::print(out, "  path {}: {:.1f} mm, {:.1f} ms, {} points\n", i + 1, path.length * 1e3,
@@ -103,9 +105,12 @@ struct Result {
 Result plan_and_score(const TargetField& target, const PlanSettings& s, bool traced) {
   Planner planner(s, target.size());
   Result r;
+  // with a budget, a first plan tells how much work it pays for
+  if (s.budget > 0.0) planner.plan(target, r.plan, r.stats);
+  planner.reset();
   r.status = planner.plan(target, r.plan, r.stats);
   // a second time with the intermediate results, so that collecting them is not in the times
-  if (traced) {
+  if (traced && r.stats.clusters > 0) {
     PlanStats stats;
     planner.plan(target, r.plan, stats, &r.trace);
   }
@@ -114,6 +119,7 @@ Result plan_and_score(const TargetField& target, const PlanSettings& s, bool tra
   const auto seed = static_cast<std::uint64_t>(s.seed);
   Plan other;
   PlanStats other_stats;
+  planner.reset();
   planner.plan(another_target(target, seed), other, other_stats);
   r.controls = controls(target, s.sigma, s.gain, s.max_length, &other, seed);
   return r;

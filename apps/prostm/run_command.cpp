@@ -15,6 +15,8 @@
 namespace prostm::app {
 namespace {
 
+constexpr double kLiveBudget = 3e-3;  // for a plan in real time [s]
+
 /// Records, keeps the instant nearest to one for the picture, and watches for Ctrl-C.
 class Observer final : public RunObserver {
  public:
@@ -186,6 +188,11 @@ int run_command(const RunOptionsGiven& given) {
                  : given.as_fast_as_possible ? RunMode::AsFastAsPossible
                                              : RunMode::RealTime;
   settings.simulated_array.realtime = options.mode == RunMode::RealTime;
+  // a clock is running: the planner gets a share of an update, not a number of tries
+  if (options.mode == RunMode::RealTime && settings.plan.preset == "best" &&
+      settings.plan.budget == 0.0) {
+    settings.plan.budget = kLiveBudget;
+  }
   settings.side_view = !given.common.figure.empty();
 
   double duration = 0.0;

@@ -15,7 +15,7 @@ namespace prostm {
 /// InputError: the name ends in neither .png nor .svg, or the file cannot be written.
 void check_figure(const std::string& path);
 
-/// What the six panels of the paper's Fig. 2 show.
+/// What the panels of the paper's Fig. 2 show.
 struct PlanFigure {
   const TargetField* target = nullptr;
   const Plan* plan = nullptr;
@@ -26,9 +26,10 @@ struct PlanFigure {
   std::string title;
 };
 /// (a) target, (b) clusters, (c) initial tour, (d) split tours, (e) refined paths, (f)
-/// reconstruction, with axes in mm, one colour bar for (a) and (f), a length for each path, and the
-/// table. The panels of `beside`, a plan for the same target, stand under them and its metrics in
-/// the table. @throws InputError when the file cannot be written.
+/// reconstruction; where the trace is empty, since the preset has no such steps, only target, paths
+/// and reconstruction. With axes in mm, one colour bar for the fields, a length for each path, and
+/// the table. The panels of `beside`, a plan for the same target, stand under them and its metrics
+/// in the table. @throws InputError when the file cannot be written.
 void draw_plan(const PlanFigure& figure, const std::string& path,
                const PlanFigure* beside = nullptr);
 

@@ -89,25 +89,43 @@ Panel panel_at(Canvas& canvas, const TargetField& target, int index, double top)
   return {canvas, {x, y, kPanelWidth, kPanelHeight}, extent};
 }
 
-/// The panels that show fields: (a) and (f), on one scale.
+/// Whether the planner went through the paper's steps, which then get panels of their own.
+bool has_steps(const PlanFigure& f) {
+  return !f.trace->clusters.empty();
+}
+
+/// The panels that show fields: the first and the last, on one scale.
 void draw_field_panels(Canvas& canvas, const PlanFigure& f, double top) {
   const double full = max_pressure(*f.target);
   Panel target = panel_at(canvas, *f.target, 0, top);
   target.heat_map(*f.target, f.target->pressure, full);
   target.axes({.title = "(a) target pressure"});
-  Panel reconstruction = panel_at(canvas, *f.target, 5, top);
+  Panel reconstruction = panel_at(canvas, *f.target, has_steps(f) ? 5 : 2, top);
   reconstruction.heat_map(*f.target, f.reconstruction, full);
-  reconstruction.axes({.title = "(f) reconstruction, Eq. (1)"});
+  reconstruction.axes(
+      {.title = has_steps(f) ? "(f) reconstruction, Eq. (1)" : "(c) reconstruction, Eq. (1)"});
   for (const Panel* panel : {&target, &reconstruction}) {
     const Box& box = panel->box();
     figure::colour_bar(canvas, {box.x + box.width + 9.0, box.y, 11.0, box.height}, "p / max p*");
   }
 }
 
-/// The panels that show how the paths come about: (b) to (e).
+/// The paths, with their lengths.
+void draw_paths_panel(Canvas& canvas, const PlanFigure& f, double top) {
+  Panel panel = panel_at(canvas, *f.target, has_steps(f) ? 4 : 1, top);
+  panel.silhouette(*f.target);
+  for (std::size_t i = 0; i < f.plan->paths.size(); ++i) {
+    const auto& points = f.plan->paths[i].points;
+    panel.closed_line({points.data(), points.size()}, figure::path_colour(i), 2.4);
+  }
+  panel.axes({.title = has_steps(f) ? "(e) refined paths" : "(b) paths"});
+  write_lengths(canvas, panel, *f.plan);
+}
+
+/// The panels that show how the paths come about: (b) to (d).
 void draw_step_panels(Canvas& canvas, const PlanFigure& f, double top) {
   const PlanTrace& trace = *f.trace;
-  for (int index = 1; index <= 4; ++index) {
+  for (int index = 1; index <= 3; ++index) {
     Panel panel = panel_at(canvas, *f.target, index, top);
     panel.silhouette(*f.target);
     if (index == 1) {
@@ -116,18 +134,11 @@ void draw_step_panels(Canvas& canvas, const PlanFigure& f, double top) {
     } else if (index == 2) {
       draw_tour(panel, trace, trace.tour, figure::kInk);
       panel.axes({.title = "(c) initial tour"});
-    } else if (index == 3) {
+    } else {
       for (std::size_t i = 0; i < trace.split.size(); ++i) {
         draw_tour(panel, trace, trace.split[i], figure::path_colour(i));
       }
       panel.axes({.title = "(d) split tours"});
-    } else {
-      for (std::size_t i = 0; i < f.plan->paths.size(); ++i) {
-        const auto& points = f.plan->paths[i].points;
-        panel.closed_line({points.data(), points.size()}, figure::path_colour(i), 2.4);
-      }
-      panel.axes({.title = "(e) refined paths"});
-      write_lengths(canvas, panel, *f.plan);
     }
   }
 }
@@ -202,15 +213,19 @@ void draw_plan(const PlanFigure& f, const std::string& path, const PlanFigure* b
   // the page is as high as its panels and its table need
   const Box panel =
       figure::fitted({0.0, 0.0, kPanelWidth, kPanelHeight}, figure::extent_of(*f.target));
-  const double block_height = 2.0 * (panel.height + kBelowPanel);
-  const double table_top =
-      kTop - 6.0 + static_cast<double>(blocks.size()) * (block_height + kBetween) - kBetween;
+  const auto height_of = [&](const PlanFigure& block) {
+    return (has_steps(block) ? 2.0 : 1.0) * (panel.height + kBelowPanel);
+  };
+  double table_top = kTop - 6.0 - kBetween;
+  for (const PlanFigure* block : blocks) table_top += height_of(*block) + kBetween;
   Canvas canvas(path, kPageWidth, table_top + 49.0 + kRowHeight * static_cast<double>(rows.size()));
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const double top = kTop + static_cast<double>(b) * (block_height + kBetween);
-    canvas.text(Vec2(kLeft - 30.0, top - 46.0), blocks[b]->title, {.size = 19.0, .bold = true});
-    draw_field_panels(canvas, *blocks[b], top);
-    draw_step_panels(canvas, *blocks[b], top);
+  double top = kTop;
+  for (const PlanFigure* block : blocks) {
+    canvas.text(Vec2(kLeft - 30.0, top - 46.0), block->title, {.size = 19.0, .bold = true});
+    draw_field_panels(canvas, *block, top);
+    draw_paths_panel(canvas, *block, top);
+    if (has_steps(*block)) draw_step_panels(canvas, *block, top);
+    top += height_of(*block) + kBetween;
   }
   draw_table(canvas, rows, table_top);
   canvas.save();

@@ -16,8 +16,8 @@ constexpr double kAlongShare = 2.0;    // of σ: nearer along the path, spacing 
 constexpr double kRounding = 1e-4;     // share of a bound that single precision may cost
 constexpr double kFastWidth = 6.0;     // of the cells of preset fast [mm]
 constexpr int kFastEvaluations = 9, kFastWarmEvaluations = 5;
-constexpr double kUneven = 1e-6;       // a skin that lengthens paths by less is flat
-constexpr int kMendRounds = 3;         // on uneven skin
+constexpr double kUneven = 1e-6;  // a skin that lengthens paths by less is flat
+constexpr int kMendRounds = 3;    // on uneven skin
 
 FitSettings fit_settings(const PlanSettings& s) {
   FitSettings fit;
@@ -159,8 +159,7 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
   search_.set_target(target, maximum, budget);
   stats.init += timer.lap();
 
-  stats.cost_evaluations +=
-      search_.run(paths, previous_loops(target, paths), fit_);
+  stats.cost_evaluations += search_.run(paths, previous_loops(target, paths), fit_);
   std::array<float, kMaxPaths> most{};
   for (int k = 0; k < fit_.loops.paths; ++k) {
     most[static_cast<std::size_t>(k)] =

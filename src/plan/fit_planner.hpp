@@ -10,7 +10,7 @@
 
 namespace prostm::planning {
 
-/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P16). Remembers the last
+/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15). Remembers the last
 /// plan, so that the next can start from it. Sized once; plan() allocates and throws nothing.
 class FitPlanner {
  public:

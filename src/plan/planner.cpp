@@ -243,8 +243,7 @@ PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats
   StageTimer timer;
   plan.paths.clear();
   stats = {};
-  const PlanStatus status =
-      scratch_->plan_patch(target, 0, scratch_->settings.paths,
+  const PlanStatus status = scratch_->plan_patch(target, 0, scratch_->settings.paths,
                                                  scratch_->settings.budget, plan, stats, trace);
   stats.total = timer.seconds();
   return status;

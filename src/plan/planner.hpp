@@ -24,7 +24,7 @@ std::string to_string(Preset preset);
 
 /// Defaults are the paper's, and docs/design.md section "Planner" where the paper is silent.
 struct PlanSettings {
-  std::string preset = "paper-valid";
+  std::string preset = "best";
   int paths = 4;                     ///< at most, 1..8
   int clusters = 50;                 ///< k of the weighted k-means, 1..50
   int samples = 20;                  ///< N of a path, 8..64
@@ -43,11 +43,11 @@ struct PlanSettings {
   int seed = 1;                 ///< of the clustering
   // presets best and fast
   double least_length = 0.035;   ///< of a path [m]
-  double fit_coverage = 0.1;     ///< weight of pressure that no path reaches, (P13)
-  double fit_bending = 0.1;      ///< weight of bending, (P16)
+  double fit_coverage = 0.1;     ///< weight of pressure that no path reaches, (P12)
+  double fit_bending = 0.1;      ///< weight of bending, (P15)
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
   int fit_starts = 4;            ///< sets of paths laid anew, of a plan without one before
-  int fit_kicks = 20;            ///< tries to lay one or two paths anew
+  int fit_kicks = 8;             ///< tries to lay one or two paths anew
   double budget = 0.0;  ///< time after which `best` tries nothing more [s]; 0: only the counts
                         ///< bind, and the same input gives the same plan
 

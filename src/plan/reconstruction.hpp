@@ -20,8 +20,8 @@ inline constexpr float kReach = 0.65F;
 
 struct ReconstructionSettings {
   float sigma = 8.6F;            ///< σ of Eq. (1) [mm]
-  float smoothing = 0.01F;       ///< λ of (P12): how much neighbouring pressures hold together
-  float weight_coverage = 0.1F;  ///< of (P12b)
+  float smoothing = 0.01F;       ///< λ of (P11): how much neighbouring pressures hold together
+  float weight_coverage = 0.1F;  ///< of (P12)
   float most_pressure = 1.0F;    ///< bound of the p_i, over the frame's maximum
 };
 
@@ -51,7 +51,7 @@ struct ReconstructionScratch {
   void clear(const Loops& loops);
 };
 
-/// E(x) = min over 0 ≤ p ≤ most of Σ w (p̂ − p*)² + λ Σ (p_{i+1} − p_i)², (P11) and (P12), p̂ of
+/// min over 0 ≤ p ≤ most of Σ w (p̂ − p*)² + λ Σ (p_{i+1} − p_i)² (P11), and (P12), p̂ of
 /// Eq. (1) at the closest point over all segments, p linear along them. The gradient is exact where
 /// no cell changes its closest segment and no pressure its bound.
 using ReconstructFunction = void (*)(const CellTiles& cells, const Loops& loops,

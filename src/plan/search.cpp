@@ -9,13 +9,14 @@ namespace {
 
 constexpr float kFelt = 0.2F;   // share of the maximum from which a cell asks for paths
 constexpr double kWidth = 1.5;  // of a path in σ: how much area a path of full length serves
-constexpr float kLost = 1.4F;  // rise of the cost, relative to the target's, that calls for starts
-constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
-constexpr double kFinishShare = 0.35;  // of a budget, at most
+constexpr float kLost = 1.4F;   // rise of the cost, relative to the target's, that calls for starts
+constexpr int kFewestEvaluations = 8;     // fewer are not worth a start, a kick or the fine cells
+constexpr double kKept = 0.97;            // of a budget, so that it is not overrun by a little
+constexpr double kFinishShare = 0.35;     // of a budget, at most
 constexpr double kMendEvaluations = 3.5;  // what mending takes, at most, but for rare cases
 constexpr double kLearning = 0.2;
-constexpr int kAmple = 80;         // evaluations that a search on the usual cells should have
-constexpr double kCoarser = 1.5;   // wider cells where it cannot
+constexpr int kAmple = 80;          // evaluations that a search on the usual cells should have
+constexpr double kCoarser = 1.5;    // wider cells where it cannot
 constexpr double kWarmShare = 0.4;  // of a budget: for the paths before, at most
 constexpr int kFewestStops = 9, kMoreStops = 6;
 
@@ -51,7 +52,7 @@ Search::Search(std::size_t max_cells, const FitSettings& fit, const SearchSettin
 
 void Search::set_target(const TargetField& target, double maximum, double budget) {
   timer_.restart();
-  budget_ = budget;
+  budget_ = kKept * budget;
   coarse_.set(target, maximum, settings_.coarse_width);
   if (settings_.fine_width < settings_.coarse_width) {
     fine_.set(target, maximum, settings_.fine_width);
@@ -86,14 +87,17 @@ double Search::mend_start() const {
 int Search::affordable(int evaluations) const {
   if (budget_ <= 0.0) return evaluations;
   const double left = (search_end_ - timer_.seconds()) / evaluation_time(coarse_);
-  return left < kFewestEvaluations ? 0 : static_cast<int>(std::min(left, static_cast<double>(evaluations)));
+  return left < kFewestEvaluations
+             ? 0
+             : static_cast<int>(std::min(left, static_cast<double>(evaluations)));
 }
 
 /// Descent::run, timed.
 int Search::descend(const CellTiles& cells, int evaluations, Fit& fit) {
   const double start = timer_.seconds();
   const int used = descent_.run(cells, fit, evaluations);
-  const double each = (timer_.seconds() - start) / (used * static_cast<double>(cells.tiles().size()));
+  const double each =
+      (timer_.seconds() - start) / (used * static_cast<double>(cells.tiles().size()));
   // a single call may have been interrupted
   tile_time_ += kLearning * (std::clamp(each, 0.5 * tile_time_, 2.0 * tile_time_) - tile_time_);
   return used;

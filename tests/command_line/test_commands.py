@@ -49,7 +49,7 @@ def test_help_has_an_example(prostm):
 
 def test_plan_file_says_what_the_design_says(prostm, field):
     plan = plan_of(prostm, field)
-    assert plan["format"] == "prostm-plan/1" and plan["preset"] == "paper-valid" and plan["method"] == "pro-stm"
+    assert plan["format"] == "prostm-plan/1" and plan["preset"] == "best" and plan["method"] == "pro-stm"
     assert 1 <= len(plan["paths"]) <= 4
     for path in plan["paths"]:
         points = np.array(path["points_mm"])

@@ -52,8 +52,11 @@ struct PlannedExample {
   PlanTrace trace;
   PlanFigure figure;
 
-  explicit PlannedExample(TargetField field = hand_field()) : target(std::move(field)) {
-    const PlanSettings settings;
+  explicit PlannedExample(TargetField field = hand_field(),
+                          const std::string& preset = "paper-valid")
+      : target(std::move(field)) {
+    PlanSettings settings;
+    settings.preset = preset;
     Planner planner(settings, target.size());
     PlanStats stats;
     planner.plan(target, plan, stats, &trace);

@@ -33,6 +33,24 @@ TEST(DrawPlan, DrawsScalableGraphics) {
   EXPECT_GT(text.size(), 50'000u);
 }
 
+TEST(DrawPlan, IsLowerForAPresetWithoutThePapersSteps) {
+  const test::TemporaryFolder folder;
+  const test::PlannedExample steps, best(test::hand_field(), "best");
+  EXPECT_TRUE(best.trace.clusters.empty());
+  draw_plan(steps.figure, folder.file("steps.svg"));
+  draw_plan(best.figure, folder.file("best.svg"));
+  const std::string six = read_file(folder.file("steps.svg")),
+                    three = read_file(folder.file("best.svg"));
+  EXPECT_TRUE(three.find("</svg>") != three.npos);
+  const auto height = [](const std::string& svg) {
+    return std::stod(svg.substr(svg.find("height=\"") + 8));
+  };
+  EXPECT_LT(height(three), 0.75 * height(six));
+  // under a plan with steps, each keeps its own height
+  draw_plan(best.figure, folder.file("both.svg"), &steps.figure);
+  EXPECT_GT(height(read_file(folder.file("both.svg"))), height(six) + 0.3 * height(three));
+}
+
 TEST(DrawPlan, ShowsEveryPartOfWhatItIsGiven) {
   const test::TemporaryFolder folder;
   const auto bytes_of = [&](const PlanFigure& figure) {

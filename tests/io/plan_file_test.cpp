@@ -110,7 +110,7 @@ TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
 TEST(PlanFile, WritesThePlannersSettingsWhenNoOthersAreGiven) {
   const auto json = nlohmann::json::parse(example());
   EXPECT_EQ(json["settings"]["plan"]["clusters"], 50);
-  EXPECT_EQ(json["settings"]["plan"]["preset"], "paper-valid");
+  EXPECT_EQ(json["settings"]["plan"]["preset"], "best");
   EXPECT_FALSE(json.contains("metrics"));
   EXPECT_FALSE(json.contains("stage_us"));
 }

@@ -127,7 +127,7 @@ def test_a_planner_gives_the_same_plan_again(field):
 
 def test_threads_may_share_planner_and_field(field):
     """The lock of the interpreter is released, and each plan is whole all the same."""
-    planner = prostm.Planner(clusters=20, refine_iterations=20)
+    planner = prostm.Planner(preset="paper-valid", clusters=20, refine_iterations=20)
     expected = planner.plan(field).paths[0].points.copy()
     wrong, done = [], []
 
@@ -181,7 +181,7 @@ def resident_pages():
 
 
 def test_ten_thousand_plans_take_no_memory(pressure):
-    planner = prostm.Planner(clusters=8, refine_iterations=2)
+    planner = prostm.Planner(preset="fast")
 
     def once():
         field = prostm.TargetField(pressure, 5e-3)
@@ -252,3 +252,17 @@ def test_the_types_name_what_there_is():
         for member in vars(value):
             if not member.startswith("_") and name not in ("PlanStatus",):
                 assert re.search(rf"\b{member}\b", block.group() + stub.split("class PlanSettings")[0]), f"{name}.{member}"
+
+
+def test_a_reset_planner_plans_as_a_new_one():
+    pressure = np.zeros((20, 20))
+    pressure[5:12, 6:15] = 1.0
+    target = prostm.TargetField(pressure, cell_mm=4)
+    planner = prostm.Planner(preset="best")
+    first = planner.plan(target).plan
+    planner.plan(target)
+    planner.reset()
+    again = planner.plan(target).plan
+    assert len(first.paths) == len(again.paths) > 0
+    for a, b in zip(first.paths, again.paths):
+        assert (a.points == b.points).all() and (a.pressure == b.pressure).all()
