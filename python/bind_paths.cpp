@@ -99,7 +99,9 @@ void bind_classes(py::module_& m) {
                              "between points; a view.")
       .def_readonly("length", &FocalPath::length, "Of the closed polygon in the plane [m].")
       .def_readonly("speed", &FocalPath::speed, "Of the focal point [m/s].")
-      .def_readonly("period", &FocalPath::period, "length / speed [s].")
+      .def_readonly("period", &FocalPath::period,
+                    "Of a lap [s]: length / speed, or longer where the presets best and fast "
+                    "planned for uneven skin.")
       .def_readonly("patch", &FocalPath::patch, "Index of the target patch (hand).")
       .def("__repr__", &path_repr)
       .def(py::pickle(

@@ -67,7 +67,7 @@ FocalPath read_path(const JsonNode& node) {
     path.pressure.push_back(pressure.at(i).number(0.0, kMaxFilePressure));
   }
 
-  // a lap takes length / speed
+  // the length follows from the points
   const double length = closed_length(path);
   const JsonNode length_mm = node.at("length_mm", "the length of the closed path");
   path.length = from_milli(length_mm.number(0.0, kMaxCoordinateMm));
@@ -78,7 +78,19 @@ FocalPath read_path(const JsonNode& node) {
   }
   constexpr double kMinSpeed = 0.001, kMaxSpeed = 1000.0;
   path.speed = node.at("speed_m_s", "the speed of the focal point").number(kMinSpeed, kMaxSpeed);
+
+  // a lap takes length / speed, or longer on uneven skin
   path.period = path.length / path.speed;
+  if (node.has("period_ms")) {
+    const JsonNode period_ms = node.at("period_ms", "the time of a lap");
+    const double period = from_milli(period_ms.number(0.0, kMaxCoordinateMm / kMinSpeed));
+    if (period < (path.length - kLengthTolerance) / path.speed) {
+      period_ms.fail(fmt::format("is {}; a lap of {:.3f} mm at {} m/s takes at least {:.4f} ms",
+                                 to_milli(period), to_milli(path.length), path.speed,
+                                 to_milli(path.period)));
+    }
+    path.period = period;
+  }
   return path;
 }
 

@@ -16,8 +16,9 @@ constexpr double kAlongShare = 2.0;    // of σ: nearer along the path, spacing 
 constexpr double kRounding = 1e-4;     // share of a bound that single precision may cost
 constexpr double kFastWidth = 6.0;     // of the cells of preset fast [mm]
 constexpr int kFastEvaluations = 9, kFastWarmEvaluations = 5;
-constexpr double kUneven = 1e-6;  // a skin that lengthens paths by less is flat
-constexpr int kMendRounds = 3;    // on uneven skin
+constexpr int kMendRounds = 8;      // at most, on uneven skin
+constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
+constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on any skin
 
 FitSettings fit_settings(const PlanSettings& s) {
   FitSettings fit;
@@ -71,16 +72,23 @@ const Loops* FitPlanner::previous_loops(const TargetField& target, int paths) {
   return &shifted_;
 }
 
-/// Length on the skin over length in the plane.
-double FitPlanner::skin_factor(const TargetField& target, int path) {
+/// Length on the skin over length in the plane. @param loop one path, as in fit_.
+double FitPlanner::skin_factor(const TargetField& target, std::span<const Vec2> loop) {
   if (is_flat_) return 1.0;
   flat_.points.clear();
-  flat_.pressure.assign(static_cast<std::size_t>(fit_.loops.samples), 0.0);
-  for (int i = 0; i < fit_.loops.samples; ++i) {
-    flat_.points.push_back(target.origin + fit_.loops.point(i, path) / kMmPerMetre);
-  }
+  flat_.pressure.assign(loop.size(), 0.0);
+  for (const Vec2& x : loop) flat_.points.push_back(target.origin + x / kMmPerMetre);
   const double flat = closed_length(flat_);
   return flat > 0.0 ? std::max(skin_length(flat_, target) / flat, 1.0) : 1.0;
+}
+
+/// Copies path k of fit_ to place `to` of points_.
+std::span<Vec2> FitPlanner::copy_path(int k, int to) {
+  const std::span<Vec2> loop = path_at(to);
+  for (int i = 0; i < fit_.loops.samples; ++i) {
+    loop[static_cast<std::size_t>(i)] = fit_.loops.point(i, k);
+  }
+  return loop;
 }
 
 /// The paths of fit_, those with the most pressure first.
@@ -100,9 +108,46 @@ boost::container::static_vector<int, kMaxPaths> FitPlanner::by_pressure() const 
   return order;
 }
 
-/// One round of mending: length on the skin, spacing and crossings; pressures are solved again.
-/// @return whether the skin made any path longer than it is in the plane.
-bool FitPlanner::mend(const TargetField& target, PlanStats& stats) {
+/// Bounds each path of points_ by the length in the plane at which it is as long on the skin as it
+/// may be, if its slopes stay as they are. @param share of that length to aim at.
+/// @return whether any path is too long.
+bool FitPlanner::bound_lengths(const TargetField& target, int paths, double share,
+                               SpacingRule& rule) {
+  bool any = false;
+  for (int k = 0; k < paths; ++k) {
+    const std::span<const Vec2> loop = path_at(k);
+    const double most = kMmPerMetre * settings_.max_length / skin_factor(target, loop);
+    const bool is_long = loop_length(loop) > most;
+    any = any || is_long;
+    rule.most_length[static_cast<std::size_t>(k)] = (is_long ? share : 1.0 - kRounding) * most;
+  }
+  return any;
+}
+
+/// Leaves out the paths of points_ that are too long on the skin; where all are, the first becomes
+/// a circle that is not. @return how many are left.
+int FitPlanner::leave_out_long(const TargetField& target, int paths, double least_length) {
+  const auto is_long = [&](std::span<const Vec2> loop) {
+    return loop_length(loop) * skin_factor(target, loop) > kMmPerMetre * settings_.max_length;
+  };
+  int kept = 0;
+  for (int k = 0; k < paths; ++k) {
+    if (is_long(path_at(k))) continue;
+    std::copy_n(path_at(k).begin(), fit_.loops.samples, path_at(kept).begin());
+    ++kept;
+  }
+  if (kept > 0) return kept;
+  const std::span<Vec2> loop = path_at(0);
+  const Vec2 centre = centroid(loop);
+  for (int halving = 0; halving < kMostHalvings; ++halving, least_length *= 0.5) {
+    make_circle(loop, centre, least_length);
+    if (!is_long(loop)) break;
+  }
+  return 1;
+}
+
+/// Mends length on the skin, spacing and crossings; then pressures are solved again.
+void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
   const double sigma = kMmPerMetre * settings_.sigma;
   SpacingRule rule;
   rule.spacing = (1.0 + kRounding) * kSpacingShare * sigma;
@@ -110,25 +155,23 @@ bool FitPlanner::mend(const TargetField& target, PlanStats& stats) {
   rule.least_length = kMmPerMetre * std::min(settings_.least_length, settings_.max_length);
 
   const int n = fit_.loops.samples;
-  bool uneven = false;
-  std::size_t size = 0;
-  for (const int k : by_pressure()) {
-    const double factor = skin_factor(target, k);
-    uneven = uneven || factor > 1.0 + kUneven;
-    rule.most_length[size / static_cast<std::size_t>(n)] =
-        (1.0 - kRounding) * kMmPerMetre * settings_.max_length / factor;
-    for (int i = 0; i < n; ++i) points_[size++] = fit_.loops.point(i, k);
+  int paths = 0;
+  for (const int k : by_pressure()) copy_path(k, paths++);
+  // a path that is mended lies on other slopes than before, so its bound is another
+  bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
+  for (int round = 1; round == 1 || (any_long && round <= kMendRounds); ++round) {
+    const auto size = static_cast<std::size_t>(paths * n);
+    paths = make_spaced(std::span<Vec2>(points_.data(), size), n, rule);
+    any_long = bound_lengths(target, paths, 1.0 - round * kMendStep, rule);
   }
-  const int kept = make_spaced(std::span<Vec2>(points_.data(), size), n, rule);
-  fit_.loops.reset(n, kept);
-  for (int k = 0; k < kept; ++k) {
-    for (int i = 0; i < n; ++i) {
-      fit_.loops.set_point(i, k, points_[static_cast<std::size_t>(k * n + i)]);
-    }
+  if (any_long) paths = leave_out_long(target, paths, rule.least_length);
+
+  fit_.loops.reset(n, paths);
+  for (int k = 0; k < paths; ++k) {
+    for (int i = 0; i < n; ++i) fit_.loops.set_point(i, k, path_at(k)[static_cast<std::size_t>(i)]);
   }
   search_.solve(fit_);
   ++stats.cost_evaluations;
-  return uneven;
 }
 
 void FitPlanner::append(const TargetField& target, double maximum, int patch, Plan& plan,
@@ -145,7 +188,7 @@ void FitPlanner::append(const TargetField& target, double maximum, int patch, Pl
     }
     path.length = closed_length(path);
     path.speed = settings_.speed;
-    path.period = path.length / path.speed;
+    path.period = path.length * skin_factor(target, copy_path(k, 0)) / path.speed;
     plan.paths.push_back(path);
   }
   stats.leaves += static_cast<int>(plan.paths.size() - before);
@@ -162,16 +205,16 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
   stats.cost_evaluations += search_.run(paths, previous_loops(target, paths), fit_);
   std::array<float, kMaxPaths> most{};
   for (int k = 0; k < fit_.loops.paths; ++k) {
-    most[static_cast<std::size_t>(k)] =
-        static_cast<float>(kMmPerMetre * settings_.max_length / skin_factor(target, k));
+    most[static_cast<std::size_t>(k)] = static_cast<float>(kMmPerMetre * settings_.max_length /
+                                                           skin_factor(target, copy_path(k, 0)));
   }
   stats.cost_evaluations += search_.finish(most, fit_);
   stats.cost += static_cast<double>(fit_.cost);
 
-  // a path that is mended has another length on uneven skin
-  for (int round = 0; round < kMendRounds && mend(target, stats); ++round) {
-  }
+  const double start = timer.seconds();
+  mend(target, stats);
   append(target, maximum, patch, plan, stats);
+  search_.learn_ending(timer.seconds() - start);
   previous_ = fit_.loops;
   const auto x = static_cast<float>(kMmPerMetre * target.origin.x());
   const auto y = static_cast<float>(kMmPerMetre * target.origin.y());

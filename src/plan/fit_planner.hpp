@@ -3,6 +3,7 @@
 
 #include <array>
 #include <boost/container/static_vector.hpp>
+#include <span>
 
 #include "plan/planner.hpp"
 #include "plan/search.hpp"
@@ -27,9 +28,16 @@ class FitPlanner {
  private:
   const Loops* previous_loops(const TargetField& target, int paths);
   boost::container::static_vector<int, kMaxPaths> by_pressure() const;
-  bool mend(const TargetField& target, PlanStats& stats);
+  void mend(const TargetField& target, PlanStats& stats);
+  bool bound_lengths(const TargetField& target, int paths, double share, SpacingRule& rule);
+  int leave_out_long(const TargetField& target, int paths, double least_length);
   void append(const TargetField& target, double maximum, int patch, Plan& plan, PlanStats& stats);
-  double skin_factor(const TargetField& target, int path);
+  double skin_factor(const TargetField& target, std::span<const Vec2> loop);
+  std::span<Vec2> copy_path(int k, int to);
+  std::span<Vec2> path_at(int place) {
+    const auto n = static_cast<std::size_t>(fit_.loops.samples);
+    return std::span<Vec2>(points_).subspan(static_cast<std::size_t>(place) * n, n);
+  }
 
   PlanSettings settings_;
   Search search_;
@@ -39,7 +47,7 @@ class FitPlanner {
   bool has_previous_ = false, is_flat_ = false;
   // scratch
   FocalPath flat_;
-  std::array<Vec2, kMaxLoopNodes> points_;
+  std::array<Vec2, kMaxLoopNodes> points_;  // one path after the other [mm]
 };
 
 }  // namespace prostm::planning

@@ -10,42 +10,53 @@ namespace {
 
 constexpr double kSmoothingCells = 2.0;  // half width of the kernel of (E1), in cells of the target
 
-using Heights = boost::container::static_vector<double, kMaxLiftedPoints>;
-
+/// Length of the edge after point i.
 double edge(const LiftedPath& path, std::size_t i) {
-  const std::size_t n = path.s.size();
-  return (i + 1 < n ? path.s[i + 1] : path.length) - path.s[i];
+  return (i + 1 < path.s.size() ? path.s[i + 1] : path.length) - path.s[i];
 }
 
-/// Adds the points on one side of point i to the mean of (E1), nearest first.
-void gather(const LiftedPath& flat, const Heights& height, std::size_t i, bool forward,
-            double half_width, double& sum, double& weights) {
-  const std::size_t n = flat.s.size();
-  const double reach = std::min(half_width, 0.5 * flat.length);
-  std::size_t j = i;
-  for (double distance = 0.0;;) {
-    const std::size_t next = forward ? (j + 1) % n : (j + n - 1) % n;
-    distance += edge(flat, forward ? j : next);
-    if (distance >= reach) return;
-    j = next;
-    // a point stands for half of each edge beside it
-    const double weight =
-        (1.0 - distance / half_width) * 0.5 * (edge(flat, j) + edge(flat, (j + n - 1) % n));
-    sum += weight * height[j];
-    weights += weight;
+using Lengths = boost::container::static_vector<double, kMaxLiftedPoints>;
+
+/// What (E1) needs of the path in the plane: the edge after each point, and how much of the path
+/// each point stands for, half of each edge beside it.
+struct FlatPath {
+  Lengths edge, weight;
+  double length = 0.0;
+
+  explicit FlatPath(const LiftedPath& path) : length(path.length) {
+    const std::size_t n = path.s.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      edge.push_back(prostm::edge(path, i));
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      weight.push_back(0.5 * (edge[i] + edge[i > 0 ? i - 1 : n - 1]));
+    }
   }
-}
+};
 
-/// Height along the path under the triangular kernel of (E1). `flat` is the path in the plane,
-/// measured.
-double smooth_height(const LiftedPath& flat, const Heights& height, std::size_t i,
+/// Height along the path at point i under the triangular kernel of (E1).
+double smooth_height(const FlatPath& flat, const Lengths& height, std::size_t i,
                      double half_width) {
-  const std::size_t n = flat.s.size();
-  double weights = 0.5 * (edge(flat, i) + edge(flat, (i + n - 1) % n));
+  const std::size_t n = height.size();
+  double weights = flat.weight[i];
   if (weights <= 0.0) return height[i];
   double sum = weights * height[i];
-  gather(flat, height, i, true, half_width, sum, weights);
-  gather(flat, height, i, false, half_width, sum, weights);
+  const double reach = std::min(half_width, 0.5 * flat.length), falloff = 1.0 / half_width;
+  const auto add = [&](std::size_t j, double distance) {
+    const double weight = (1.0 - distance * falloff) * flat.weight[j];
+    sum += weight * height[j];
+    weights += weight;
+  };
+  double distance = flat.edge[i];
+  for (std::size_t j = i; distance < reach; distance += flat.edge[j]) {
+    j = j + 1 < n ? j + 1 : 0;
+    add(j, distance);
+  }
+  std::size_t j = i > 0 ? i - 1 : n - 1;
+  for (distance = flat.edge[j]; distance < reach; distance += flat.edge[j]) {
+    add(j, distance);
+    j = j > 0 ? j - 1 : n - 1;
+  }
   return sum / weights;
 }
 
@@ -72,11 +83,12 @@ void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out)
   measure(out);
 
   // heights of the skin, smoothed along the flat path
-  Heights height;
+  Lengths height;
   for (const Vec3& p : out.p_D) height.push_back(height_at(field, p.head<2>()));
   const double half_width = kSmoothingCells * field.cell;
+  const FlatPath flat(out);
   for (std::size_t i = 0; i < out.p_D.size(); ++i) {
-    out.p_D[i].z() = smooth_height(out, height, i, half_width);
+    out.p_D[i].z() = smooth_height(flat, height, i, half_width);
   }
 
   // from P to D

@@ -16,10 +16,14 @@ struct FocalPath {
   int patch = 0;  ///< index of the target patch (hand)
   boost::container::static_vector<Vec2, kMaxPathPoints> points;  ///< in P [m]
   boost::container::static_vector<double, kMaxPathPoints>
-      pressure;         ///< rendered p_i = γ p*, unit of the target; linear between points
-  double length = 0.0;  ///< of the closed polygon in the plane [m]
-  double speed = 0.0;   ///< of the focal point [m/s]
-  double period = 0.0;  ///< length / speed [s]
+      pressure;  ///< rendered p_i = γ p*, unit of the target; linear between points
+  double length =
+      0.0;  ///< of the closed polygon in the plane, so that it follows from the points [m]
+  double speed = 0.0;  ///< of the focal point [m/s]
+  /// Of a lap [s]: the length over the speed. Presets `best` and `fast`, which know the skin's
+  /// heights, state the length on the skin over the speed, which is what is played; it is longer
+  /// than length / speed where the skin is uneven.
+  double period = 0.0;
 };
 
 struct Plan {

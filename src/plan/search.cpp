@@ -10,10 +10,9 @@ namespace {
 constexpr float kFelt = 0.2F;   // share of the maximum from which a cell asks for paths
 constexpr double kWidth = 1.5;  // of a path in σ: how much area a path of full length serves
 constexpr float kLost = 1.4F;   // rise of the cost, relative to the target's, that calls for starts
-constexpr int kFewestEvaluations = 8;     // fewer are not worth a start, a kick or the fine cells
-constexpr double kKept = 0.97;            // of a budget, so that it is not overrun by a little
-constexpr double kFinishShare = 0.35;     // of a budget, at most
-constexpr double kMendEvaluations = 3.5;  // what mending takes, at most, but for rare cases
+constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
+constexpr double kKept = 0.97;         // of a budget, so that it is not overrun by a little
+constexpr double kFinishShare = 0.35;  // of a budget, at most
 constexpr double kLearning = 0.2;
 constexpr int kAmple = 80;          // evaluations that a search on the usual cells should have
 constexpr double kCoarser = 1.5;    // wider cells where it cannot
@@ -24,6 +23,12 @@ Vec2 centroid(const Loops& loops, int path) {
   Vec2 sum = Vec2::Zero();
   for (int i = 0; i < loops.samples; ++i) sum += loops.point(i, path);
   return sum / loops.samples;
+}
+
+/// A running mean of times. A single one may have been interrupted, so none counts for more than
+/// twice the mean.
+double learnt(double mean, double time) {
+  return mean + kLearning * (std::clamp(time, 0.5 * mean, 2.0 * mean) - mean);
 }
 
 /// A path other than `first`, more likely a near one; `first` itself where it is alone.
@@ -75,12 +80,7 @@ void Search::share_budget() {
   const double most = kFinishShare * budget_;
   finish_fine_ = most >= kFewestEvaluations * evaluation_time(fine());
   const double finish = settings_.final_evaluations * evaluation_time(finish_cells());
-  search_end_ = mend_start() - std::min(finish, finish_fine_ ? most : 0.5 * most);
-}
-
-/// When the finish must end, so that there is time to mend the paths and solve their pressures.
-double Search::mend_start() const {
-  return budget_ - kMendEvaluations * evaluation_time(fine());
+  search_end_ = finish_end() - std::min(finish, finish_fine_ ? most : 0.5 * most);
 }
 
 /// How many evaluations of a start or a kick there is time for; 0 for too few to be worth it.
@@ -98,8 +98,7 @@ int Search::descend(const CellTiles& cells, int evaluations, Fit& fit) {
   const int used = descent_.run(cells, fit, evaluations);
   const double each =
       (timer_.seconds() - start) / (used * static_cast<double>(cells.tiles().size()));
-  // a single call may have been interrupted
-  tile_time_ += kLearning * (std::clamp(each, 0.5 * tile_time_, 2.0 * tile_time_) - tile_time_);
+  tile_time_ = learnt(tile_time_, each);
   return used;
 }
 
@@ -199,12 +198,16 @@ int Search::run(int paths, const Loops* previous, Fit& best) {
   return used;
 }
 
+void Search::learn_ending(double seconds) {
+  ending_time_ = learnt(ending_time_, seconds);
+}
+
 int Search::finish(const std::array<float, kMaxPaths>& most_length, Fit& fit) {
   const std::array<float, kMaxPaths> unbound = descent_.settings().shape.most_length;
   descent_.settings().shape.most_length = most_length;
   int evaluations = settings_.final_evaluations;
   if (budget_ > 0.0) {
-    const double left = (mend_start() - timer_.seconds()) / evaluation_time(finish_cells());
+    const double left = (finish_end() - timer_.seconds()) / evaluation_time(finish_cells());
     evaluations = std::clamp(static_cast<int>(left), 1, evaluations);
   }
   const int used = evaluations > 0 ? descend(finish_cells(), evaluations, fit) : 0;

@@ -44,6 +44,8 @@ class Search {
   int run(int paths, const Loops* previous, Fit& best);
   /// Lowers the cost of `fit` further on the fine cells, under the given bounds of length [mm].
   int finish(const std::array<float, kMaxPaths>& most_length, Fit& fit);
+  /// Tells how long what follows finish() took, for the budgets to come [s].
+  void learn_ending(double seconds);
   /// Solves the pressures at the places of `fit`, on the fine cells.
   void solve(Fit& fit) { descent_.evaluate(fine(), fit); }
 
@@ -58,7 +60,7 @@ class Search {
   int try_kicks(Fit& best);
   const CellTiles& finish_cells() const { return finish_fine_ ? fine() : coarse_; }
   double evaluation_time(const CellTiles& cells) const;
-  double mend_start() const;
+  double finish_end() const { return budget_ - kEndingMargin * ending_time_; }
   void share_budget();
   int affordable(int evaluations) const;
   int descend(const CellTiles& cells, int evaluations, Fit& fit);
@@ -71,10 +73,11 @@ class Search {
   Fit trial_;
   Loops laid_;
   StageTimer timer_;
-  float last_cost_ = 0.0F;  // over the target's square norm
-  // for a budget: time of an evaluation per tile, as measured, and when starts and kicks must end,
-  // so that the finish is in time [s]
-  double budget_ = 0.0, tile_time_ = 1.5e-7, search_end_ = 0.0;
+  float last_cost_ = 0.0F;                      // over the target's square norm
+  static constexpr double kEndingMargin = 1.2;  // since the ending's time varies
+  // for a budget: time of an evaluation per tile and of what follows the finish, as measured, and
+  // when starts and kicks must end, so that the finish is in time [s]
+  double budget_ = 0.0, tile_time_ = 1.5e-7, ending_time_ = 1e-4, search_end_ = 0.0;
   bool finish_fine_ = true;  // whether there is time to finish on the fine cells
 };
 

@@ -48,26 +48,11 @@ void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, cons
   }
 }
 
-Vec2 centroid(ConstLoop loop) {
-  Vec2 sum = Vec2::Zero();
-  for (const Vec2& x : loop) sum += x;
-  return sum / static_cast<double>(loop.size());
-}
-
 void shorten(Loop loop, double most_length) {
   const double length = loop_length(loop);
   if (length <= most_length) return;
   const Vec2 centre = centroid(loop);
   for (Vec2& x : loop) x = centre + most_length / length * (x - centre);
-}
-
-void make_circle(Loop loop, const Vec2& centre, double length) {
-  const auto n = static_cast<double>(loop.size());
-  const double radius = length / (2.0 * n * std::sin(kPi / n));
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double angle = 2.0 * kPi * static_cast<double>(i) / n;
-    loop[i] = centre + radius * Vec2(std::cos(angle), std::sin(angle));
-  }
 }
 
 bool crosses_any(ConstLoop x, std::size_t n, ConstLoop loop) {
@@ -117,7 +102,7 @@ std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule) {
     std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(begin), n, place.begin());
     bool valid = is_valid(x.first(kept + n), n, rule);
     if (!valid) {
-      make_circle(place, centre, rule.least_length);
+      make_circle(place, centre, std::min(rule.least_length, rule.most_length[kept / n]));
       valid = kept == 0 || is_valid(x.first(kept + n), n, rule);
     }
     if (valid) kept += n;
@@ -126,6 +111,21 @@ std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule) {
 }
 
 }  // namespace
+
+Vec2 centroid(ConstLoop loop) {
+  Vec2 sum = Vec2::Zero();
+  for (const Vec2& x : loop) sum += x;
+  return sum / static_cast<double>(loop.size());
+}
+
+void make_circle(Loop loop, const Vec2& centre, double length) {
+  const auto n = static_cast<double>(loop.size());
+  const double radius = length / (2.0 * n * std::sin(kPi / n));
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double angle = 2.0 * kPi * static_cast<double>(i) / n;
+    loop[i] = centre + radius * Vec2(std::cos(angle), std::sin(angle));
+  }
+}
 
 int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& rule) {
   int count = 0;

@@ -16,7 +16,8 @@ struct SpacingRule {
                          ///< path that are
   double along = 0.0;    ///< farther than this apart along it
   std::array<double, kMaxPaths> most_length{};  ///< of each path
-  double least_length = 0.0;  ///< of the circle that replaces a path which cannot be mended
+  double least_length = 0.0;  ///< of the circle that replaces a path which cannot be mended; less
+                              ///< where the path's most_length is
 };
 
 /// Pairs of samples that are nearer than the rule allows. @param x paths of `samples` points each.
@@ -27,5 +28,11 @@ int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& ru
 /// left out, the first ones of `x` staying as they are if they can. The kept ones are moved to the
 /// front. @return how many are kept, at least one.
 int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule);
+
+/// Mean of the points. @pre there is one.
+Vec2 centroid(std::span<const Vec2> loop);
+
+/// A regular polygon whose closed length is `length`.
+void make_circle(std::span<Vec2> loop, const Vec2& centre, double length);
 
 }  // namespace prostm::planning

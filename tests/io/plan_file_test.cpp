@@ -26,7 +26,7 @@ Plan random_plan(Random& random, int paths) {
     }
     path.length = closed_length(path);
     path.speed = random.uniform(1.0, 7.0);
-    path.period = path.length / path.speed;
+    path.period = random.uniform(1.0, 1.5) * path.length / path.speed;  // on uneven skin
     plan.paths.push_back(path);
   }
   return plan;
@@ -132,6 +132,8 @@ TEST(PlanFile, SaysWhatIsWrong) {
           {"\"length_mm\": 120.0", "\"length_mm\": 130",
            "is 130; the closed path through the points is 120.000 mm"},
           {"\"speed_m_s\": 7.0", "\"speed_m_s\": 0", "speed_m_s is 0; it must be from"},
+          {"\"period_ms\": 17.1", "\"period_ms\": 16.1",
+           "a lap of 120.000 mm at 7 m/s takes at least 17.1429 ms"},
           {"\"patch\": 0", "\"patch\": 2", "patch is 2; it must be from 0 to 1"},
           {"[30.0,0.0]", "[30.0]", "points_mm[1] has 1 numbers; it must have 2"},
           {"\"raster\"", "\"rester\"", "\"raster\" is missing"},
@@ -139,6 +141,13 @@ TEST(PlanFile, SaysWhatIsWrong) {
           {"\"rows\": 2", "\"rows\": 3", "has 2 rows; it must have \"rows\" = 3"},
       },
       [](const std::string& text) { plan_from_json(text, "p.json"); });
+}
+
+TEST(PlanFile, APeriodThatIsLeftOutIsThatOfFlatSkin) {
+  auto json = nlohmann::json::parse(example());
+  json["paths"][0].erase("period_ms");
+  const FocalPath path = plan_from_json(json.dump(), "p.json").plan.paths[0];
+  EXPECT_DOUBLE_EQ(path.period, path.length / path.speed);
 }
 
 TEST(PlanFile, RefusesTooManyPathsAndPoints) {
