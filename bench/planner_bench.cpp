@@ -15,6 +15,7 @@
 #include "figure/figures.hpp"
 #include "planner/contenders.hpp"
 #include "planner/nlopt_baseline.hpp"
+#include "planner/on_skin.hpp"
 #include "planner/picture.hpp"
 #include "planner/quality.hpp"
 #include "planner/scaling.hpp"
@@ -101,6 +102,7 @@ std::vector<Row> measure_all(const Options& options) {
   append_rows(outcomes, rows);
   if (!options.files.empty()) return rows;
   measure_steadiness(contenders, rows);
+  measure_on_skin(std::min(options.quality.frames, 5), rows);
   compare_with_nlopt(std::min(options.quality.frames, 10), rows);
   measure_scaling(options.scaling_figure, rows);
   if (!options.figure.empty()) draw_gallery_picture(options.figure);
