@@ -2,9 +2,13 @@
 /// From the fluid's pressure on the hands to target fields (the paper's section IV-A,
 /// docs/design.md section C).
 
+#include <array>
 #include <boost/container/static_vector.hpp>
+#include <span>
 #include <vector>
 
+#include "contact/skin_owner.hpp"
+#include "contact/skin_rays.hpp"
 #include "core/settings.hpp"
 #include "fluid/fluid.hpp"
 #include "hand/hand_raster.hpp"
@@ -52,20 +56,24 @@ class SkinContact {
                        double dt, TargetFrame& out) noexcept;
 
  private:
-  void find_visible(const HandRaster& raster, int hand);
-  bool place_patch(const HandRaster& raster, TargetField& patch) const;
-  int gather(const HandRaster& raster, int hand, TargetField& patch) const;
-  bool belongs_to(const Vec3& p_D, int hand) const;
-  void smooth_pressure(const Fluid& fluid, double dt);
+  void take_pressure(const Fluid& fluid, double dt);
+  void find_visible();
+  bool place_patch(std::span<const Vec3> visible, TargetField& patch) const;
+  int gather(int hand, TargetField& patch);
   double pressure_at(const Vec3& p_D) const;
 
   ContactSettings settings_;
   GridShape grid_;
   int max_side_;
   boost::container::static_vector<HandShape, 2> shapes_;
-  std::vector<Vec3> visible_;        // skin of one hand seen from the array, frame D
-  std::vector<float> pressure_;      // smoothed over time, one value a cell
-  std::vector<std::uint8_t> fluid_;  // cells whose pressure is known
+  SkinRays rays_;
+  SkinOwner owner_;
+  std::array<std::vector<Vec3>, 2> visible_;  // skin of each hand seen from the array, frame D
+  std::vector<std::uint32_t> queue_;          // of fill_heights
+  std::span<const float> pressure_;           // one value a cell, the fluid's or smoothed over time
+  std::span<const std::uint8_t> fluid_;       // cells whose pressure is known
+  std::vector<float> smoothed_;               // empty without smoothing, as is was_fluid_
+  std::vector<std::uint8_t> was_fluid_;       // when the fluid was last looked at
 };
 
 }  // namespace prostm

@@ -75,9 +75,15 @@ void HandShape::set(const Hand& hand) noexcept {
 
 double HandShape::distance(const Vec3& p) const noexcept {
   double nearest = 1e30;
-  for (const RoundCone& cone : cones_) nearest = std::min(nearest, cone.distance(p));
-  for (const SphereTriangle& triangle : triangles_)
-    nearest = std::min(nearest, triangle.distance(p));
+  const auto ask = [&](const auto& body) {
+    // no nearer than its bounds are
+    const double outside =
+        (body.lower() - p).cwiseMax(p - body.upper()).cwiseMax(0.0).squaredNorm();
+    if (outside > std::max(nearest, 0.0) * nearest) return;
+    nearest = std::min(nearest, body.distance(p));
+  };
+  for (const RoundCone& cone : cones_) ask(cone);
+  for (const SphereTriangle& triangle : triangles_) ask(triangle);
   return nearest;
 }
 

@@ -21,8 +21,9 @@ constexpr int kCells = 64;
 /// A scripted hand in smoke, with everything that a target needs.
 struct Bench {
   explicit Bench(const ScriptedHandSettings& hand, const std::string& scene = "one-plume",
-                 bool filter_on = true)
-      : filter(filter_settings(filter_on)),
+                 bool filter_on = true, int threads = 2)
+      : pool(threads),
+        filter(filter_settings(filter_on)),
         source(make_scripted_hand(hand, filter_settings(filter_on))),
         fluid(fluid_settings(), scene_from_name(scene), pool),
         rasteriser(fluid.grid()),
@@ -52,7 +53,7 @@ struct Bench {
     return contact.extract(fluid, rasteriser.raster(), hands, kStep, target);
   }
 
-  WorkerPool pool{2};
+  WorkerPool pool;
   HandFilter filter;
   std::unique_ptr<HandSource> source;
   Fluid fluid;
@@ -184,6 +185,89 @@ TEST(SkinContact, TwoHandsAreTwoPatches) {
         const Vec3 p = patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]);
         EXPECT_LE(shapes[hand].distance(p), shapes[1 - hand].distance(p) + 1e-9);
       }
+    }
+  }
+}
+
+/// The scripted hand and a second one whose fingers stand between its fingers.
+void interlock(Bench& bench, double time) {
+  bench.source->sample(time, bench.hands);
+  to_device(default_tracker_pose(), bench.hands);
+  Hand other = bench.hands.hands.at(0);
+  ++other.id;
+  for (Vec3& p : other.position) p += Vec3(0.012, 0, 0.02);
+  bench.hands.hands.push_back(other);
+  bench.rasteriser.rasterise(bench.hands, bench.pool);
+  bench.fluid.step(kStep, bench.rasteriser.raster());
+}
+
+/// The skin of a hand in a patch's raster, every ray marched and every point asked the plain way:
+/// how many cells differ.
+int differing_cells(const Bench& bench, const std::vector<HandShape>& shapes, int hand) {
+  const HandRaster& raster = bench.rasteriser.raster();
+  const GridShape& g = raster.grid;
+  const TargetField& patch = bench.target.patches.at(static_cast<std::size_t>(hand));
+  const Vec3 normal = patch.X_DP.linear().col(2);
+  double lowest = 1e9, highest = -1e9;
+  for (int j = 0; j < g.ny; ++j) {
+    for (int i = 0; i < g.nx; ++i) {
+      const Vec3 foot = g.cell_centre(i, j, 0) - Vec3(0, 0, 0.5 * g.cell);
+      const double t = march(raster, foot, Vec3::UnitZ(), g.nz * g.cell);
+      const Vec3 p = foot + Vec3(0, 0, t);
+      if (t < 0.0 || nearest_hand(shapes, p) != hand) continue;
+      const double z = normal.dot(p - patch.X_DP.translation());
+      lowest = std::min(lowest, z);
+      highest = std::max(highest, z);
+    }
+  }
+  lowest -= 1.5 * g.cell;
+  int differing = 0;
+  for (int row = 0; row < patch.rows; ++row) {
+    for (int col = 0; col < patch.cols; ++col) {
+      const Vec2 x = patch.position(row, col);
+      const Vec3 start = patch.X_DP * Vec3(x.x(), x.y(), lowest);
+      const double t = march(raster, start, normal, highest - lowest + 0.5 * g.cell);
+      const bool skin = t >= 0.0 && nearest_hand(shapes, start + t * normal) == hand;
+      const std::size_t c = patch.index(row, col);
+      const bool same = skin == (patch.skin[c] != 0) &&
+                        (!skin || std::abs(patch.height[c] - (lowest + t)) < 1e-9);
+      differing += same ? 0 : 1;
+    }
+  }
+  return differing;
+}
+
+TEST(SkinContact, IsThatOfThePlainMarchForInterlockedHands) {
+  Bench bench(still_hand());
+  for (const double time : {7.0, 9.0, 11.0}) {
+    interlock(bench, time);
+    EXPECT_GT(bench.extract().skin_cells, 100);
+    ASSERT_EQ(bench.target.patches.size(), 2u);
+    const std::vector<HandShape> shapes = {HandShape(bench.hands.hands[0]),
+                                           HandShape(bench.hands.hands[1])};
+    EXPECT_EQ(differing_cells(bench, shapes, 0), 0);
+    EXPECT_EQ(differing_cells(bench, shapes, 1), 0);
+  }
+}
+
+TEST(SkinContact, DoesNotDependOnTheThreadsAndAllocatesNothing) {
+  Bench one(still_hand(), "one-plume", true, 1), three(still_hand(), "one-plume", true, 3);
+  for (int i = 0; i < 5; ++i) {
+    for (Bench* bench : {&one, &three}) {
+      interlock(*bench, 9.0 + i * kStep);
+      const test::HeapGuard guard;
+      bench->extract();
+      if (i > 3) {  // the patches have their size by then
+        EXPECT_EQ(guard.allocations(), 0u);
+      }
+    }
+    ASSERT_EQ(one.target.patches.size(), three.target.patches.size());
+    for (std::size_t n = 0; n < one.target.patches.size(); ++n) {
+      const TargetField &a = one.target.patches[n], &b = three.target.patches[n];
+      EXPECT_EQ(a.pressure, b.pressure);
+      EXPECT_EQ(a.height, b.height);
+      EXPECT_EQ(a.skin, b.skin);
+      EXPECT_EQ(a.X_DP.matrix(), b.X_DP.matrix());
     }
   }
 }
