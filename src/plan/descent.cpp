@@ -82,7 +82,7 @@ void Descent::find_direction(const Loops& loops, const Reconstruction& at) {
     direction_.x[i] = -at.gradient_x[i];
     direction_.y[i] = -at.gradient_y[i];
   }
-  std::array<float, kMemory> alpha{};
+  std::array<float, kMemory + 1> alpha{};  // by slot
   for (std::size_t m = remembered_; m-- > 0;) {
     const std::size_t k = order_[m];
     alpha[k] = inverse_curvature_[k] * dot(loops, step_[k], direction_);
