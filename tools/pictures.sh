@@ -12,4 +12,4 @@ for scene in one-plume four-plumes; do
 done
 "$prostm" capture --scene four-plumes --frames 120 --out four-plumes.h5
 "$prostm" plan four-plumes.h5 --frame 100 --preset paper --figure "$root/docs/pictures/plan.png"
-"$root/build/release/planner_bench" --frames 1 --seeds 1 --figure "$root/docs/pictures/gallery.png"
+"$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png"
