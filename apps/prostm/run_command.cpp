@@ -190,7 +190,7 @@ int run_command(const RunOptionsGiven& given) {
   settings.simulated_array.realtime = options.mode == RunMode::RealTime;
   // a clock is running: the planner gets a share of an update, not a number of tries
   if (options.mode == RunMode::RealTime && settings.plan.preset == "best" &&
-      settings.plan.budget == 0.0) {
+      settings.plan.budget == 0.0 && !given.common.budget_ms) {
     settings.plan.budget = kLiveBudget;
   }
   settings.side_view = !given.common.figure.empty();

@@ -9,14 +9,6 @@ import pytest
 
 from conftest import ROOT, blobs, shared_file
 
-def known(preset):
-    try:
-        prostm.Planner(preset=preset, max_cells=1)
-    except ValueError:
-        return False
-    return True
-
-
 def assert_same_plan(result, document):
     """A PlanResult and a plan file hold the same paths, metrics and counts."""
     text = prostm.plan_to_json(result.plan, result.target, result.settings)
@@ -36,9 +28,6 @@ def assert_same_plan(result, document):
 
 @pytest.mark.parametrize("preset", ["paper", "paper-valid", "best", "fast"])
 def test_an_array_is_planned_as_its_file_is(program, tmp_path, pressure, preset):
-    if not known(preset):
-        program("plan", "x.npy", "--cell-mm", "5", "--preset", preset, status=2)
-        pytest.skip(f"neither the program nor the module has the preset {preset} yet")
     np.save(tmp_path / "field.npy", pressure)
     program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--preset", preset, "--json", tmp_path / "plan.json")
     document = json.loads((tmp_path / "plan.json").read_text())
