@@ -89,7 +89,7 @@ std::vector<Row> measure_all(const Options& options) {
   const std::vector<Sequence> generated = gallery();
   if (sequences.empty()) sequences = generated;
 
-  std::vector<Contender> contenders = available_contenders();
+  std::vector<Contender> contenders = bench::contenders();
   std::vector<SequenceOutcome> outcomes;
   for (std::size_t s = 0; s < sequences.size(); ++s) {
     // three patterns on, so that it is another kind of field

@@ -2,7 +2,6 @@
 /// The planners that a bench measures.
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,16 +16,15 @@ struct Variant {
   std::string preset;      ///< of PlanSettings
   double budget_ms = 0.0;  ///< time that it is given; 0 = the preset's own
   bool warm = false;       ///< plans every frame of a sequence with one planner
+  int paths = PlanSettings{}.paths;
 };
 
-/// Settings of a variant, or nothing where this build has no such preset or no budget; then `why`
-/// is the sentence that says so.
-std::optional<PlanSettings> settings_of(const Variant& variant, std::string& why);
+PlanSettings settings_of(const Variant& variant);
 
 /// A variant's planner. plan() of one that is not warm knows nothing of the targets before.
 class Contender {
  public:
-  Contender(Variant variant, const PlanSettings& settings);
+  explicit Contender(const Variant& variant);
 
   const Variant& variant() const { return variant_; }
   const std::string& name() const { return variant_.name; }
@@ -39,14 +37,13 @@ class Contender {
  private:
   Variant variant_;
   PlanSettings settings_;
-  std::size_t cells_ = 0;
   std::unique_ptr<Planner> planner_;
 };
 
-/// All variants of the table that this build has; prints one line for each that is left out.
-std::vector<Contender> available_contenders();
+/// All variants of the table.
+std::vector<Contender> contenders();
 
-/// The presets alone, one variant each, for pictures and scaling; prints nothing.
-std::vector<Contender> available_presets();
+/// The presets alone, one variant each, for pictures and scaling.
+std::vector<Contender> presets(int paths = PlanSettings{}.paths);
 
 }  // namespace prostm::bench

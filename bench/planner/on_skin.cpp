@@ -67,7 +67,7 @@ void measure_on_skin(int frames, std::vector<Row>& rows) {
   for (const fields::SkinShape shape : fields::kSkinShapes) {
     for (const bool in_voxels : {false, true}) {
       const std::string skin = to_string(shape) + (in_voxels ? ", voxels" : "");
-      for (Contender& contender : available_presets()) {
+      for (Contender& contender : presets()) {
         if (contender.name() == "fast") continue;
         const OnSkin on = plan_all(contender, shape, in_voxels, frames);
         print_line(skin, contender, on);

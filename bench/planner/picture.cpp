@@ -35,7 +35,7 @@ std::string heading(std::string name) {
 
 void draw_gallery_picture(const std::string& path) {
   std::vector<Contender> shown;
-  for (Contender& contender : available_presets()) {
+  for (Contender& contender : presets()) {
     if (contender.name() != "fast") shown.push_back(std::move(contender));
   }
   std::vector<GalleryField> list;

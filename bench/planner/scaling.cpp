@@ -24,13 +24,8 @@ int target_points(const TargetField& field) {
 
 /// Times of every planner at one size [µs]: the last is the textbook's.
 std::vector<Summary> times_at(const TargetField& field, int paths, int repeats) {
-  std::vector<Contender> contenders;
-  for (const Contender& preset : available_presets()) {
-    PlanSettings settings = preset.settings();
-    settings.paths = paths;
-    contenders.emplace_back(preset.variant(), settings);
-    contenders.back().begin(field.size());
-  }
+  std::vector<Contender> contenders = presets(paths);
+  for (Contender& contender : contenders) contender.begin(field.size());
   std::vector<Distribution> times(contenders.size() + 1);
   for (int repeat = 0; repeat < repeats; ++repeat) {
     Plan plan;
@@ -103,7 +98,7 @@ struct Table {
 
 std::vector<std::string> planner_names() {
   std::vector<std::string> names;
-  for (const Contender& preset : available_presets()) names.push_back(preset.name());
+  for (const Contender& preset : presets()) names.push_back(preset.name());
   names.emplace_back("textbook");
   return names;
 }

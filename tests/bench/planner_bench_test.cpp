@@ -130,11 +130,27 @@ TEST(Sequences, AFieldFileIsASequenceOfOneFrame) {
   test::input_error([&] { read_sequence(folder.file("absent.h5")); });
 }
 
-TEST(Contenders, UnknownPresetsAreLeftOutWithAReason) {
-  std::string why;
-  EXPECT_TRUE(settings_of({"paper-valid", "paper-valid"}, why).has_value());
-  EXPECT_FALSE(settings_of({"odd", "odd"}, why).has_value());
-  EXPECT_NE(why.find("odd"), std::string::npos);
+TEST(Contenders, OnlyAWarmOneContinues) {
+  TargetField field;
+  field.resize(24, 24);
+  field.cell = 4e-3;
+  for (int row = 4; row < 20; ++row) {
+    for (int col = 4; col < 20; ++col) {
+      field.skin[field.index(row, col)] = 1;
+      field.pressure[field.index(row, col)] = 0.1 + 0.01 * row * ((col * row) % 7);
+    }
+  }
+  const auto is_repeated = [&](bool warm) {
+    Contender contender({"fast", "fast", 0.0, warm});
+    contender.begin(field.size());
+    Plan first, second;
+    PlanStats stats;
+    EXPECT_EQ(contender.plan(field, first, stats), PlanStatus::Planned);
+    EXPECT_EQ(contender.plan(field, second, stats), PlanStatus::Planned);
+    return first.paths[0].points == second.paths[0].points;
+  };
+  EXPECT_TRUE(is_repeated(false));
+  EXPECT_FALSE(is_repeated(true));
 }
 
 }  // namespace
