@@ -50,11 +50,9 @@ void CellTiles::set(const TargetField& target, double maximum, double width) {
   int factor = std::max(1, static_cast<int>(std::floor(width / cell + 1e-6)));
   while (blocks(target.rows, factor) * blocks(target.cols, factor) > kMaxBlocks) ++factor;
   const std::size_t cols = blocks(target.cols, factor), rows = blocks(target.rows, factor);
-  cell_ = cell * factor;
 
   // average the blocks
   std::fill_n(blocks_.begin(), rows * cols, Block{});
-  const double inverse = 1.0 / maximum;
   for (int row = 0; row < target.rows; ++row) {
     const std::size_t block_row = static_cast<std::size_t>(row / factor) * cols;
     std::size_t i = target.index(row, 0);
@@ -63,7 +61,7 @@ void CellTiles::set(const TargetField& target, double maximum, double width) {
     for (int col = 0; col < target.cols; ++col, ++i) {
       if (target.skin[i] != 0) {
         Block& sum = blocks_[block];
-        sum.pressure += static_cast<float>(target.pressure[i] * inverse);
+        sum.pressure += target.pressure[i];
         sum.col += static_cast<float>(col);
         sum.row += static_cast<float>(row);
         sum.count += 1.0F;
@@ -77,7 +75,8 @@ void CellTiles::set(const TargetField& target, double maximum, double width) {
 
   // gather the tiles that have skin
   tiles_.clear();
-  total_ = square_ = 0.0;
+  peak_ = 0.0F;
+  square_ = 0.0;
   const auto unit = static_cast<float>(cell * cell) / kUnitArea;
   const auto width_of_cell = static_cast<float>(cell);
   for (std::size_t row = 0; row < rows; row += kTileRows) {
@@ -90,9 +89,10 @@ void CellTiles::set(const TargetField& target, double maximum, double width) {
         const Block& block = blocks_[r * cols + c];
         tile.x[k] = width_of_cell * block.col / block.count;
         tile.y[k] = width_of_cell * block.row / block.count;
-        tile.pressure[k] = block.pressure / block.count;
+        tile.pressure[k] =
+            static_cast<float>(block.pressure / static_cast<double>(block.count) / maximum);
         tile.weight[k] = block.count * unit;
-        total_ += static_cast<double>(tile.weight[k]);
+        peak_ = std::max(peak_, tile.pressure[k]);
         square_ += static_cast<double>(tile.weight[k] * tile.pressure[k] * tile.pressure[k]);
         skin = true;
       }

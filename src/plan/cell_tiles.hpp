@@ -34,17 +34,18 @@ class CellTiles {
   void set(const TargetField& target, double maximum, double width);
 
   const std::vector<CellTile>& tiles() const { return tiles_; }
-  double cell() const { return cell_; }           ///< edge of a block [mm]
-  double total_weight() const { return total_; }  ///< Σ weight
+  float peak() const { return peak_; }            ///< highest pressure of a block
   double square_norm() const { return square_; }  ///< Σ weight · pressure²
 
  private:
   std::vector<CellTile> tiles_;
   struct Block {
-    float pressure, col, row, count;  // sums over its skin cells, and how many they are
+    double pressure;        // sums over its skin cells: in the target's unit,
+    float col, row, count;  // indices, and how many cells there are
   };
   std::vector<Block> blocks_;
-  double cell_ = 0.0, total_ = 0.0, square_ = 0.0;
+  float peak_ = 0.0F;
+  double square_ = 0.0;
 };
 
 }  // namespace prostm::planning

@@ -59,17 +59,14 @@ FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t 
     : settings_(settings),
       search_(max_cells, fit_settings(settings), search_settings(settings, preset)) {}
 
-/// The last plan's loops in the coordinates of this target; null when there are none to use.
-const Loops* FitPlanner::previous_loops(const TargetField& target, int paths) {
-  if (!has_previous_ || previous_.paths > paths) return nullptr;
-  shifted_ = previous_;
-  const auto x = static_cast<float>(kMmPerMetre * target.origin.x());
-  const auto y = static_cast<float>(kMmPerMetre * target.origin.y());
-  for (std::size_t i = 0; i < shifted_.nodes(); ++i) {
-    shifted_.x[i] -= x;
-    shifted_.y[i] -= y;
+/// Brings the paths of fit_ to the coordinates of a target with this origin.
+void FitPlanner::move_to(const Vec2& origin) {
+  const Vec2 shift = kMmPerMetre * (origin_ - origin);
+  for (std::size_t i = 0; i < fit_.loops.nodes(); ++i) {
+    fit_.loops.x[i] += static_cast<float>(shift.x());
+    fit_.loops.y[i] += static_cast<float>(shift.y());
   }
-  return &shifted_;
+  origin_ = origin;
 }
 
 /// Length on the skin over length in the plane. @param loop one path, as in fit_.
@@ -202,7 +199,9 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
   search_.set_target(target, maximum, budget);
   stats.init += timer.lap();
 
-  stats.cost_evaluations += search_.run(paths, previous_loops(target, paths), fit_);
+  move_to(target.origin);
+  const bool continues = has_previous_ && fit_.loops.paths <= paths;
+  stats.cost_evaluations += search_.run(paths, continues, fit_);
   std::array<float, kMaxPaths> most{};
   for (int k = 0; k < fit_.loops.paths; ++k) {
     most[static_cast<std::size_t>(k)] = static_cast<float>(kMmPerMetre * settings_.max_length /
@@ -215,13 +214,6 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
   mend(target, stats);
   append(target, maximum, patch, plan, stats);
   search_.learn_ending(timer.seconds() - start);
-  previous_ = fit_.loops;
-  const auto x = static_cast<float>(kMmPerMetre * target.origin.x());
-  const auto y = static_cast<float>(kMmPerMetre * target.origin.y());
-  for (std::size_t i = 0; i < previous_.nodes(); ++i) {
-    previous_.x[i] += x;
-    previous_.y[i] += y;
-  }
   has_previous_ = true;
   stats.refine += timer.lap();
 }

@@ -20,13 +20,13 @@ class FitPlanner {
   /// Forgets the last plan.
   void reset() { has_previous_ = false; }
   /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
-  /// @param budget time
-  /// that it may take [s]; 0: the counts of the settings bind. @pre maximum > 0.
+  /// @param budget time that it may take [s]; 0: the counts of the settings bind.
+  /// @pre maximum > 0.
   void plan_patch(const TargetField& target, double maximum, int patch, int paths, double budget,
                   Plan& plan, PlanStats& stats);
 
  private:
-  const Loops* previous_loops(const TargetField& target, int paths);
+  void move_to(const Vec2& origin);
   boost::container::static_vector<int, kMaxPaths> by_pressure() const;
   void mend(const TargetField& target, PlanStats& stats);
   bool bound_lengths(const TargetField& target, int paths, double share, SpacingRule& rule);
@@ -41,9 +41,8 @@ class FitPlanner {
 
   PlanSettings settings_;
   Search search_;
-  Fit fit_;
-  Loops previous_;  // of the last plan, in P [mm]
-  Loops shifted_;   // the same from the target's cell (0, 0)
+  Fit fit_;                     // of the last plan until the next
+  Vec2 origin_ = Vec2::Zero();  // of the target that fit_ is for [m]
   bool has_previous_ = false, is_flat_ = false;
   // scratch
   FocalPath flat_;

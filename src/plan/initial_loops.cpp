@@ -22,16 +22,18 @@ InitialLoops::InitialLoops(std::size_t max_cells) {
 void InitialLoops::set(const CellTiles& cells, float weak) {
   set(cells, weak, {}, 0, 0);
 }
+
 void InitialLoops::set(const CellTiles& cells, float weak,
                        const std::vector<ReconstructionScratch::TileFit>& fits, int lanes,
                        std::uint32_t owners) {
   x_.clear();
   y_.clear();
   pressure_.clear();
+  const float threshold = weak * cells.peak();
   for (std::size_t t = 0; t < cells.tiles().size(); ++t) {
     const CellTile& tile = cells.tiles()[t];
     for (std::size_t c = 0; c < 8; ++c) {
-      if (tile.weight[c] == 0.0F || tile.pressure[c] < weak) continue;
+      if (tile.weight[c] == 0.0F || tile.pressure[c] < threshold) continue;
       if (lanes > 0 && ((owners >> (fits[t].segment[c] % lanes)) & 1U) == 0) continue;
       x_.push_back(tile.x[c]);
       y_.push_back(tile.y[c]);
@@ -40,7 +42,6 @@ void InitialLoops::set(const CellTiles& cells, float weak,
   }
   weight_.resize(x_.size());
   label_.resize(x_.size());
-  exponent_ = 0.0;
 }
 
 void InitialLoops::weigh(double exponent) {

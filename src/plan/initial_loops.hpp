@@ -20,7 +20,6 @@ struct StartSettings {
   int stops = 12;            ///< clusters that each path tours, at most
   double exponent = 1.0;     ///< clusters are weighted with p* to this power
   double most_length = 140;  ///< of a tour [mm]
-  double least_length = 35;  ///< [mm]
 };
 
 /// Weighted k-means twice: the cells with pressure into one region for each path, each region into
@@ -30,7 +29,8 @@ class InitialLoops {
  public:
   explicit InitialLoops(std::size_t max_cells);
 
-  /// Takes over the cells with at least `weak` of the maximum.
+  /// Takes over the cells with at least `weak` of the highest pressure of any, > 0. @pre some cell
+  /// has pressure.
   void set(const CellTiles& cells, float weak);
   /// Of those only the cells whose closest path is in the set `owners` (a bit each).
   void set(const CellTiles& cells, float weak,
@@ -59,7 +59,6 @@ class InitialLoops {
   std::vector<float> distance2_;
   Clusters centres_;
   DistanceTable distance_;
-  double exponent_ = 0.0;
 };
 
 }  // namespace prostm::planning

@@ -129,7 +129,6 @@ int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
   int used = 0;
   const int needed = needed_paths(paths);
   initial_.set(coarse_, static_cast<float>(settings_.weak));
-  if (initial_.size() == 0) initial_.set(coarse_, 0.0F);
   for (int start = 0; start < starts; ++start) {
     int evaluations = affordable(settings_.start_evaluations);
     // without any paths yet, one start there must be
@@ -176,15 +175,14 @@ int Search::try_kicks(Fit& best) {
   return used;
 }
 
-int Search::run(int paths, const Loops* previous, Fit& best) {
+int Search::run(int paths, bool continues, Fit& best) {
   int used = 0;
   const auto norm = static_cast<float>(coarse_.square_norm());
-  if (previous == nullptr) {
+  if (!continues) {
     random_ = Random(settings_.seed);
     best.cost = std::numeric_limits<float>::max();
     used += try_starts(paths, settings_.starts, 0.0F, best);
   } else {
-    best.loops = *previous;
     // something new is to be tried in every plan
     const int few = static_cast<int>(kWarmShare * affordable(kAmple));
     used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), best);

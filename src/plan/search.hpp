@@ -25,8 +25,7 @@ struct SearchSettings {
   double hysteresis = 0.03;    ///< by which a new start must be cheaper than the plan before
   double coarse_width = 4.0;   ///< of the cells that starts and kicks are tried on [mm]
   double fine_width = 2.0;     ///< of the cells that the winner is finished on [mm]
-  double weak = 0.01;          ///< cells below are not toured, over the maximum
-  double budget = 0.0;         ///< no more starts or kicks after this [s]; 0: only the counts bind
+  double weak = 0.01;          ///< cells below are not toured, over the highest
   std::uint64_t seed = 1;
 };
 
@@ -39,9 +38,9 @@ class Search {
   /// of kicks [s]; 0: the counts bind. @pre maximum > 0.
   void set_target(const TargetField& target, double maximum, double budget);
 
-  /// Fits at most `paths` paths. @param previous the paths of the plan before, or null.
-  /// @return evaluations used.
-  int run(int paths, const Loops* previous, Fit& best);
+  /// Fits at most `paths` paths. @param continues whether best.loops are the paths of the plan
+  /// before, to start from. @return evaluations used.
+  int run(int paths, bool continues, Fit& best);
   /// Lowers the cost of `fit` further on the fine cells, under the given bounds of length [mm].
   int finish(const std::array<float, kMaxPaths>& most_length, Fit& fit);
   /// Tells how long what follows finish() took, for the budgets to come [s].

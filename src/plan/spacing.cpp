@@ -48,13 +48,6 @@ void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, cons
   }
 }
 
-void shorten(Loop loop, double most_length) {
-  const double length = loop_length(loop);
-  if (length <= most_length) return;
-  const Vec2 centre = centroid(loop);
-  for (Vec2& x : loop) x = centre + most_length / length * (x - centre);
-}
-
 bool crosses_any(ConstLoop x, std::size_t n, ConstLoop loop) {
   for (std::size_t begin = 0; begin < x.size(); begin += n) {
     if (count_crossings(x.subspan(begin, n), loop) > 0) return true;
@@ -111,21 +104,6 @@ std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule) {
 }
 
 }  // namespace
-
-Vec2 centroid(ConstLoop loop) {
-  Vec2 sum = Vec2::Zero();
-  for (const Vec2& x : loop) sum += x;
-  return sum / static_cast<double>(loop.size());
-}
-
-void make_circle(Loop loop, const Vec2& centre, double length) {
-  const auto n = static_cast<double>(loop.size());
-  const double radius = length / (2.0 * n * std::sin(kPi / n));
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double angle = 2.0 * kPi * static_cast<double>(i) / n;
-    loop[i] = centre + radius * Vec2(std::cos(angle), std::sin(angle));
-  }
-}
 
 int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& rule) {
   int count = 0;

@@ -29,10 +29,4 @@ int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& ru
 /// front. @return how many are kept, at least one.
 int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule);
 
-/// Mean of the points. @pre there is one.
-Vec2 centroid(std::span<const Vec2> loop);
-
-/// A regular polygon whose closed length is `length`.
-void make_circle(std::span<Vec2> loop, const Vec2& centre, double length);
-
 }  // namespace prostm::planning

@@ -18,12 +18,6 @@ constexpr double kSmallestShare =
 using Loop = std::span<Vec2>;
 using ConstLoop = std::span<const Vec2>;
 
-Vec2 centroid(ConstLoop loop) {
-  Vec2 sum = Vec2::Zero();
-  for (const Vec2& x : loop) sum += x;
-  return sum / static_cast<double>(loop.size());
-}
-
 void scale_about(Loop loop, const Vec2& centre, double factor) {
   for (Vec2& x : loop) x = centre + factor * (x - centre);
 }
@@ -66,21 +60,6 @@ void untangle(Loop loop) {
         --budget;
       }
     }
-  }
-}
-
-void shorten(Loop loop, double max_length) {
-  const double length = loop_length(loop);
-  if (length > max_length) scale_about(loop, centroid(loop), max_length / length);
-}
-
-/// A circle of `length` about `centre`: what remains of a path that cannot be untangled.
-void make_circle(Loop loop, const Vec2& centre, double length) {
-  const auto n = static_cast<double>(loop.size());
-  const double radius = length / (2.0 * n * std::sin(kPi / n));
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double angle = 2.0 * kPi * static_cast<double>(i) / n;
-    loop[i] = centre + radius * Vec2(std::cos(angle), std::sin(angle));
   }
 }
 
@@ -166,6 +145,26 @@ bool segments_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) 
   return std::min({point_segment_distance2(a, c, d), point_segment_distance2(b, c, d),
                    point_segment_distance2(c, a, b), point_segment_distance2(d, a, b)}) <
          kClearance * kClearance;
+}
+
+Vec2 centroid(ConstLoop loop) {
+  Vec2 sum = Vec2::Zero();
+  for (const Vec2& x : loop) sum += x;
+  return sum / static_cast<double>(loop.size());
+}
+
+void shorten(Loop loop, double most_length) {
+  const double length = loop_length(loop);
+  if (length > most_length) scale_about(loop, centroid(loop), most_length / length);
+}
+
+void make_circle(Loop loop, const Vec2& centre, double length) {
+  const auto n = static_cast<double>(loop.size());
+  const double radius = length / (2.0 * n * std::sin(kPi / n));
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double angle = 2.0 * kPi * static_cast<double>(i) / n;
+    loop[i] = centre + radius * Vec2(std::cos(angle), std::sin(angle));
+  }
 }
 
 double loop_length(std::span<const Vec2> loop) {

@@ -17,6 +17,16 @@ bool segments_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 /// Length of the closed polygon.
 double loop_length(std::span<const Vec2> loop);
 
+/// Mean of the samples.
+Vec2 centroid(std::span<const Vec2> loop);
+
+/// Scales a loop that is longer about its centroid to `most_length`.
+void shorten(std::span<Vec2> loop, double most_length);
+
+/// Makes the loop a regular polygon of `length` about `centre`: what remains of a path that cannot
+/// be mended.
+void make_circle(std::span<Vec2> loop, const Vec2& centre, double length);
+
 /// Pairs of non-adjacent segments of one closed polygon that cross.
 int count_self_crossings(std::span<const Vec2> loop);
 

@@ -70,22 +70,47 @@ TEST(CellTiles, KeepTheMassTheAreaAndTheSkinOfTheTarget) {
   }
 }
 
-/// Whether a cell with weight has another closest segment in one than in the other.
-bool has_tie(const Case& c, const ReconstructionScratch& a, const ReconstructionScratch& b) {
+/// What two kernels may take for the closest segment of the same cell: of two that are equally near
+/// either. At an end that they share both give the same pressures, though the gradient has a kink.
+enum class Ties { None, AtSharedEnds, Between };
+
+Ties ties_of(const Case& c, const ReconstructionScratch& a, const ReconstructionScratch& b) {
+  const auto n = static_cast<int>(c.loops.nodes());
+  Ties ties = Ties::None;
   for (std::size_t t = 0; t < c.cells.tiles().size(); ++t) {
     for (std::size_t k = 0; k < 8; ++k) {
-      if (c.cells.tiles()[t].weight[k] > 0.0F && a.fits[t].segment[k] != b.fits[t].segment[k]) {
-        return true;
-      }
+      const int apart = (a.fits[t].segment[k] - b.fits[t].segment[k] + n) % n;
+      if (c.cells.tiles()[t].weight[k] == 0.0F || apart == 0) continue;
+      if (apart != c.loops.lanes && apart != n - c.loops.lanes) return Ties::Between;
+      ties = Ties::AtSharedEnds;
     }
   }
-  return false;
+  return ties;
+}
+
+/// The steepest that the gradient at a node could be if what is rendered and what is wanted added
+/// up instead of cancelling: what its rounding is measured by.
+double largest_gradient(const Case& c, const ReconstructionScratch& scratch,
+                        const Reconstruction& at) {
+  const float sigma = ReconstructionSettings{}.sigma, falloff = 1.0F / (sigma * sigma);
+  std::vector<float> at_node(c.loops.nodes());
+  for (std::size_t t = 0; t < c.cells.tiles().size(); ++t) {
+    const CellTile& cell = c.cells.tiles()[t];
+    const ReconstructionScratch::TileFit& fit = scratch.fits[t];
+    for (std::size_t k = 0; k < 8; ++k) {
+      const auto a = static_cast<std::size_t>(fit.segment[k]);
+      const float p = at.pressure[a], sum = fit.phi[k] * p + cell.pressure[k];
+      at_node[a] +=
+          2.0F * cell.weight[k] * sum * fit.phi[k] * p * falloff * std::hypot(fit.dx[k], fit.dy[k]);
+    }
+  }
+  return static_cast<double>(*std::ranges::max_element(at_node));
 }
 
 TEST(Reconstruction, VectorKernelAgreesWithThePlainOne) {
   const std::uint64_t count = test::reduced(400);
   double worst = 0.0;
-  std::uint64_t ties = 0;
+  std::uint64_t compared = 0, compared_gradients = 0;
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     Random random(seed);
     const Pattern pattern = fields::kPatterns[seed % fields::kPatterns.size()];
@@ -96,23 +121,28 @@ TEST(Reconstruction, VectorKernelAgreesWithThePlainOne) {
     reconstruct_plain(c.cells, c.loops, {}, plain_scratch, plain);
     fast_reconstruct()(c.cells, c.loops, {}, scratch, vector);
     ASSERT_NEAR(vector.error, plain.error, 1e-5F * plain.error) << seed;
-    // of two segments equally near to a cell either may be taken, and pressures follow
-    if (has_tie(c, plain_scratch, scratch)) {
-      ++ties;
-      continue;
-    }
+    const Ties ties = ties_of(c, plain_scratch, scratch);
+    compared += ties != Ties::Between ? 1 : 0;
+    compared_gradients += ties == Ties::None ? 1 : 0;
+    if (ties == Ties::Between) continue;
+    double difference = 0.0;
     for (int k = 0; k < c.loops.paths; ++k) {
       for (int i = 0; i < c.loops.samples; ++i) {
         const std::size_t a = c.loops.node(i, k);
-        worst = std::max(
-            {worst, std::abs(static_cast<double>(vector.gradient_x[a] - plain.gradient_x[a])),
-             std::abs(static_cast<double>(vector.gradient_y[a] - plain.gradient_y[a]))});
-        ASSERT_NEAR(vector.pressure[a], plain.pressure[a], 1e-4F) << seed;
+        const Vec2 expected(static_cast<double>(plain.gradient_x[a]),
+                            static_cast<double>(plain.gradient_y[a]));
+        const Vec2 got(static_cast<double>(vector.gradient_x[a]),
+                       static_cast<double>(vector.gradient_y[a]));
+        difference = std::max(difference, (got - expected).norm());
+        ASSERT_NEAR(vector.pressure[a], plain.pressure[a], 1e-5F) << seed;
       }
     }
+    if (ties == Ties::None)
+      worst = std::max(worst, difference / largest_gradient(c, plain_scratch, plain));
   }
-  EXPECT_LT(worst, 1e-4);
-  EXPECT_LT(ties, count / 4) << ties;
+  EXPECT_LT(worst, 1e-5);
+  EXPECT_GT(compared, count - count / 20);
+  EXPECT_GT(compared_gradients, count / 2);
 }
 
 /// The cost has kinks where a cell changes its closest segment, so a few differences may be off.
@@ -263,8 +293,10 @@ TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
 
 TEST(FitPresets, BestRendersEveryPatternBetterThanPaperValid) {
   Planner paper(preset("paper-valid"), kCells), best(preset("best"), kCells);
+  double ratios = 0.0;
   for (const Pattern pattern : fields::kPatterns) {
-    for (const int frame : {20, 60}) {
+    double theirs_rmse = 0.0, ours_rmse = 0.0, theirs_skill = 0.0, ours_skill = 0.0;
+    for (const int frame : {20, 40, 60}) {
       const TargetField field = fields::make(pattern, frame);
       Plan theirs, ours;
       PlanStats stats;
@@ -273,9 +305,16 @@ TEST(FitPresets, BestRendersEveryPatternBetterThanPaperValid) {
       best.plan(field, ours, stats);
       const Metrics a = score_plan(field, theirs, 0, 8.6e-3, 1.4);
       const Metrics b = score_plan(field, ours, 0, 8.6e-3, 1.4);
-      EXPECT_LT(b.rmse, 0.9 * a.rmse) << fields::to_string(pattern) << frame;
+      theirs_rmse += a.rmse;
+      ours_rmse += b.rmse;
+      theirs_skill += a.skill_8;
+      ours_skill += b.skill_8;
     }
+    EXPECT_LT(ours_rmse, theirs_rmse) << fields::to_string(pattern);
+    EXPECT_GT(ours_skill, theirs_skill) << fields::to_string(pattern);
+    ratios += ours_rmse / theirs_rmse;
   }
+  EXPECT_LT(ratios / static_cast<double>(fields::kPatterns.size()), 0.7);
 }
 
 TEST(FitPresets, ASmallContactGetsAShortLoopThatRendersIt) {
@@ -292,6 +331,23 @@ TEST(FitPresets, ASmallContactGetsAShortLoopThatRendersIt) {
   EXPECT_LT(plan.paths[0].length, 0.05);
   EXPECT_GT(plan.paths[0].length, 0.03);
   EXPECT_GT(score_plan(field, plan, 0, 8.6e-3, 1.4).coverage, 0.99);
+}
+
+TEST(FitPresets, AContactMuchSmallerThanABlockIsFound) {
+  // averaged over its block its pressure is below every threshold that is relative to the maximum
+  for (const char* name : {"best", "fast"}) {
+    Planner planner(preset(name), 160 * 160);
+    TargetField field;
+    field.resize(160, 160);
+    field.cell = 0.2e-3;
+    field.skin.assign(field.size(), 1);
+    test::touch(field, 80, 80, 1.0);
+    Plan plan;
+    PlanStats stats;
+    ASSERT_EQ(planner.plan(field, plan, stats), PlanStatus::Planned);
+    ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, 20, 0.140));
+    EXPECT_GT(score_plan(field, plan, 0, 8.6e-3, 1.4).coverage, 0.99) << name;
+  }
 }
 
 TEST(FitPresets, FramesContinueFromThePathsBefore) {
