@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "plan/distances.hpp"
 
 namespace prostm::planning {
 namespace {
@@ -16,7 +17,6 @@ InitialLoops::InitialLoops(std::size_t max_cells) {
   for (std::vector<float>* v : {&x_, &y_, &pressure_, &weight_}) v->reserve(max_cells);
   for (std::vector<float>& v : sorted_) v.resize(max_cells);
   label_.reserve(max_cells);
-  distance2_.resize(max_cells);
 }
 
 void InitialLoops::set(const CellTiles& cells, float weak) {
@@ -54,32 +54,13 @@ void InitialLoops::weigh(double exponent) {
   }
 }
 
-/// The nearest centre of each cell of the group. Centre by centre, since that vectorises.
-void InitialLoops::assign(Group group, std::size_t count, const Centres& cx, const Centres& cy) {
-  const std::size_t n = group.end - group.begin;
-  const float* const x = x_.data() + group.begin;
-  const float* const y = y_.data() + group.begin;
-  float* const least = distance2_.data();
-  std::int32_t* const label = label_.data() + group.begin;
-  std::fill_n(least, n, std::numeric_limits<float>::max());
-  for (std::size_t c = 0; c < count; ++c) {
-    const float centre_x = cx[c], centre_y = cy[c];
-    const auto own = static_cast<std::int32_t>(c);
-    for (std::size_t i = 0; i < n; ++i) {
-      const float dx = x[i] - centre_x, dy = y[i] - centre_y, squared = dx * dx + dy * dy;
-      label[i] = squared < least[i] ? own : label[i];
-      least[i] = squared < least[i] ? squared : least[i];
-    }
-  }
-}
-
 /// Lloyd's iteration from points at equal steps of the cumulative weight: fills centres_ and
 /// label_.
 void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
   centres_.centre.clear();
   centres_.mass.clear();
   Centres cx{}, cy{}, mass{}, sum_x{}, sum_y{};
-  const auto count = static_cast<std::size_t>(k);
+  const std::size_t count = static_cast<std::size_t>(k), cells = group.end - group.begin;
 
   float total = 0.0F;
   for (std::size_t i = group.begin; i < group.end; ++i) total += weight_[i];
@@ -100,7 +81,8 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
     mass.fill(0.0F);
     sum_x.fill(0.0F);
     sum_y.fill(0.0F);
-    assign(group, count, cx, cy);
+    nearest_centres({x_.data() + group.begin, cells}, {y_.data() + group.begin, cells},
+                    {cx.data(), count}, {cy.data(), count}, {label_.data() + group.begin, cells});
     for (std::size_t i = group.begin; i < group.end; ++i) {
       const auto nearest = static_cast<std::size_t>(label_[i]);
       mass[nearest] += weight_[i];

@@ -49,14 +49,12 @@ class InitialLoops {
   };
   using Centres = std::array<float, kMaxClusters>;
   void weigh(double exponent);
-  void assign(Group group, std::size_t count, const Centres& cx, const Centres& cy);
   void cluster(Group group, int k, int passes, Random& random);
   void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
   void tour(const StartSettings& settings, std::span<Vec2> samples);
 
   std::vector<float> x_, y_, pressure_, weight_, sorted_[3];
   std::vector<std::int32_t> label_;
-  std::vector<float> distance2_;
   Clusters centres_;
   DistanceTable distance_;
 };

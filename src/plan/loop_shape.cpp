@@ -128,22 +128,13 @@ void SpacedPairs::update(const Loops& loops, const ShapeSettings& settings) {
         std::min(std::max(total[k], settings.least_length), settings.most_length[k]);
     chord[k] = kLeastChord * longest / static_cast<float>(loops.samples);
   }
-  const float reach = settings.spacing + kPairMargin, reach2 = reach * reach;
-  const std::size_t n = loops.nodes();
   const auto paths = static_cast<std::size_t>(loops.paths);
-  alignas(64) NodeArray squared;
-  for (std::size_t a = 0; a < n; ++a) {
+  for (std::size_t a = 0; a < loops.nodes(); ++a) {
     const std::size_t k = a % lanes;
     if (k >= paths) continue;
-    // all distances first, since that vectorises
-    const float x = loops.x[a], y = loops.y[a];
-    for (std::size_t b = a + 1; b < n; ++b) {
-      const float dx = loops.x[b] - x, dy = loops.y[b] - y;
-      squared[b] = dx * dx + dy * dy;
-    }
-    for (std::size_t b = a + 1; b < n; ++b) {
-      if (squared[b] >= reach2) continue;
-      const std::size_t l = b % lanes;
+    nodes_near(loops, a, settings.spacing + kPairMargin, near_);
+    for (std::size_t i = 0; i < near_.count; ++i) {
+      const auto b = static_cast<std::size_t>(near_.node[i]), l = b % lanes;
       if (l >= paths) continue;
       float distance = settings.spacing;
       if (k == l) {

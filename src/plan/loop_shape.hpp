@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "plan/distances.hpp"
 #include "plan/loops.hpp"
 
 namespace prostm::planning {
@@ -43,6 +44,7 @@ class SpacedPairs {
   bool has_moved(const Loops& loops) const;
 
   std::vector<SpacedPair> pairs_;
+  NodeList near_;  // of the sample in question
   alignas(64) NodeArray listed_x_, listed_y_;
   bool listed_ = false;
 };

@@ -1,0 +1,43 @@
+#pragma once
+/// Kernels that compare the distances of many points.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "plan/loops.hpp"
+
+namespace prostm::planning {
+
+/// Places of the bits that are set in each byte, lowest first: lists what a comparison of vectors
+/// found without branches. (Highway's own CompressStore is slow on AVX2.)
+using SetBits = std::array<std::array<std::uint8_t, 8>, 256>;
+constexpr SetBits set_bits() {
+  SetBits places{};
+  for (std::size_t byte = 0; byte < 256; ++byte) {
+    std::size_t count = 0;
+    for (std::uint8_t bit = 0; bit < 8; ++bit) {
+      if ((byte >> bit & 1U) != 0) places[byte][count++] = bit;
+    }
+  }
+  return places;
+}
+alignas(64) inline constexpr SetBits kSetBits = set_bits();
+
+/// Writes which of the centres is nearest to each point; the first of those that are equally near.
+/// @pre x, y and nearest have the same size; centre_x and centre_y too, at least one.
+void nearest_centres(std::span<const float> x, std::span<const float> y,
+                     std::span<const float> centre_x, std::span<const float> centre_y,
+                     std::span<std::int32_t> nearest);
+
+/// Nodes in ascending order.
+struct NodeList {
+  std::size_t count = 0;
+  std::array<std::int32_t, kMaxLoopNodes + 8> node;  // room for a vector behind the last
+};
+
+/// The nodes behind `first` that are nearer to it than `distance` [mm], of any lane.
+void nodes_near(const Loops& loops, std::size_t first, float distance, NodeList& near);
+
+}  // namespace prostm::planning
