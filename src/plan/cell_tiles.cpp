@@ -1,10 +1,12 @@
 #include "plan/cell_tiles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "plan/pressure_raster.hpp"
+#include "plan/raster_rows.hpp"
 
 namespace prostm::planning {
 namespace {
@@ -43,6 +45,37 @@ CellTiles::CellTiles(std::size_t max_cells) {
   const std::size_t most = std::min(max_cells, kMaxBlocks);
   blocks_.resize(most);
   tiles_.reserve(std::min(most, kMaxTiles));
+  for (std::vector<double>& sums : columns_) sums.resize(max_cells);
+}
+
+/// Sums rows [begin, end) into columns_.
+void CellTiles::add_rows(const TargetField& target, int begin, int end) {
+  const auto cols = static_cast<std::size_t>(target.cols);
+  std::array<std::span<double>, 3> sums;
+  for (std::size_t q = 0; q < 3; ++q) {
+    sums[q] = {columns_[q].data(), cols};
+    std::fill(sums[q].begin(), sums[q].end(), 0.0);
+  }
+  for (int row = begin; row < end; ++row) {
+    const std::size_t first = target.index(row, 0);
+    add_row({target.pressure.data() + first, cols}, {target.skin.data() + first, cols}, row,
+            {sums[0], sums[1], sums[2]});
+  }
+}
+
+/// The block over `factor` columns of columns_.
+CellTiles::Block CellTiles::sum_columns(const TargetField& target, std::size_t block, int factor) {
+  Block sum{};
+  const auto width = static_cast<std::size_t>(factor);
+  const std::size_t begin = block * width;
+  const std::size_t end = std::min(begin + width, static_cast<std::size_t>(target.cols));
+  for (std::size_t col = begin; col < end; ++col) {
+    sum.pressure += columns_[0][col];
+    sum.col += columns_[1][col] * static_cast<double>(col);
+    sum.row += columns_[2][col];
+    sum.count += columns_[1][col];
+  }
+  return sum;
 }
 
 void CellTiles::set(const TargetField& target, double maximum, double width) {
@@ -52,25 +85,10 @@ void CellTiles::set(const TargetField& target, double maximum, double width) {
   const std::size_t cols = blocks(target.cols, factor), rows = blocks(target.rows, factor);
 
   // average the blocks
-  std::fill_n(blocks_.begin(), rows * cols, Block{});
-  for (int row = 0; row < target.rows; ++row) {
-    const std::size_t block_row = static_cast<std::size_t>(row / factor) * cols;
-    std::size_t i = target.index(row, 0);
-    int within = 0;
-    std::size_t block = block_row;
-    for (int col = 0; col < target.cols; ++col, ++i) {
-      if (target.skin[i] != 0) {
-        Block& sum = blocks_[block];
-        sum.pressure += target.pressure[i];
-        sum.col += static_cast<float>(col);
-        sum.row += static_cast<float>(row);
-        sum.count += 1.0F;
-      }
-      if (++within == factor) {
-        within = 0;
-        ++block;
-      }
-    }
+  for (int row = 0; row < target.rows; row += factor) {
+    add_rows(target, row, std::min(row + factor, target.rows));
+    Block* const block = &blocks_[static_cast<std::size_t>(row / factor) * cols];
+    for (std::size_t c = 0; c < cols; ++c) block[c] = sum_columns(target, c, factor);
   }
 
   // gather the tiles that have skin
@@ -78,20 +96,19 @@ void CellTiles::set(const TargetField& target, double maximum, double width) {
   peak_ = 0.0F;
   square_ = 0.0;
   const auto unit = static_cast<float>(cell * cell) / kUnitArea;
-  const auto width_of_cell = static_cast<float>(cell);
   for (std::size_t row = 0; row < rows; row += kTileRows) {
     for (std::size_t col = 0; col < cols; col += kTileCols) {
       CellTile tile{};
       bool skin = false;
       for (std::size_t k = 0; k < 8; ++k) {
         const std::size_t r = row + k / kTileCols, c = col + k % kTileCols;
-        if (r >= rows || c >= cols || blocks_[r * cols + c].count == 0.0F) continue;
+        if (r >= rows || c >= cols || blocks_[r * cols + c].count == 0.0) continue;
         const Block& block = blocks_[r * cols + c];
-        tile.x[k] = width_of_cell * block.col / block.count;
-        tile.y[k] = width_of_cell * block.row / block.count;
-        tile.pressure[k] =
-            static_cast<float>(block.pressure / static_cast<double>(block.count) / maximum);
-        tile.weight[k] = block.count * unit;
+        const double each = 1.0 / block.count;
+        tile.x[k] = static_cast<float>(cell * each * block.col);
+        tile.y[k] = static_cast<float>(cell * each * block.row);
+        tile.pressure[k] = static_cast<float>(block.pressure * each / maximum);
+        tile.weight[k] = static_cast<float>(block.count) * unit;
         peak_ = std::max(peak_, tile.pressure[k]);
         square_ += static_cast<double>(tile.weight[k] * tile.pressure[k] * tile.pressure[k]);
         skin = true;

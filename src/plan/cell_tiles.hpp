@@ -1,6 +1,7 @@
 #pragma once
 /// The skin of a target as weighted points in small tiles: what a plan is fitted to.
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -38,12 +39,16 @@ class CellTiles {
   double square_norm() const { return square_; }  ///< Σ weight · pressure²
 
  private:
-  std::vector<CellTile> tiles_;
   struct Block {
-    double pressure;        // sums over its skin cells: in the target's unit,
-    float col, row, count;  // indices, and how many cells there are
+    double pressure;         // sums over its skin cells: in the target's unit,
+    double col, row, count;  // indices, and how many cells there are
   };
+  void add_rows(const TargetField& target, int begin, int end);
+  Block sum_columns(const TargetField& target, std::size_t block, int factor);
+
+  std::vector<CellTile> tiles_;
   std::vector<Block> blocks_;
+  std::array<std::vector<double>, 3> columns_;  // of a row of blocks: pressure, cells, row indices
   float peak_ = 0.0F;
   double square_ = 0.0;
 };

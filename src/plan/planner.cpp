@@ -7,6 +7,7 @@
 #include "core/stage_timer.hpp"
 #include "plan/clustering.hpp"
 #include "plan/fit_planner.hpp"
+#include "plan/raster_rows.hpp"
 #include "plan/refine.hpp"
 #include "plan/settings_check.hpp"
 #include "plan/tours.hpp"
@@ -23,7 +24,7 @@ constexpr double kSmallestCell = 1e-6, kLargestCell = 1.0;  // [m]
 constexpr double kLargestPressure = 1e300;                  // sums and γ p* stay finite
 
 /// Largest pressure on skin, or −1 when the target cannot be planned.
-double checked_maximum(const TargetField& target, std::size_t max_cells) {
+double highest_pressure(const TargetField& target, std::size_t max_cells) {
   const std::size_t n = target.pressure.size();
   if (target.rows < 1 || target.cols < 1 || n > max_cells || target.skin.size() != n ||
       static_cast<std::size_t>(target.rows) * static_cast<std::size_t>(target.cols) != n) {
@@ -33,13 +34,7 @@ double checked_maximum(const TargetField& target, std::size_t max_cells) {
       !std::isfinite(target.origin.x()) || !std::isfinite(target.origin.y())) {
     return -1.0;
   }
-  double maximum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double p = target.pressure[i];
-    if (!std::isfinite(p) || p < 0.0 || p > kLargestPressure) return -1.0;
-    if (target.skin[i] != 0) maximum = std::max(maximum, p);
-  }
-  return maximum;
+  return planning::checked_maximum(target.pressure, target.skin, kLargestPressure);
 }
 
 double total_pressure(const TargetField& target) {
@@ -191,7 +186,7 @@ PlanStatus Planner::Scratch::plan_patch(const TargetField& target, int patch, in
                                         double budget, Plan& plan, PlanStats& stats,
                                         PlanTrace* trace) {
   StageTimer timer;
-  const double maximum = checked_maximum(target, max_cells);
+  const double maximum = highest_pressure(target, max_cells);
   if (maximum < 0.0) return PlanStatus::InvalidTarget;
   if (maximum == 0.0) {
     if (!fits.empty()) fits[static_cast<std::size_t>(patch)].reset();
@@ -256,7 +251,7 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
   // what each patch has to show
   PatchPressures pressure{};
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
-    if (checked_maximum(frame.patches[i], scratch_->max_cells) < 0.0)
+    if (highest_pressure(frame.patches[i], scratch_->max_cells) < 0.0)
       return PlanStatus::InvalidTarget;
     pressure[i] = total_pressure(frame.patches[i]);
   }

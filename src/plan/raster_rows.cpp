@@ -1,0 +1,109 @@
+#include "plan/raster_rows.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "plan/raster_rows.cpp"
+#include <hwy/foreach_target.h>
+// after the line above, which includes this file once for each target
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace prostm::planning {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<double, 8>;
+using V = hn::Vec<D>;
+using DI = hn::RebindToSigned<D>;
+
+/// 1 for each lane whose byte is not 0, else 0.
+HWY_INLINE V ones(const std::uint8_t* mask) {
+  const hn::Rebind<std::int32_t, D> d32;
+  const auto bytes = hn::LoadU(hn::Rebind<std::uint8_t, D>(), mask);
+  return hn::PromoteTo(D(), hn::Min(hn::PromoteTo(d32, bytes), hn::Set(d32, 1)));
+}
+
+/// The bits of a double as a whole number, which has the order of the doubles that are not
+/// negative; −0 counts as 0.
+std::int64_t bits_of(double value) { return std::bit_cast<std::int64_t>(value + 0.0); }
+
+double CheckedMaximum(std::span<const double> values, std::span<const std::uint8_t> skin,
+                      double most) {
+  const D d;
+  const DI di;
+  const std::size_t n = values.size(), step = hn::Lanes(d);
+  auto least = hn::Zero(di), highest = hn::Zero(di), on_skin = hn::Zero(di);
+  std::size_t i = 0;
+  for (; i + step <= n; i += step) {
+    const V value = hn::Add(hn::LoadU(d, values.data() + i), hn::Zero(d));
+    const auto bits = hn::BitCast(di, value);
+    const auto counts = hn::RebindMask(di, hn::Gt(ones(skin.data() + i), hn::Zero(d)));
+    least = hn::Min(least, bits);
+    highest = hn::Max(highest, bits);
+    on_skin = hn::Max(on_skin, hn::IfThenElseZero(counts, bits));
+  }
+  std::int64_t low = hn::GetLane(hn::MinOfLanes(di, least));
+  std::int64_t high = hn::GetLane(hn::MaxOfLanes(di, highest));
+  std::int64_t found = hn::GetLane(hn::MaxOfLanes(di, on_skin));
+  for (; i < n; ++i) {
+    const std::int64_t bits = bits_of(values[i]);
+    low = std::min(low, bits);
+    high = std::max(high, bits);
+    if (skin[i] != 0) found = std::max(found, bits);
+  }
+  return low < 0 || high > bits_of(most) ? -1.0 : std::bit_cast<double>(found);
+}
+
+void AddRow(std::span<const double> values, std::span<const std::uint8_t> skin, int row,
+            const ColumnSums& sums) {
+  const D d;
+  const std::size_t n = values.size(), step = hn::Lanes(d);
+  const V index = hn::Set(d, static_cast<double>(row));
+  const auto add = [&](std::span<double> sum, std::size_t i, V value) HWY_ATTR {
+    hn::StoreU(hn::Add(hn::LoadU(d, sum.data() + i), value), d, sum.data() + i);
+  };
+  std::size_t i = 0;
+  for (; i + step <= n; i += step) {
+    const V one = ones(skin.data() + i);
+    add(sums.value, i, hn::Mul(one, hn::LoadU(d, values.data() + i)));
+    add(sums.count, i, one);
+    add(sums.row, i, hn::Mul(one, index));
+  }
+  for (; i < n; ++i) {
+    if (skin[i] == 0) continue;
+    sums.value[i] += values[i];
+    sums.count[i] += 1.0;
+    sums.row[i] += row;
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace prostm::planning
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace prostm::planning {
+namespace {
+
+HWY_EXPORT(CheckedMaximum);
+HWY_EXPORT(AddRow);
+
+}  // namespace
+
+double checked_maximum(std::span<const double> values, std::span<const std::uint8_t> skin,
+                       double most) {
+  return HWY_DYNAMIC_DISPATCH(CheckedMaximum)(values, skin, most);
+}
+
+void add_row(std::span<const double> values, std::span<const std::uint8_t> skin, int row,
+             const ColumnSums& sums) {
+  HWY_DYNAMIC_DISPATCH(AddRow)(values, skin, row, sums);
+}
+
+}  // namespace prostm::planning
+#endif  // HWY_ONCE

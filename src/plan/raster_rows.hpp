@@ -1,0 +1,25 @@
+#pragma once
+/// Kernels that pass over all cells of a target.
+
+#include <cstdint>
+#include <span>
+
+namespace prostm::planning {
+
+/// The largest value on skin, or 0; −1 if any value, on skin or not, is negative, above `most` or
+/// not a number. Raises no floating-point exception for those. @pre most > 0; equal sizes.
+double checked_maximum(std::span<const double> values, std::span<const std::uint8_t> skin,
+                       double most);
+
+/// Sums over some rows of a raster, column by column; only cells with skin count.
+struct ColumnSums {
+  std::span<double> value;
+  std::span<double> count;  ///< of cells
+  std::span<double> row;    ///< of their rows' indices
+};
+
+/// Adds a row. @pre all sizes are equal; values are finite.
+void add_row(std::span<const double> values, std::span<const std::uint8_t> skin, int row,
+             const ColumnSums& sums);
+
+}  // namespace prostm::planning
