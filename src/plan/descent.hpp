@@ -34,7 +34,9 @@ class Descent {
 
   /// The closest points of the cells in the last evaluation.
   const std::vector<ReconstructionScratch::TileFit>& fits() const { return scratch_.fits; }
-  /// Computes `fit.reconstruction` and `fit.cost` at `fit.loops`.
+  /// Computes `fit.reconstruction` at `fit.loops`.
+  void solve(const CellTiles& cells, Fit& fit);
+  /// The same, and `fit.cost`.
   void evaluate(const CellTiles& cells, Fit& fit);
   /// Moves the samples downhill for at most `evaluations` evaluations; the cost never rises.
   /// @return evaluations used; fewer when no step lowers the cost.
@@ -56,8 +58,7 @@ class Descent {
   ReconstructionScratch scratch_;
   SpacedPairs pairs_;
   std::array<float, kMaxPathPoints / 2 + 1> taps_{};  // of the circulant preconditioner
-  // the last steps and the changes of the gradient over them, oldest first
-  // and one to write to
+  // the last steps and the changes of the gradient over them, and one to write to
   std::array<Plane, kMemory + 1> step_, change_;
   std::array<float, kMemory + 1> inverse_curvature_{};
   std::array<std::size_t, kMemory> order_{};

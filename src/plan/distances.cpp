@@ -52,22 +52,23 @@ void NearestCentres(std::span<const float> x, std::span<const float> y,
   if (n % step != 0) NearestOf(d, x, y, centre_x, centre_y, n - step, nearest);
 }
 
-void NodesNear(const Loops& loops, std::size_t first, float distance, NodeList& near) {
+void NodesNear(const NodeArray& x, const NodeArray& y, std::size_t nodes, std::size_t first,
+               float distance, NodeList& near) {
   const hn::CappedTag<float, 8> d;
   const hn::RebindToSigned<decltype(d)> di;
   const hn::Rebind<std::uint8_t, decltype(d)> bytes;
-  const std::size_t n = loops.nodes(), step = hn::Lanes(d);
-  const auto x = hn::Set(d, loops.x[first]), y = hn::Set(d, loops.y[first]);
+  const std::size_t step = hn::Lanes(d);
+  const auto first_x = hn::Set(d, x[first]), first_y = hn::Set(d, y[first]);
   const auto limit = hn::Set(d, distance * distance);
   std::size_t count = 0;
-  for (std::size_t b = first / step * step; b < n; b += step) {
-    const auto dx = hn::Sub(hn::Load(d, loops.x.data() + b), x);
-    const auto dy = hn::Sub(hn::Load(d, loops.y.data() + b), y);
+  for (std::size_t b = first / step * step; b < nodes; b += step) {
+    const auto dx = hn::Sub(hn::Load(d, x.data() + b), first_x);
+    const auto dy = hn::Sub(hn::Load(d, y.data() + b), first_y);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, hn::Lt(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), limit), bits);
     unsigned found = bits[0];
     if (b <= first) found &= ~0U << (first + 1 - b);  // not before it, nor itself
-    if (b + step > n) found &= (1U << (n - b)) - 1U;
+    if (b + step > nodes) found &= (1U << (nodes - b)) - 1U;
     const auto places = hn::PromoteTo(di, hn::Load(bytes, kSetBits[found & 0xffU].data()));
     hn::StoreU(hn::Add(places, hn::Set(di, static_cast<std::int32_t>(b))), di,
                near.node.data() + count);
@@ -93,8 +94,9 @@ void nearest_centres(std::span<const float> x, std::span<const float> y,
   HWY_DYNAMIC_DISPATCH(NearestCentres)(x, y, centre_x, centre_y, nearest);
 }
 
-void nodes_near(const Loops& loops, std::size_t first, float distance, NodeList& near) {
-  HWY_DYNAMIC_DISPATCH(NodesNear)(loops, first, distance, near);
+void nodes_near(const NodeArray& x, const NodeArray& y, std::size_t nodes, std::size_t first,
+                float distance, NodeList& near) {
+  HWY_DYNAMIC_DISPATCH(NodesNear)(x, y, nodes, first, distance, near);
 }
 
 }  // namespace prostm::planning

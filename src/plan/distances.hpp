@@ -37,7 +37,9 @@ struct NodeList {
   std::array<std::int32_t, kMaxLoopNodes + 8> node;  // room for a vector behind the last
 };
 
-/// The nodes behind `first` that are nearer to it than `distance` [mm], of any lane.
-void nodes_near(const Loops& loops, std::size_t first, float distance, NodeList& near);
+/// Of the first `nodes` nodes, those behind `first` that are nearer to it than `distance`.
+/// @pre x and y are aligned as a vector is.
+void nodes_near(const NodeArray& x, const NodeArray& y, std::size_t nodes, std::size_t first,
+                float distance, NodeList& near);
 
 }  // namespace prostm::planning

@@ -17,8 +17,7 @@ namespace prostm::planning {
 /// How one start differs from another.
 struct StartSettings {
   int paths = 4;
-  int stops = 12;            ///< clusters that each path tours, at most
-  double exponent = 1.0;     ///< clusters are weighted with p* to this power
+  int stops = 16;            ///< clusters that each path tours, at most
   double most_length = 140;  ///< of a tour [mm]
 };
 
@@ -48,7 +47,7 @@ class InitialLoops {
     std::size_t begin, end;
   };
   using Centres = std::array<float, kMaxClusters>;
-  void weigh(double exponent);
+  void weigh();
   void cluster(Group group, int k, int passes, Random& random);
   void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
   void tour(const StartSettings& settings, std::span<Vec2> samples);

@@ -132,7 +132,7 @@ void SpacedPairs::update(const Loops& loops, const ShapeSettings& settings) {
   for (std::size_t a = 0; a < loops.nodes(); ++a) {
     const std::size_t k = a & (lanes - 1);
     if (k >= paths) continue;
-    nodes_near(loops, a, settings.spacing + kPairMargin, near_);
+    nodes_near(loops.x, loops.y, loops.nodes(), a, settings.spacing + kPairMargin, near_);
     for (std::size_t i = 0; i < near_.count; ++i) {
       const auto b = static_cast<std::size_t>(near_.node[i]), l = b & (lanes - 1);
       if (l >= paths) continue;

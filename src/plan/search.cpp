@@ -17,7 +17,7 @@ constexpr double kLearning = 0.2;
 constexpr int kAmple = 80;          // evaluations that a search on the usual cells should have
 constexpr double kCoarser = 1.5;    // wider cells where it cannot
 constexpr double kWarmShare = 0.4;  // of a budget: for the paths before, at most
-constexpr int kFewestStops = 9, kMoreStops = 6;
+constexpr int kFewestStops = 14, kMoreStops = 7;
 
 Vec2 centroid(const Loops& loops, int path) {
   Vec2 sum = Vec2::Zero();
@@ -106,7 +106,6 @@ StartSettings Search::draw_start(int paths) {
   StartSettings start;
   start.paths = paths;
   start.stops = kFewestStops + random_.below(kMoreStops);
-  start.exponent = random_.below(2) == 0 ? 1.0 : 0.5;
   start.most_length = static_cast<double>(descent_.settings().shape.most_length[0]);
   return start;
 }
@@ -155,7 +154,7 @@ int Search::try_kicks(Fit& best) {
     const int count = first == second ? 1 : 2;
 
     // lay them anew over the cells that are nearest to them
-    descent_.evaluate(coarse_, best);
+    descent_.solve(coarse_, best);
     ++used;
     const std::uint32_t owners =
         (1U << static_cast<unsigned>(first)) | (1U << static_cast<unsigned>(second));

@@ -46,7 +46,7 @@ class Search {
   /// Tells how long what follows finish() took, for the budgets to come [s].
   void learn_ending(double seconds);
   /// Solves the pressures at the places of `fit`, on the fine cells.
-  void solve(Fit& fit) { descent_.evaluate(fine(), fit); }
+  void solve(Fit& fit) { descent_.solve(fine(), fit); }
 
  private:
   /// The fine cells; the coarse ones are fine enough where both have the same width.

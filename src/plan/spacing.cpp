@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/units.hpp"
+#include "plan/distances.hpp"
 #include "plan/validity.hpp"
 
 namespace prostm::planning {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr int kRounds = 60;         // of pushing apart
 constexpr double kPushGoal = 1.02;  // pushed samples get this times the spacing
+constexpr double kRounding = 1e-6;  // of single precision, several times over
 
 using Loop = std::span<Vec2>;
 using ConstLoop = std::span<const Vec2>;
@@ -25,18 +27,31 @@ struct Measures {
       const ConstLoop loop = x.subspan(k * n, n);
       for (std::size_t i = 0; i < n; ++i) {
         at[k * n + i] = length[k];
-        length[k] += (loop[(i + 1) % n] - loop[i]).norm();
+        length[k] += (loop[i + 1 < n ? i + 1 : 0] - loop[i]).norm();
       }
     }
   }
 };
 
-/// Calls visit(a, b, distance) for the pairs of samples that are nearer than `reach` and count.
+/// Calls visit(a, b, distance) for the pairs of samples that are nearer than `reach` and count. It
+/// may move the samples: those that this brings near enough are for the next time.
 template <typename Visit>
 void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, const Visit& visit) {
   const Measures measured(x, n);
+  // in single precision with a margin for its rounding, then exactly
+  alignas(64) NodeArray rough_x{}, rough_y{};
+  double largest = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    rough_x[i] = static_cast<float>(x[i].x());
+    rough_y[i] = static_cast<float>(x[i].y());
+    largest = std::max(largest, x[i].cwiseAbs().maxCoeff());
+  }
+  const auto rough_reach = static_cast<float>(reach + kRounding * (reach + largest));
+  NodeList near;
   for (std::size_t a = 0; a < x.size(); ++a) {
-    for (std::size_t b = a + 1; b < x.size(); ++b) {
+    nodes_near(rough_x, rough_y, x.size(), a, rough_reach, near);
+    for (std::size_t i = 0; i < near.count; ++i) {
+      const auto b = static_cast<std::size_t>(near.node[i]);
       const double squared = (x[b] - x[a]).squaredNorm();
       if (squared >= reach * reach) continue;
       if (a / n == b / n) {

@@ -169,19 +169,19 @@ void make_circle(Loop loop, const Vec2& centre, double length) {
 
 double loop_length(std::span<const Vec2> loop) {
   double length = 0.0;
-  for (std::size_t i = 0; i < loop.size(); ++i)
-    length += (loop[(i + 1) % loop.size()] - loop[i]).norm();
-  return length;
+  for (std::size_t i = 0; i + 1 < loop.size(); ++i) length += (loop[i + 1] - loop[i]).norm();
+  return length + (loop.front() - loop.back()).norm();
 }
 
 int count_self_crossings(std::span<const Vec2> loop) {
   int count = 0;
   const std::size_t n = loop.size();
   for (std::size_t i = 0; i + 2 < n; ++i) {
-    for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j + 1 == n) continue;
-      if (segments_cross(loop[i], loop[i + 1], loop[j], loop[(j + 1) % n])) ++count;
+    for (std::size_t j = i + 2; j + 1 < n; ++j) {
+      count += segments_cross(loop[i], loop[i + 1], loop[j], loop[j + 1]) ? 1 : 0;
     }
+    // the last segment is the first one's neighbour
+    if (i > 0) count += segments_cross(loop[i], loop[i + 1], loop[n - 1], loop[0]) ? 1 : 0;
   }
   return count;
 }
@@ -189,9 +189,9 @@ int count_self_crossings(std::span<const Vec2> loop) {
 int count_crossings(std::span<const Vec2> a, std::span<const Vec2> b) {
   if (Box(a).is_apart(Box(b))) return 0;
   int count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      if (segments_cross(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()])) ++count;
+  for (std::size_t i = a.size() - 1, next = 0; next < a.size(); i = next++) {
+    for (std::size_t j = b.size() - 1, after = 0; after < b.size(); j = after++) {
+      count += segments_cross(a[i], a[next], b[j], b[after]) ? 1 : 0;
     }
   }
   return count;
@@ -199,8 +199,8 @@ int count_crossings(std::span<const Vec2> a, std::span<const Vec2> b) {
 
 bool is_simple(std::span<const Vec2> loop) {
   const std::size_t n = loop.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 &before = loop[(i + n - 1) % n], &x = loop[i], &after = loop[(i + 1) % n];
+  for (std::size_t i = 0, last = n - 1; i < n; last = i++) {
+    const Vec2 &before = loop[last], &x = loop[i], &after = loop[i + 1 < n ? i + 1 : 0];
     if (std::min(point_segment_distance2(after, before, x),
                  point_segment_distance2(before, x, after)) < kClearance * kClearance) {
       return false;
