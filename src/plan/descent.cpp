@@ -23,7 +23,7 @@ constexpr double kErrorCurvature = 0.15, kLengthShare = 0.3;
 
 Descent::Descent(std::size_t max_tiles, int samples, const FitSettings& settings)
     : settings_(settings), reconstruct_(fast_reconstruct()), scratch_(max_tiles) {
-  const double segment2 = 49.0;  // [mm²], of a sample distance of 7 mm
+  const double segment = static_cast<double>(settings.shape.most_length[0]) / samples;  // [mm]
   for (int d = 0; d <= samples / 2; ++d) {
     double tap = 0.0;
     for (int f = 0; f < samples; ++f) {
@@ -31,7 +31,7 @@ Descent::Descent(std::size_t max_tiles, int samples, const FitSettings& settings
       const double curvature =
           kErrorCurvature +
           2.0 * kLengthShare * static_cast<double>(settings.shape.weight_length) * q +
-          2.0 * static_cast<double>(settings.shape.weight_bending) / segment2 * q * q;
+          2.0 * static_cast<double>(settings.shape.weight_bending) / (segment * segment) * q * q;
       tap += std::cos(angle * d) / curvature;
     }
     taps_[static_cast<std::size_t>(d)] = static_cast<float>(tap / samples);

@@ -25,8 +25,8 @@ FitSettings fit_settings(const PlanSettings& s) {
   FitSettings fit;
   fit.reconstruction.sigma = static_cast<float>(kMmPerMetre * s.sigma);
   fit.reconstruction.weight_coverage = static_cast<float>(s.fit_coverage);
-  fit.shape.weight_length = static_cast<float>(s.weight_length);
-  fit.shape.weight_spacing = static_cast<float>(s.weight_intersection);
+  fit.shape.weight_length = static_cast<float>(s.fit_length);
+  fit.shape.weight_spacing = static_cast<float>(s.fit_spacing);
   fit.shape.weight_bending = static_cast<float>(s.fit_bending);
   fit.shape.spacing = static_cast<float>(kMmPerMetre * s.sigma);
   fit.shape.least_length = static_cast<float>(kMmPerMetre * std::min(s.least_length, s.max_length));
@@ -36,7 +36,7 @@ FitSettings fit_settings(const PlanSettings& s) {
 
 SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   SearchSettings search;
-  search.samples = s.samples;
+  search.samples = preset == Preset::Best ? s.fit_samples : s.samples;
   search.weak = s.weak_pressure;
   search.seed = static_cast<std::uint64_t>(s.seed);
   search.hysteresis = s.fit_hysteresis;

@@ -27,7 +27,7 @@ struct PlanSettings {
   std::string preset = "best";
   int paths = 4;                     ///< at most, 1..8
   int clusters = 50;                 ///< k of the weighted k-means, 1..50
-  int samples = 20;                  ///< N of a path, 8..64
+  int samples = 20;                  ///< N of a path, 8..64; preset best has fit_samples
   double max_length = 0.140;         ///< L [m]
   double speed = 7.0;                ///< v of the focal points [m/s]
   double sigma = 8.6e-3;             ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
@@ -44,7 +44,10 @@ struct PlanSettings {
   // presets best and fast
   double least_length = 0.035;   ///< of a path [m]
   double fit_coverage = 0.1;     ///< weight of pressure that no path reaches, (P12)
-  double fit_bending = 0.1;      ///< weight of bending, (P15)
+  double fit_length = 1.0;       ///< weight of length and uneven samples, (P13)
+  double fit_spacing = 0.3;      ///< weight of samples that are too near, (P14)
+  double fit_bending = 0.03;     ///< weight of bending, (P15)
+  int fit_samples = 28;          ///< N of a path of preset best, 8..64
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
   int fit_starts = 4;            ///< sets of paths laid anew, of a plan without one before
   int fit_kicks = 8;             ///< tries to lay one or two paths anew

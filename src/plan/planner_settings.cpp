@@ -50,7 +50,10 @@ void PlanSettings::visit(SettingsVisitor& v) {
   v.field("seed", seed);
   v.field("least_length", least_length);
   v.field("fit_coverage", fit_coverage);
+  v.field("fit_length", fit_length);
+  v.field("fit_spacing", fit_spacing);
   v.field("fit_bending", fit_bending);
+  v.field("fit_samples", fit_samples);
   v.field("fit_hysteresis", fit_hysteresis);
   v.field("fit_starts", fit_starts);
   v.field("fit_kicks", fit_kicks);
@@ -77,7 +80,10 @@ void check_settings(const PlanSettings& s) {
   require_between("refine_iterations", s.refine_iterations, 0, 100000);
   require_between("least_length", s.least_length, 0.005, 1.0, "m");
   require_between("fit_coverage", s.fit_coverage, 0.0, 100.0);
+  require_between("fit_length", s.fit_length, 0.0, 1000.0);
+  require_between("fit_spacing", s.fit_spacing, 0.0, 1000.0);
   require_between("fit_bending", s.fit_bending, 0.0, 1000.0);
+  require_between("fit_samples", s.fit_samples, 8, kMaxPathPoints);
   require_between("fit_hysteresis", s.fit_hysteresis, 0.0, 1.0);
   require_between("fit_starts", s.fit_starts, 1, 10000);
   require_between("fit_kicks", s.fit_kicks, 0, 100000);

@@ -29,7 +29,9 @@ HWY_INLINE V ones(const std::uint8_t* mask) {
 
 /// The bits of a double as a whole number, which has the order of the doubles that are not
 /// negative; −0 counts as 0.
-std::int64_t bits_of(double value) { return std::bit_cast<std::int64_t>(value + 0.0); }
+std::int64_t bits_of(double value) {
+  return std::bit_cast<std::int64_t>(value + 0.0);
+}
 
 double CheckedMaximum(std::span<const double> values, std::span<const std::uint8_t> skin,
                       double most) {
