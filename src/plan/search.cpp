@@ -14,9 +14,7 @@ constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or
 constexpr double kKept = 0.97;         // of a budget, so that it is not overrun by a little
 constexpr double kFinishShare = 0.35;  // of a budget, at most
 constexpr double kLearning = 0.2;
-constexpr int kAmple = 80;          // evaluations that a search on the usual cells should have
-constexpr double kCoarser = 1.5;    // wider cells where it cannot
-constexpr double kWarmShare = 0.4;  // of a budget: for the paths before, at most
+constexpr double kWarmShare = 0.5;  // of a budget: for the paths before, at most
 constexpr int kFewestStops = 14, kMoreStops = 7;
 
 Vec2 centroid(const Loops& loops, int path) {
@@ -63,10 +61,6 @@ void Search::set_target(const TargetField& target, double maximum, double budget
     fine_.set(target, maximum, settings_.fine_width);
   }
   share_budget();
-  // where there is little time, many evaluations on coarser cells are worth more than few
-  if (budget_ > 0.0 && affordable(kAmple) < kAmple) {
-    coarse_.set(target, maximum, kCoarser * settings_.coarse_width);
-  }
 }
 
 /// Time of one evaluation [s].
@@ -183,7 +177,7 @@ int Search::run(int paths, bool continues, Fit& best) {
     used += try_starts(paths, settings_.starts, 0.0F, best);
   } else {
     // something new is to be tried in every plan
-    const int few = static_cast<int>(kWarmShare * affordable(kAmple));
+    const int few = static_cast<int>(kWarmShare * affordable(std::numeric_limits<int>::max()));
     used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), best);
     // where the target has changed more than the paths can follow, start as if there were none
     const bool lost = best.cost > kLost * last_cost_ * norm;
