@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "fields/fields.hpp"
 #include "plan/descent.hpp"
@@ -11,6 +10,7 @@
 #include "plan_checks.hpp"
 #include "random_fields.hpp"
 #include "score/score.hpp"
+#include "support/heap_guard.hpp"
 #include "support/load.hpp"
 
 namespace prostm::planning {
@@ -290,16 +290,14 @@ std::vector<Vec2> all_points(const Plan& plan) {
 
 TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
   constexpr int kMaxSide = 48;
-  const char* asked = std::getenv("PROSTM_RANDOM_FIELDS");
-  const std::uint64_t count =
-      asked != nullptr ? std::strtoull(asked, nullptr, 10) : test::reduced(4'000);
+  const test::Seeds seeds = test::seeds(4'000);
   Planner fast(preset("fast"), kMaxSide * kMaxSide);
   PlanSettings brief = preset("best");
   brief.fit_starts = 2;
   brief.fit_kicks = 1;
   Planner best(brief, kMaxSide * kMaxSide);
   std::uint64_t planned = 0;
-  for (std::uint64_t seed = 0; seed < count; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.end; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const test::RandomField input = test::random_field(random, kMaxSide);
@@ -308,7 +306,9 @@ TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
     Planner& planner = seed % 4 == 0 ? best : fast;
     // half of them continue from a plan of something else
     if (seed % 8 < 4) planner.reset();
+    const test::HeapGuard guard;
     const PlanStatus status = planner.plan(input.field, plan, stats);
+    ASSERT_EQ(guard.allocations(), 0U);
     if (status != PlanStatus::Planned) {
       ASSERT_TRUE(status == PlanStatus::InvalidTarget || max_pressure(input.field) == 0.0);
       continue;

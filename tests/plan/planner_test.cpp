@@ -220,17 +220,14 @@ TEST(Planner, SettingsThatAreOutOfBoundsAreNamed) {
     EXPECT_EQ(preset_from_name(to_string(p)), p);
 }
 
-/// 10^4 fields of every kind, or as many as PROSTM_RANDOM_FIELDS says.
+/// 10^4 fields of every kind.
 TEST(Planner, RandomFieldsGiveValidPlansOrTheStatedStatus) {
   constexpr int kMaxSide = 48;
-  const char* asked = std::getenv("PROSTM_RANDOM_FIELDS");
-  const std::uint64_t count =
-      asked != nullptr ? std::strtoull(asked, nullptr, 10) : test::reduced(10'000);
-  ASSERT_GT(count, 0u);
+  const test::Seeds seeds = test::seeds(10'000);
   Planner paper(preset("paper"), kMaxSide * kMaxSide),
       valid(preset("paper-valid"), kMaxSide * kMaxSide);
   std::uint64_t planned = 0, dropped = 0, crossing = 0, longer = 0;
-  for (std::uint64_t seed = 0; seed < count; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.end; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const test::RandomField input = test::random_field(random, kMaxSide);

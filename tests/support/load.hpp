@@ -1,7 +1,8 @@
 #pragma once
-/// How much of a long test a sanitizer build runs.
+/// How much a long test does.
 
 #include <cstdint>
+#include <cstdlib>
 
 namespace prostm::test {
 
@@ -12,6 +13,21 @@ constexpr std::uint64_t reduced(std::uint64_t count) {
 #else
   return count;
 #endif
+}
+
+/// Seeds of a test over many random inputs, [first, end).
+struct Seeds {
+  std::uint64_t first, end;
+};
+
+/// `count` seeds (see reduced()) from 0 on, or as PROSTM_RANDOM_INPUTS and PROSTM_FIRST_SEED say.
+inline Seeds seeds(std::uint64_t count) {
+  const auto number = [](const char* name, std::uint64_t otherwise) {
+    const char* text = std::getenv(name);
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+  };
+  const std::uint64_t first = number("PROSTM_FIRST_SEED", 0);
+  return {first, first + number("PROSTM_RANDOM_INPUTS", reduced(count))};
 }
 
 }  // namespace prostm::test
