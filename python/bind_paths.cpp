@@ -132,14 +132,16 @@ void bind_classes(py::module_& m) {
 
 }  // namespace
 
-void check_model(double sigma, double gain, int patch) {
+void check_model(double sigma, const GainLaw& gain, int patch) {
   require_between("sigma", sigma, 1e-4, 0.1, "m");
-  require_between("gain", gain, 0.01, 100.0);
+  require_between("gain", gain.gain, 0.01, 100.0);
+  require_between("gain_exponent", gain.exponent, -2.0, 2.0);
+  require_between("draw_rate", gain.draw_rate, 0.1, 10'000.0, "Hz");
   require_between("patch", patch, 0, kMaxPatches - 1);
 }
 
-py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma, double gain,
-                             int patch) {
+py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma,
+                             const GainLaw& gain, int patch) {
   check_model(sigma, gain, patch);
   py::array_t<double> out({raster.rows, raster.cols});
   const std::span<double> cells(out.mutable_data(), raster.size());
@@ -155,13 +157,21 @@ void bind_paths(py::module_& m) {
   m.attr("kMaxPathPoints") = kMaxPathPoints;
   bind_classes(m);
   m.def("closed_length", &closed_length, "Length of the closed polygon [m].", py::arg("path"));
-  m.def("quasi_static_field", &quasi_static_array,
-        "The paper's Eq. (1): p(x) = p_i / gain * exp(-|x - x_i|^2 / (2 sigma^2)), with x_i the\n"
-        "closest point to x over all paths of the patch. Returns (rows, cols) in the target's\n"
-        "unit, for every cell of the raster, skin or not.\n\n"
-        "sigma: fall-off of a focal point [m]. gain: rendered over effective pressure.",
-        py::arg("plan"), py::arg("raster"), py::arg("sigma") = PlanSettings{}.sigma,
-        py::arg("gain") = PlanSettings{}.gain, py::arg("patch") = 0);
+  m.def(
+      "quasi_static_field",
+      [](const Plan& plan, const TargetField& raster, double sigma, double gain, int patch,
+         double gain_exponent, double draw_rate) {
+        return quasi_static_array(plan, raster, sigma, {gain, gain_exponent, draw_rate}, patch);
+      },
+      "The paper's Eq. (1): p(x) = p_i / gain * exp(-|x - x_i|^2 / (2 sigma^2)), with x_i the\n"
+      "closest point to x over all paths of the patch. Returns (rows, cols) in the target's\n"
+      "unit, for every cell of the raster, skin or not.\n\n"
+      "sigma: fall-off of a focal point [m]. gain: rendered over effective pressure, of a path\n"
+      "with the period T times (T * draw_rate)**gain_exponent.",
+      py::arg("plan"), py::arg("raster"), py::arg("sigma") = PlanSettings{}.sigma,
+      py::arg("gain") = PlanSettings{}.gain, py::arg("patch") = 0,
+      py::arg("gain_exponent") = PlanSettings{}.gain_exponent,
+      py::arg("draw_rate") = PlanSettings{}.draw_rate);
 }
 
 }  // namespace prostm::python

@@ -17,7 +17,7 @@ namespace {
 Metrics metrics_of(const PlanResult& result, int patch) {
   const TargetField& field = result.patch(patch);
   const py::gil_scoped_release unlocked;
-  return score_plan(field, result.plan, patch, result.settings.sigma, result.settings.gain);
+  return score_plan(field, result.plan, patch, result.settings.sigma, result.settings.gain_law());
 }
 
 void write(const PlanResult& result, const std::filesystem::path& path) {
@@ -27,7 +27,7 @@ void write(const PlanResult& result, const std::filesystem::path& path) {
   const TargetField& field = result.patch(0);
   const py::gil_scoped_release unlocked;
   const Metrics metrics =
-      score_plan(field, result.plan, 0, result.settings.sigma, result.settings.gain);
+      score_plan(field, result.plan, 0, result.settings.sigma, result.settings.gain_law());
   PlanFileExtras extras;
   extras.stats = &result.stats;
   extras.metrics = &metrics;
@@ -66,8 +66,8 @@ void bind_result(py::module_& m) {
       .def(
           "quasi_static_field",
           [](const PlanResult& r, int patch) {
-            return quasi_static_array(r.plan, r.patch(patch), r.settings.sigma, r.settings.gain,
-                                      patch);
+            return quasi_static_array(r.plan, r.patch(patch), r.settings.sigma,
+                                      r.settings.gain_law(), patch);
           },
           "Eq. (1) on the target's raster with the planner's sigma and gain: (rows, cols).",
           py::arg("patch") = 0)

@@ -24,18 +24,22 @@ Metrics score_array(const TargetField& target, const py::object& rendered, doubl
   return score_field(target, cells, coverage);
 }
 
-Metrics score(const TargetField& target, const Plan& plan, double sigma, double gain, int patch) {
-  check_model(sigma, gain, patch);
+Metrics score(const TargetField& target, const Plan& plan, double sigma, double gain, int patch,
+              double gain_exponent, double draw_rate) {
+  const GainLaw law{gain, gain_exponent, draw_rate};
+  check_model(sigma, law, patch);
   const py::gil_scoped_release unlocked;
-  return score_plan(target, plan, patch, sigma, gain);
+  return score_plan(target, plan, patch, sigma, law);
 }
 
 std::vector<Control> controls_of(const TargetField& target, double sigma, double gain,
-                                 double length, const Plan* other, std::uint64_t seed) {
-  check_model(sigma, gain, 0);
+                                 double length, const Plan* other, std::uint64_t seed,
+                                 double gain_exponent, double draw_rate) {
+  const GainLaw law{gain, gain_exponent, draw_rate};
+  check_model(sigma, law, 0);
   require_between("length", length, 0.01, 1.0, "m");
   const py::gil_scoped_release unlocked;
-  return controls(target, sigma, gain, length, other, seed);
+  return controls(target, sigma, law, length, other, seed);
 }
 
 }  // namespace
@@ -61,10 +65,13 @@ void bind_score(py::module_& m) {
       .done();
 
   m.def("score_plan", &score,
-        "Metrics of a plan on a target, through Eq. (1) with sigma [m] and gain; all zeros for a\n"
-        "target without pressure.",
+        "Metrics of a plan on a target, through Eq. (1) with sigma [m] and the gain of each path "
+        "(see\n"
+        "quasi_static_field); all zeros for a target without pressure.",
         py::arg("target"), py::arg("plan"), py::arg("sigma") = defaults.sigma,
-        py::arg("gain") = defaults.gain, py::arg("patch") = 0);
+        py::arg("gain") = defaults.gain, py::arg("patch") = 0,
+        py::arg("gain_exponent") = defaults.gain_exponent,
+        py::arg("draw_rate") = defaults.draw_rate);
   m.def("score_field", &score_array,
         "Metrics of any field: rendered (rows, cols), finite, the effective field in the target's\n"
         "unit. coverage is passed through.",
@@ -73,10 +80,12 @@ void bind_score(py::module_& m) {
         "The controls of a plan on a target, which must lose to it, as a list of Control; empty\n"
         "for a target without pressure: a flat field; four circles at the mass centres; random\n"
         "circles with solved pressures (the median of 20 draws); and, when `other` is given, the\n"
-        "paths of that Plan moved here. sigma and length (of a circle) in metres.",
+        "paths of that Plan moved here. sigma and length (of a circle, drawn draw_rate times a\n"
+        "second) in metres; the gain of each path as in quasi_static_field.",
         py::arg("target"), py::arg("sigma") = defaults.sigma, py::arg("gain") = defaults.gain,
-        py::arg("length") = defaults.max_length, py::arg("other") = py::none(),
-        py::arg("seed") = 1);
+        py::arg("length") = defaults.max_length(), py::arg("other") = py::none(),
+        py::arg("seed") = 1, py::arg("gain_exponent") = defaults.gain_exponent,
+        py::arg("draw_rate") = defaults.draw_rate);
 }
 
 }  // namespace prostm::python

@@ -23,9 +23,9 @@ struct PlanResult {
 };
 
 /// Bounds of what Eq. (1) is evaluated with, those of PlanSettings. @throws std::invalid_argument.
-void check_model(double sigma, double gain, int patch);
+void check_model(double sigma, const GainLaw& gain, int patch);
 /// Eq. (1) as an array of rows and columns.
-py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma, double gain,
-                             int patch);
+py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma,
+                             const GainLaw& gain, int patch);
 
 }  // namespace prostm::python

@@ -125,9 +125,9 @@ bool measure(const RecordingReader& recording, const PlanSettings& settings, int
         other_times.push_back(times_of(other_stats));
       }
       if (planned) {
-        ours.add(median(times), score_plan(target, plan, 0, settings.sigma, settings.gain));
+        ours.add(median(times), score_plan(target, plan, 0, settings.sigma, settings.gain_law()));
         baseline.add(median(other_times),
-                     score_plan(target, other, 0, settings.sigma, settings.gain));
+                     score_plan(target, other, 0, settings.sigma, settings.gain_law()));
       }
     }
     progress.show(f + 1, recording.frames(), "fields");

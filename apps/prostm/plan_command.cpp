@@ -27,8 +27,8 @@ void print_plan(std::FILE* out, const Plan& plan, const PlanStats& stats, const 
              stats.long_paths, stats.crossings, 1e3 * stats.total);
   for (std::size_t i = 0; i < plan.paths.size(); ++i) {
     const FocalPath& path = plan.paths[i];
-    fmt::print(out, "  path {}: {:.1f} mm, {:.1f} ms, {} points\n", i + 1, path.length * 1e3,
-               path.period * 1e3, path.points.size());
+    fmt::print(out, "  path {}: {:.1f} mm, {:.1f} ms, {:.1f} Hz, {} points\n", i + 1,
+               path.length * 1e3, path.period * 1e3, 1.0 / path.period, path.points.size());
   }
   const auto row = [&](const std::string& name, const Metrics& m) {
     fmt::print(out, "  {:<44} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n",
@@ -73,7 +73,7 @@ PlanFigure as_figure(const TargetField& target, const Plan& plan, const PlanTrac
   figure.plan = &plan;
   figure.trace = &trace;
   figure.reconstruction.resize(target.size());
-  quasi_static_field(plan, 0, target, s.sigma, s.gain, figure.reconstruction);
+  quasi_static_field(plan, 0, target, s.sigma, s.gain_law(), figure.reconstruction);
   return figure;
 }
 
@@ -84,10 +84,10 @@ void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given, const 
     return;
   }
   const DigitisedFigure other = digitised_figure_from_json(read_file(given.beside), given.beside,
-                                                           *figure.target, s.gain, s.speed);
+                                                           *figure.target, s.gain_law(), s.speed);
   PlanFigure beside = as_figure(*figure.target, other.plan, other.trace, s);
   beside.reconstruction = other.reconstruction;
-  beside.metrics = score_plan(*figure.target, other.plan, 0, s.sigma, s.gain);
+  beside.metrics = score_plan(*figure.target, other.plan, 0, s.sigma, s.gain_law());
   beside.title = given.beside;
   draw_plan(figure, given.common.figure, &beside);
 }
@@ -114,14 +114,14 @@ Result plan_and_score(const TargetField& target, const PlanSettings& s, bool tra
     PlanStats stats;
     planner.plan(target, r.plan, stats, &r.trace);
   }
-  r.metrics = score_plan(target, r.plan, 0, s.sigma, s.gain);
+  r.metrics = score_plan(target, r.plan, 0, s.sigma, s.gain_law());
   if (r.status != PlanStatus::Planned) return r;
   const auto seed = static_cast<std::uint64_t>(s.seed);
   Plan other;
   PlanStats other_stats;
   planner.reset();
   planner.plan(another_target(target, seed), other, other_stats);
-  r.controls = controls(target, s.sigma, s.gain, s.max_length, &other, seed);
+  r.controls = controls(target, s.sigma, s.gain_law(), s.max_length(), &other, seed);
   return r;
 }
 

@@ -85,7 +85,7 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
     const TargetField& target = contact.target.patches[patch];
     std::vector<double> field(target.size());
     quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, settings.plan.sigma,
-                       settings.plan.gain, field);
+                       settings.plan.gain_law(), field);
     figure.targets.push_back(target);
     figure.reconstructions.push_back(std::move(field));
   }

@@ -42,7 +42,7 @@ OnSkin plan_all(Contender& contender, fields::SkinShape shape, bool in_voxels, i
       Plan plan;
       PlanStats stats;
       contender.plan(field, plan, stats);
-      out.add(plan, field, contender.settings().max_length);
+      out.add(plan, field, contender.settings().max_length());
     }
   }
   return out;
@@ -50,7 +50,7 @@ OnSkin plan_all(Contender& contender, fields::SkinShape shape, bool in_voxels, i
 
 void print_line(const std::string& skin, const Contender& contender, const OnSkin& on) {
   const Summary length = on.length.summary(), speed = on.planar_speed.summary();
-  const double excess = length.max - 1e3 * contender.settings().max_length;
+  const double excess = length.max - 1e3 * contender.settings().max_length();
   fmt::print("{:<24} {:<12} {:>6} {:>9} {:>10.1f} {:>+10.1f} {:>12.2f} {:>9.2f} {:>9.2f}\n", skin,
              contender.name(), length.n, on.too_long, length.max, excess,
              on.period_error.summary().max, speed.p50, speed.max);

@@ -19,8 +19,8 @@ GalleryPlan plan_for_gallery(Contender& contender, const TargetField& target) {
   contender.plan(target, out.plan, stats);
   const PlanSettings& s = contender.settings();
   out.rendered.resize(target.size());
-  quasi_static_field(out.plan, 0, target, s.sigma, s.gain, out.rendered);
-  out.metrics = score_plan(target, out.plan, 0, s.sigma, s.gain);
+  quasi_static_field(out.plan, 0, target, s.sigma, s.gain_law(), out.rendered);
+  out.metrics = score_plan(target, out.plan, 0, s.sigma, s.gain_law());
   return out;
 }
 

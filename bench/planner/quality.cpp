@@ -65,14 +65,15 @@ class FrameScorer {
       : target_(target), settings_(settings) {}
 
   Metrics score(const Plan& plan) const {
-    return score_plan(target_, plan, 0, settings_.sigma, settings_.gain);
+    return score_plan(target_, plan, 0, settings_.sigma, settings_.gain_law());
   }
   void score(const Plan& plan, Outcome& outcome) const {
     outcome.metrics.push_back(score(plan));
     const std::vector<Disturbance> list = disturbances(settings_.sigma);
     outcome.disturbed.resize(list.size());
     for (std::size_t d = 0; d < list.size(); ++d) {
-      outcome.disturbed[d].push_back(score_disturbed(target_, plan, 0, list[d], settings_.gain));
+      outcome.disturbed[d].push_back(
+          score_disturbed(target_, plan, 0, list[d], settings_.gain_law()));
     }
   }
 
@@ -85,7 +86,7 @@ void add_controls(const TargetField& target, const Plan& other, int frame, int f
                   SequenceOutcome& outcome) {
   const PlanSettings settings;
   const std::vector<Control> table =
-      controls(target, settings.sigma, settings.gain, settings.max_length, &other,
+      controls(target, settings.sigma, settings.gain_law(), settings.max_length(), &other,
                static_cast<std::uint64_t>(frame) + 1);
   if (outcome.controls.empty()) {
     for (const Control& control : table) outcome.controls.push_back({control.name, {}});
@@ -125,7 +126,7 @@ void measure_frame(const TargetField& target, std::vector<Contender>& contenders
   for (std::size_t c = 0; c < contenders.size(); ++c) {
     const PlanSettings& own = contenders[c].settings();
     if (!contenders[c].variant().warm) {
-      outcome.planners[c].violations.add(plans[c], own.sigma, own.max_length);
+      outcome.planners[c].violations.add(plans[c], own.sigma, own.max_length());
     }
     scorer.score(plans[c], outcome.planners[c]);
   }
@@ -202,7 +203,7 @@ SequenceOutcome measure(const Sequence& sequence, const TargetField& other,
       const PlanSettings& own = contenders[c].settings();
       contenders[c].plan(target, plans[c], stats);
       outcome.planners[c].times.add(stats);
-      outcome.planners[c].violations.add(plans[c], own.sigma, own.max_length);
+      outcome.planners[c].violations.add(plans[c], own.sigma, own.max_length());
     }
     if (!is_scored) continue;
     measure_frame(target, contenders, plans, options.seeds, outcome);

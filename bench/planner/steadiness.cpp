@@ -80,7 +80,7 @@ Steadiness follow_moved(Contender& contender, fields::Pattern pattern) {
     contender.plan(target, plan, stats);
     if (frame >= kFrom) out.motion.add(motion(before, plan));
     if (frame >= kFrom && frame % 5 == 0) {
-      out.rmse.add(score_plan(target, plan, 0, s.sigma, s.gain).rmse);
+      out.rmse.add(score_plan(target, plan, 0, s.sigma, s.gain_law()).rmse);
     }
     before = plan;
   }
@@ -90,7 +90,7 @@ Steadiness follow_moved(Contender& contender, fields::Pattern pattern) {
 /// Share of the second contact's pressure that is rendered where it exceeds half of its maximum.
 double rendered_share(const fields::Appearing& target, const Plan& plan, const PlanSettings& s) {
   std::vector<double> rendered(target.field.size());
-  quasi_static_field(plan, 0, target.field, s.sigma, s.gain, rendered);
+  quasi_static_field(plan, 0, target.field, s.sigma, s.gain_law(), rendered);
   const double peak = *std::max_element(target.second.begin(), target.second.end());
   double wanted = 0.0, felt = 0.0;
   for (std::size_t i = 0; i < rendered.size(); ++i) {

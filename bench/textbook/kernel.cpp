@@ -71,7 +71,7 @@ Result run(const Field& field, const Settings& s) {
     Path& path = result.paths.back();
     path.x.push_back(x[i]);
     path.y.push_back(y[i]);
-    path.pressure.push_back(s.gain * std::max(raster.value(x[i], y[i]), 0.0) * maximum);
+    path.pressure.push_back(std::max(raster.value(x[i], y[i]), 0.0) * maximum);
   }
   result.refine = timer.lap();
   result.total = total.seconds();

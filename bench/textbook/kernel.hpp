@@ -17,8 +17,7 @@ struct Field {
 
 struct Settings {
   int paths = 4, clusters = 50, samples = 20;
-  double max_length = 140.0, sigma = 8.6;  ///< [mm]
-  double gain = 1.4;
+  double max_length = 140.0, sigma = 8.6;                                  ///< [mm]
   double pressure = 3.0, length = 3.0, intersection = 1.0, bending = 0.3;  ///< weights
   double weak_pressure = 0.01;
   int lloyd_iterations = 100, refine_iterations = 200;
@@ -26,7 +25,7 @@ struct Settings {
 };
 
 struct Path {
-  std::vector<double> x, y, pressure;
+  std::vector<double> x, y, pressure;  ///< p* at each point, not yet times γ
 };
 
 struct Result {

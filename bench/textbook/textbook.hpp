@@ -17,9 +17,8 @@ inline PlanStatus plan(const TargetField& target, const PlanSettings& settings, 
   s.paths = settings.paths;
   s.clusters = settings.clusters;
   s.samples = settings.samples;
-  s.max_length = 1e3 * settings.max_length;
+  s.max_length = 1e3 * settings.max_length();
   s.sigma = 1e3 * settings.sigma;
-  s.gain = settings.gain;
   s.pressure = settings.weight_pressure;
   s.length = settings.weight_length;
   s.intersection = settings.weight_intersection;
@@ -51,11 +50,12 @@ inline PlanStatus plan(const TargetField& target, const PlanSettings& settings, 
     FocalPath path;
     for (std::size_t i = 0; i < from.x.size(); ++i) {
       path.points.push_back(target.origin + 1e-3 * Vec2(from.x[i], from.y[i]));
-      path.pressure.push_back(from.pressure[i]);
     }
     path.length = closed_length(path);
     path.speed = settings.speed;
     path.period = path.length / path.speed;
+    const double gain = settings.gain_law().of(path.period);
+    for (const double pressure : from.pressure) path.pressure.push_back(gain * pressure);
     plan.paths.push_back(path);
   }
   return plan.paths.empty() ? PlanStatus::EmptyTarget : PlanStatus::Planned;

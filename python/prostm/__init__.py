@@ -59,7 +59,7 @@ def plan(field, preset=None, *, cell=None, cell_mm=None, settings=None, trace=Fa
         TargetField, a TargetFrame, or the name of a field's file.
     preset: as on the command line; None: that of the settings.
     cell, cell_mm: edge of a cell [m] or [mm]; an array needs one of them, a .npy or .png file needs cell_mm.
-    settings: PlanSettings; None: the defaults. Further keywords are settings, e.g. paths=2, max_length=0.1.
+    settings: PlanSettings; None: the defaults. Further keywords are settings, e.g. paths=2, draw_rate=70.
     trace: keep the intermediate results, as PlanResult.trace.
 
     Every call makes a planner. For many fields make a Planner once and call its plan().

@@ -49,23 +49,24 @@ double pressure_near(const TargetField& target, const Vec2& x) {
   return target.pressure[target.index(row, col)];
 }
 
-FocalPath as_path(const std::vector<Vec2>& loop, const TargetField& target, double gain,
+FocalPath as_path(const std::vector<Vec2>& loop, const TargetField& target, const GainLaw& gain,
                   double speed) {
   FocalPath path;
-  for (const Vec2& x : loop) {
-    path.points.push_back(x);
-    path.pressure.push_back(gain * pressure_near(target, x));
-  }
+  path.points.assign(loop.begin(), loop.end());
   path.length = closed_length(path);
   path.speed = speed;
   path.period = path.length / speed;
+  for (const Vec2& x : loop) {
+    path.pressure.push_back(gain.of(path.period) * pressure_near(target, x));
+  }
   return path;
 }
 
 }  // namespace
 
 DigitisedFigure digitised_figure_from_json(std::string_view text, const std::string& name,
-                                           const TargetField& target, double gain, double speed) {
+                                           const TargetField& target, const GainLaw& gain,
+                                           double speed) {
   const nlohmann::json document = parse_json(text, name);
   const JsonNode figure = JsonNode(document, name).at("fig2", "a digitised figure");
   DigitisedFigure out;

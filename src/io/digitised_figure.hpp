@@ -22,6 +22,7 @@ struct DigitisedFigure {
 /// at the end, values over the colour bar.
 /// @param target the figure's panel (a), of the same raster.  @throws InputError with a sentence.
 DigitisedFigure digitised_figure_from_json(std::string_view text, const std::string& name,
-                                           const TargetField& target, double gain, double speed);
+                                           const TargetField& target, const GainLaw& gain,
+                                           double speed);
 
 }  // namespace prostm

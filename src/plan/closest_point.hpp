@@ -19,6 +19,8 @@ struct ClosestPoint {
 /// nothing.
 class PathSegments {
  public:
+  static constexpr std::size_t kCapacity = static_cast<std::size_t>(kMaxPaths) * kMaxPathPoints;
+
   PathSegments(const Plan& plan, int patch);
 
   bool empty() const { return count_ == 0; }
@@ -30,7 +32,6 @@ class PathSegments {
   ClosestPoint closest(const Vec2& x);
 
  private:
-  static constexpr std::size_t kCapacity = static_cast<std::size_t>(kMaxPaths) * kMaxPathPoints;
   static constexpr std::size_t kRun = 4;  // segments under one box
 
   struct Segment {

@@ -29,8 +29,9 @@ FitSettings fit_settings(const PlanSettings& s) {
   fit.shape.weight_spacing = static_cast<float>(s.fit_spacing);
   fit.shape.weight_bending = static_cast<float>(s.fit_bending);
   fit.shape.spacing = static_cast<float>(kMmPerMetre * s.sigma);
-  fit.shape.least_length = static_cast<float>(kMmPerMetre * std::min(s.least_length, s.max_length));
-  fit.shape.most_length.fill(static_cast<float>(kMmPerMetre * s.max_length));
+  fit.shape.least_length =
+      static_cast<float>(kMmPerMetre * std::min(s.least_length, s.max_length()));
+  fit.shape.most_length.fill(static_cast<float>(kMmPerMetre * s.max_length()));
   return fit;
 }
 
@@ -120,7 +121,7 @@ bool FitPlanner::bound_lengths(const TargetField& target, int paths, double shar
   bool any = false;
   for (int k = 0; k < paths; ++k) {
     const std::span<const Vec2> loop = path_at(k);
-    const double most = kMmPerMetre * settings_.max_length / skin_factor(target, loop);
+    const double most = kMmPerMetre * settings_.max_length() / skin_factor(target, loop);
     const bool is_long = loop_length(loop) > most;
     any = any || is_long;
     rule.most_length[static_cast<std::size_t>(k)] = (is_long ? share : 1.0 - kRounding) * most;
@@ -132,7 +133,7 @@ bool FitPlanner::bound_lengths(const TargetField& target, int paths, double shar
 /// a circle that is not. @return how many are left.
 int FitPlanner::leave_out_long(const TargetField& target, int paths, double least_length) {
   const auto is_long = [&](std::span<const Vec2> loop) {
-    return loop_length(loop) * skin_factor(target, loop) > kMmPerMetre * settings_.max_length;
+    return loop_length(loop) * skin_factor(target, loop) > kMmPerMetre * settings_.max_length();
   };
   int kept = 0;
   for (int k = 0; k < paths; ++k) {
@@ -156,7 +157,7 @@ void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
   SpacingRule rule;
   rule.spacing = (1.0 + kRounding) * kSpacingShare * sigma;
   rule.along = (1.0 - kRounding) * kAlongShare * sigma;
-  rule.least_length = kMmPerMetre * std::min(settings_.least_length, settings_.max_length);
+  rule.least_length = kMmPerMetre * std::min(settings_.least_length, settings_.max_length());
 
   const int n = fit_.loops.samples;
   int paths = 0;
@@ -186,13 +187,16 @@ void FitPlanner::append(const TargetField& target, double maximum, int patch, Pl
     path.patch = patch;
     for (int i = 0; i < fit_.loops.samples; ++i) {
       path.points.push_back(target.origin + fit_.loops.point(i, k) / kMmPerMetre);
-      path.pressure.push_back(
-          settings_.gain * maximum *
-          static_cast<double>(fit_.reconstruction.pressure[fit_.loops.node(i, k)]));
     }
     path.length = closed_length(path);
     path.speed = settings_.speed;
     path.period = path.length * skin_factor(target, copy_path(k, 0)) / path.speed;
+    const double gain = settings_.gain_law().of(path.period);
+    for (int i = 0; i < fit_.loops.samples; ++i) {
+      path.pressure.push_back(
+          gain * maximum *
+          static_cast<double>(fit_.reconstruction.pressure[fit_.loops.node(i, k)]));
+    }
     plan.paths.push_back(path);
   }
   stats.leaves += static_cast<int>(plan.paths.size() - before);
@@ -210,7 +214,7 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
   stats.cost_evaluations += search_.run(paths, continues, fit_);
   std::array<float, kMaxPaths> most{};
   for (int k = 0; k < fit_.loops.paths; ++k) {
-    most[static_cast<std::size_t>(k)] = static_cast<float>(kMmPerMetre * settings_.max_length /
+    most[static_cast<std::size_t>(k)] = static_cast<float>(kMmPerMetre * settings_.max_length() /
                                                            skin_factor(target, copy_path(k, 0)));
   }
   stats.cost_evaluations += search_.finish(most, fit_);

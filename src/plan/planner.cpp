@@ -128,7 +128,7 @@ void Planner::Scratch::initial_paths(int paths, PlanStats& stats, StageTimer& ti
 
   // split it, and keep the heaviest
   const auto leaves =
-      split_tours(clusters, distance, whole, kMmPerMetre * settings.max_length, seed);
+      split_tours(clusters, distance, whole, kMmPerMetre * settings.max_length(), seed);
   const std::size_t kept = std::min(leaves.size(), static_cast<std::size_t>(paths));
   stats.leaves += static_cast<int>(leaves.size());
   stats.split += timer.lap();
@@ -163,17 +163,18 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
     FocalPath path;
     path.patch = patch;
     const std::span<const Vec2> loop = all.subspan(begin, n);
-    for (const Vec2& sample : loop) {
-      path.points.push_back(target.origin + sample / kMmPerMetre);
-      // a Catmull-Rom spline undershoots beside steep edges; pressure cannot be negative
-      path.pressure.push_back(settings.gain * std::max(raster.sample(sample).value, 0.0) * maximum);
-    }
+    for (const Vec2& sample : loop) path.points.push_back(target.origin + sample / kMmPerMetre);
     path.length = closed_length(path);
     path.speed = settings.speed;
     path.period = path.length / path.speed;
+    const double gain = settings.gain_law().of(path.period);
+    for (const Vec2& sample : loop) {
+      // a Catmull-Rom spline undershoots beside steep edges; pressure cannot be negative
+      path.pressure.push_back(gain * std::max(raster.sample(sample).value, 0.0) * maximum);
+    }
 
     // violations, in themselves and against the paths before
-    if (path.length > settings.max_length + kLengthTolerance) ++stats.long_paths;
+    if (path.length > settings.max_length() + kLengthTolerance) ++stats.long_paths;
     stats.crossings += count_self_crossings(loop);
     for (std::size_t other = 0; other < begin; other += n) {
       stats.crossings += count_crossings(all.subspan(other, n), loop);
@@ -213,7 +214,7 @@ PlanStatus Planner::Scratch::plan_patch(const TargetField& target, int patch, in
   stats.refine_iterations += refined.iterations;
   stats.cost_evaluations += refined.evaluations;
   if (preset == Preset::PaperValid) {
-    const int kept = make_valid(x, settings.samples, kMmPerMetre * settings.max_length);
+    const int kept = make_valid(x, settings.samples, kMmPerMetre * settings.max_length());
     x.resize(static_cast<std::size_t>(kept) * static_cast<std::size_t>(settings.samples));
   }
   append(target, patch, maximum, plan, stats);

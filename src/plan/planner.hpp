@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/settings.hpp"
+#include "plan/gain.hpp"
 #include "plan/plan.hpp"
 #include "target/target_field.hpp"
 
@@ -25,13 +26,14 @@ std::string to_string(Preset preset);
 /// Defaults are the paper's, and docs/design.md section "Planner" where the paper is silent.
 struct PlanSettings {
   std::string preset = "best";
-  int paths = 4;                     ///< at most, 1..8
-  int clusters = 50;                 ///< k of the weighted k-means, 1..50
-  int samples = 20;                  ///< N of a path, 8..64; preset best has fit_samples
-  double max_length = 0.140;         ///< L [m]
-  double speed = 7.0;                ///< v of the focal points [m/s]
-  double sigma = 8.6e-3;             ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
-  double gain = 1.4;                 ///< γ: rendered pressure over effective pressure
+  int paths = 4;               ///< at most, 1..8
+  int clusters = 50;           ///< k of the weighted k-means, 1..50
+  int samples = 20;            ///< N of a path, 8..64; preset best has fit_samples
+  double speed = 7.0;          ///< v of the focal points [m/s]
+  double draw_rate = 50.0;     ///< laps a second of the longest path [Hz], (P9a)
+  double sigma = 8.6e-3;       ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
+  double gain = 1.4;           ///< γ of the longest path: rendered over effective pressure, (P9b)
+  double gain_exponent = 0.0;  ///< of a path's period in its γ, (P9b); 0: one γ for all
   double weight_pressure = 3.0;      ///< of Eq. (2), p* over the frame's maximum
   double weight_length = 3.0;        ///< of Eq. (3), lengths in mm
   double weight_intersection = 1.0;  ///< of Eq. (4), lengths in mm
@@ -42,7 +44,7 @@ struct PlanSettings {
   int refine_iterations = 200;  ///< gradient steps at most
   int seed = 1;                 ///< of the clustering
   // presets best and fast
-  double least_length = 0.035;   ///< of a path [m]
+  double least_length = 0.035;   ///< of a path [m]; L where that is shorter
   double fit_coverage = 0.1;     ///< weight of pressure that no path reaches, (P12)
   double fit_length = 1.0;       ///< weight of length and uneven samples, (P13)
   double fit_spacing = 0.3;      ///< weight of samples that are too near, (P14)
@@ -53,6 +55,12 @@ struct PlanSettings {
   int fit_kicks = 8;             ///< tries to lay one or two paths anew
   double budget = 0.0;  ///< time after which `best` tries nothing more [s]; 0: only the counts
                         ///< bind, and the same input gives the same plan
+
+  /// L [m], the length of a path that is drawn draw_rate times a second, (P9a).
+  double max_length() const { return speed / draw_rate; }
+
+  /// γ of each path by its period.
+  GainLaw gain_law() const { return {gain, gain_exponent, draw_rate}; }
 
   void visit(SettingsVisitor& v);
 };

@@ -36,10 +36,11 @@ void PlanSettings::visit(SettingsVisitor& v) {
   v.field("paths", paths);
   v.field("clusters", clusters);
   v.field("samples", samples);
-  v.field("max_length", max_length);
   v.field("speed", speed);
+  v.field("draw_rate", draw_rate);
   v.field("sigma", sigma);
   v.field("gain", gain);
+  v.field("gain_exponent", gain_exponent);
   v.field("weight_pressure", weight_pressure);
   v.field("weight_length", weight_length);
   v.field("weight_intersection", weight_intersection);
@@ -67,10 +68,12 @@ void check_settings(const PlanSettings& s) {
   require_between("paths", s.paths, 1, kMaxPaths);
   require_between("clusters", s.clusters, 1, kMaxClusters);
   require_between("samples", s.samples, 8, kMaxPathPoints);
-  require_between("max_length", s.max_length, 0.01, 1.0, "m");
   require_between("speed", s.speed, 0.1, 100.0, "m/s");
+  require_between("draw_rate", s.draw_rate, 0.1, 10'000.0, "Hz");
+  require_between("speed / draw_rate", s.max_length(), 0.01, 1.0, "m");
   require_between("sigma", s.sigma, 1e-4, 0.1, "m");
   require_between("gain", s.gain, 0.01, 100.0);
+  require_between("gain_exponent", s.gain_exponent, -2.0, 2.0);
   require_between("weight_pressure", s.weight_pressure, 0.0, 1000.0);
   require_between("weight_length", s.weight_length, 0.0, 1000.0);
   require_between("weight_intersection", s.weight_intersection, 0.0, 1000.0);

@@ -3,18 +3,19 @@
 
 #include <span>
 
+#include "plan/gain.hpp"
 #include "plan/plan.hpp"
 #include "target/target_field.hpp"
 
 namespace prostm {
 
-/// p(x) = p_i/γ · exp(−‖x − x_i‖² / 2σ²), with x_i the closest point to x over all segments of all
-/// paths of `patch`, and p_i linear between the samples of its segment. Written to `out` (rows·cols
-/// of `raster`) for every cell, skin or not; all zeros when the patch has no path. Of two equally
-/// near points the one of the lower path and segment index counts.
-/// @param sigma fall-off of a focal point [m], > 0.  @param gain γ, > 0.  @pre out.size() ==
-/// raster.size().
+/// p(x) = p_i/γ · exp(−‖x − x_i‖² / 2σ²), γ that of the path, with x_i the closest point to x over
+/// all segments of all paths of `patch`, and p_i linear between the samples of its segment. Written
+/// to `out` (rows·cols of `raster`) for every cell, skin or not; all zeros when the patch has no
+/// path. Of two equally near points the one of the lower path and segment index counts.
+/// @param sigma fall-off of a focal point [m], > 0.  @param gain γ of each path.  @pre out.size()
+/// == raster.size().
 void quasi_static_field(const Plan& plan, int patch, const TargetField& raster, double sigma,
-                        double gain, std::span<double> out);
+                        const GainLaw& gain, std::span<double> out);
 
 }  // namespace prostm

@@ -29,7 +29,7 @@ CostSettings::CostSettings(const PlanSettings& settings)
       length(settings.weight_length),
       intersection(settings.weight_intersection),
       bending(settings.weight_bending),
-      segment(kMmPerMetre * settings.max_length / settings.samples),
+      segment(kMmPerMetre * settings.max_length() / settings.samples),
       sigma(kMmPerMetre * settings.sigma) {}
 
 Refiner::Refiner(const CostSettings& costs, int max_paths, int samples, int max_iterations)

@@ -14,7 +14,7 @@ constexpr int kCircles = 4, kCirclePoints = 20, kDraws = 20, kPlacements = 50, k
 constexpr double kWeak =
     0.01;  // points below this share of the maximum have no say in where the mass is
 
-FocalPath circle(const Vec2& centre, double length, double pressure) {
+FocalPath circle(const Vec2& centre, double length, double period, double pressure) {
   FocalPath path;
   const double radius = length / (2.0 * kCirclePoints * std::sin(kPi / kCirclePoints));
   for (int i = 0; i < kCirclePoints; ++i) {
@@ -23,6 +23,8 @@ FocalPath circle(const Vec2& centre, double length, double pressure) {
     path.pressure.push_back(pressure);
   }
   path.length = closed_length(path);
+  path.period = period;
+  path.speed = path.length / period;
   return path;
 }
 
@@ -47,8 +49,8 @@ Metrics flat_field(const TargetField& target, double maximum) {
 }
 
 /// Circles about the centres of a weighted 4-means, at the mean pressure of what was clustered.
-Plan circles_at_mass_centres(const TargetField& target, double maximum, double gain, double length,
-                             std::uint64_t seed) {
+Plan circles_at_mass_centres(const TargetField& target, double maximum, const GainLaw& gain,
+                             double length, std::uint64_t seed) {
   planning::WeightedKMeans kmeans(target.size());
   double sum = 0.0, cells = 0.0;
   for_skin(target, maximum, [&](const Vec2& x, double p) {
@@ -60,14 +62,16 @@ Plan circles_at_mass_centres(const TargetField& target, double maximum, double g
   planning::Clusters clusters;
   kmeans.run(kCircles, 100, seed, clusters);
   Plan plan;
+  const double period = 1.0 / gain.draw_rate;
   for (const Vec2& centre : clusters.centre) {
-    plan.paths.push_back(circle(centre, length, gain * sum / cells * maximum));
+    plan.paths.push_back(circle(centre, length, period, gain.of(period) * sum / cells * maximum));
   }
   return plan;
 }
 
 /// Up to four circles about random skin cells that do not cross.
-Plan random_circles(const TargetField& target, double maximum, double length, Random& random) {
+Plan random_circles(const TargetField& target, double maximum, double length, double period,
+                    Random& random) {
   std::vector<Vec2> skin;
   for_skin(target, maximum, [&](const Vec2& x, double) { skin.push_back(x); });
   std::vector<Vec2> centres;
@@ -83,14 +87,14 @@ Plan random_circles(const TargetField& target, double maximum, double length, Ra
     }
   }
   Plan plan;
-  for (const Vec2& centre : centres) plan.paths.push_back(circle(centre, length, 0.0));
+  for (const Vec2& centre : centres) plan.paths.push_back(circle(centre, length, period, 0.0));
   return plan;
 }
 
 /// Sets the pressures of circles to the non-negative least-squares solution of p̂ = p* on the skin.
 /// Eq. (1) is linear in the p_i: each cell sees the two samples beside its closest point. Solved by
 /// projected Gauss-Seidel on the normal equations.
-void solve_pressures(const TargetField& target, double maximum, double sigma, double gain,
+void solve_pressures(const TargetField& target, double maximum, double sigma, const GainLaw& gain,
                      Plan& plan) {
   constexpr std::size_t kUnknowns = static_cast<std::size_t>(kCircles) * kCirclePoints;
   std::vector<std::array<double, kUnknowns>> normal(kUnknowns, std::array<double, kUnknowns>{});
@@ -98,8 +102,9 @@ void solve_pressures(const TargetField& target, double maximum, double sigma, do
   PathSegments segments(plan, 0);
   for_skin(target, maximum, [&](const Vec2& x, double p) {
     const ClosestPoint nearest = segments.closest(x);
-    const double phi = std::exp(-0.5 * nearest.distance2 / (sigma * sigma)) / gain;
     const std::size_t i = nearest.segment;
+    const double phi = std::exp(-0.5 * nearest.distance2 / (sigma * sigma)) /
+                       gain.of(plan.paths[i / kCirclePoints].period);
     const std::size_t j = (i + 1) % kCirclePoints == 0 ? i + 1 - kCirclePoints : i + 1;
     const double a = (1.0 - nearest.along) * phi, b = nearest.along * phi;
     normal[i][i] += a * a;
@@ -133,22 +138,25 @@ Vec2 centre_of_mass(const TargetField& target, double maximum) {
   return sum / mass;
 }
 
-/// The plan moved so that its mean sample lies at `centre`, its highest pressure set to γ·maximum.
-Plan moved(const Plan& other, const Vec2& centre, double maximum, double gain) {
+/// The plan moved so that its mean sample lies at `centre`, its highest effective pressure set to
+/// `maximum`.
+Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw& gain) {
   Plan plan = other;
   Vec2 mean = Vec2::Zero();
   double samples = 0.0, highest = 0.0;
+  // what pressures of a path come to at the γ of the longest
+  const auto weight = [&](const FocalPath& path) { return gain.gain / gain.of(path.period); };
   for (const FocalPath& path : other.paths) {
     for (std::size_t i = 0; i < path.points.size(); ++i) {
       mean += path.points[i];
       samples += 1.0;
-      highest = std::max(highest, path.pressure[i]);
+      highest = std::max(highest, path.pressure[i] * weight(path));
     }
   }
   for (FocalPath& path : plan.paths) {
     path.patch = 0;
     for (Vec2& x : path.points) x += centre - mean / samples;
-    for (double& p : path.pressure) p = highest > 0.0 ? p / highest * gain * maximum : 0.0;
+    for (double& p : path.pressure) p = highest > 0.0 ? p / highest * gain.gain * maximum : 0.0;
   }
   return plan;
 }
@@ -169,8 +177,8 @@ Metrics median(const std::vector<Metrics>& draws) {
 
 }  // namespace
 
-std::vector<Control> controls(const TargetField& target, double sigma, double gain, double length,
-                              const Plan* other, std::uint64_t seed) {
+std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
+                              double length, const Plan* other, std::uint64_t seed) {
   const double maximum = max_pressure(target);
   if (!(maximum > 0.0)) return {};
   std::vector<Control> table;
@@ -182,7 +190,7 @@ std::vector<Control> controls(const TargetField& target, double sigma, double ga
   Random random(seed);
   std::vector<Metrics> draws;
   for (int draw = 0; draw < kDraws; ++draw) {
-    Plan plan = random_circles(target, maximum, length, random);
+    Plan plan = random_circles(target, maximum, length, 1.0 / gain.draw_rate, random);
     solve_pressures(target, maximum, sigma, gain, plan);
     draws.push_back(score_plan(target, plan, 0, sigma, gain));
   }

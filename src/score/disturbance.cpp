@@ -24,7 +24,7 @@ std::vector<Disturbance> disturbances(double sigma) {
 }
 
 Metrics score_shifted(const TargetField& target, const Plan& plan, int patch, double sigma,
-                      double gain, const Vec2& shift) {
+                      const GainLaw& gain, const Vec2& shift) {
   Plan moved = plan;
   for (FocalPath& path : moved.paths) {
     for (Vec2& x : path.points) x += shift;
@@ -33,7 +33,7 @@ Metrics score_shifted(const TargetField& target, const Plan& plan, int patch, do
 }
 
 Metrics score_disturbed(const TargetField& target, const Plan& plan, int patch,
-                        const Disturbance& d, double gain) {
+                        const Disturbance& d, const GainLaw& gain) {
   if (d.shift == 0.0) return score_plan(target, plan, patch, d.sigma, gain);
   Metrics mean;
   for (int k = 0; k < kShiftDirections; ++k) {

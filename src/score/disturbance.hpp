@@ -26,12 +26,12 @@ std::vector<Disturbance> disturbances(double sigma);
 
 /// score_plan() with every path moved by `shift` [m] in the plane: p̂(x) becomes p̂(x − shift), (Q8).
 Metrics score_shifted(const TargetField& target, const Plan& plan, int patch, double sigma,
-                      double gain, const Vec2& shift);
+                      const GainLaw& gain, const Vec2& shift);
 
 /// Scores a plan on one patch under a disturbance, coverage included, which then means "within the
 /// disturbance's σ". With a shift each metric is the mean over the directions, (Q9). Without one,
 /// and with the planner's σ, score_plan() to the bit. @param gain γ of Eq. (1).
 Metrics score_disturbed(const TargetField& target, const Plan& plan, int patch,
-                        const Disturbance& disturbance, double gain);
+                        const Disturbance& disturbance, const GainLaw& gain);
 
 }  // namespace prostm

@@ -193,7 +193,7 @@ Metrics score_field(const TargetField& target, const std::vector<double>& render
 }
 
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
-                   double gain) {
+                   const GainLaw& gain) {
   const double maximum = max_pressure(target);
   if (!(maximum > 0.0)) return {};
   std::vector<double> rendered(target.size());

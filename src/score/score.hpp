@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "plan/gain.hpp"
 #include "plan/plan.hpp"
 #include "target/target_field.hpp"
 
@@ -28,10 +29,10 @@ struct Metrics {
 Metrics score_field(const TargetField& target, const std::vector<double>& rendered,
                     double coverage);
 
-/// Scores a plan on one patch through Eq. (1) with σ [m] and γ; all zeros for a target without
-/// pressure.
+/// Scores a plan on one patch through Eq. (1) with σ [m] and the γ of each path; all zeros for a
+/// target without pressure.
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
-                   double gain);
+                   const GainLaw& gain);
 
 /// One row of the controls' table: what a metric says about something that must lose.
 struct Control {
@@ -49,10 +50,11 @@ struct Control {
 ///   non-negative least-squares p_i; the median of each metric over 20 draws;
 /// - "paths of another target", when `other` is given and not empty: its paths with their mean
 /// sample moved to this target's centre of
-///   mass, their highest p_i set to γ max p*.
-/// @param sigma fall-off of a focal point [m].  @param gain γ.  @param length of a circle, e.g. L
+///   mass, their highest p_i/γ set to max p*.
+/// @param sigma fall-off of a focal point [m].  @param gain γ of each path; circles take a lap of
+/// 1/draw_rate.  @param length of a circle, e.g. L
 /// [m].
-std::vector<Control> controls(const TargetField& target, double sigma, double gain, double length,
-                              const Plan* other, std::uint64_t seed);
+std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
+                              double length, const Plan* other, std::uint64_t seed);
 
 }  // namespace prostm

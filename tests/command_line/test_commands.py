@@ -60,7 +60,7 @@ def test_plan_file_says_what_the_design_says(prostm, field):
     assert set(plan["stage_us"]) == {"init", "kmeans", "tour", "split", "resample", "refine", "total"}
     assert set(plan["metrics"]) == {"rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill"}
     assert plan["plane"]["origin_mm"] == [0, 0, 200]
-    assert plan["settings"]["plan"]["max_length"] == 0.14
+    assert plan["settings"]["plan"]["draw_rate"] == 50
 
 
 def test_the_same_field_twice_gives_the_same_plan(prostm, field):
@@ -191,7 +191,7 @@ def test_devices_says_what_was_not_tried(prostm):
 
 def test_settings_file_reaches_every_stage(prostm, field, tmp_path):
     toml = tmp_path / "s.toml"
-    toml.write_text('[plan]\npreset = "paper"\npaths = 2\nmax_length = 0.1\n')
+    toml.write_text('[plan]\npreset = "paper"\npaths = 2\ndraw_rate = 70\n')
     plan = plan_of(prostm, field, "--settings", toml)
     assert plan["preset"] == "paper" and len(plan["paths"]) <= 2
-    assert plan["settings"]["plan"]["max_length"] == 0.1
+    assert plan["settings"]["plan"]["draw_rate"] == 70 and all(path["length_mm"] < 110 for path in plan["paths"])

@@ -64,10 +64,10 @@ struct PlannedExample {
     figure.plan = &plan;
     figure.trace = &trace;
     figure.reconstruction.resize(target.size());
-    quasi_static_field(plan, 0, target, settings.sigma, settings.gain, figure.reconstruction);
-    figure.metrics = score_plan(target, plan, 0, settings.sigma, settings.gain);
+    quasi_static_field(plan, 0, target, settings.sigma, settings.gain_law(), figure.reconstruction);
+    figure.metrics = score_plan(target, plan, 0, settings.sigma, settings.gain_law());
     figure.controls =
-        controls(target, settings.sigma, settings.gain, settings.max_length, nullptr, 1);
+        controls(target, settings.sigma, settings.gain_law(), settings.max_length(), nullptr, 1);
     figure.title = "PRO-STM: from a target pressure to four closed paths";
   }
   PlannedExample(const PlannedExample&) = delete;

@@ -35,7 +35,7 @@ TargetField target() {
 }
 
 DigitisedFigure read(const std::string& text) {
-  return digitised_figure_from_json(text, "fig.json", target(), 0.5, 7.0);
+  return digitised_figure_from_json(text, "fig.json", target(), {0.5}, 7.0);
 }
 
 TEST(DigitisedFigure, ReadsClustersToursAndReconstruction) {
@@ -113,12 +113,12 @@ TEST(DigitisedFigure, ThePapersOwnPathsScoreAsMeasured) {
   const std::string name = test::shared_file("data/paper/fig2.json");
   const PlanSettings settings;
   const DigitisedFigure figure =
-      digitised_figure_from_json(read_file(name), name, field, settings.gain, settings.speed);
+      digitised_figure_from_json(read_file(name), name, field, settings.gain_law(), settings.speed);
   EXPECT_EQ(figure.trace.clusters.size(), 23u);
   EXPECT_EQ(figure.trace.split.size(), 4u);
   EXPECT_EQ(figure.plan.paths.size(), 4u);
   EXPECT_EQ(figure.reconstruction.size(), field.size());
-  const Metrics metrics = score_plan(field, figure.plan, 0, 8.6e-3, settings.gain);
+  const Metrics metrics = score_plan(field, figure.plan, 0, 8.6e-3, settings.gain_law());
   EXPECT_NEAR(metrics.correlation, 0.899, 0.002);
   EXPECT_NEAR(metrics.rmse, 0.119, 0.002);
   EXPECT_NEAR(metrics.coverage, 0.608, 0.003);

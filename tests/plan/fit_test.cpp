@@ -338,8 +338,8 @@ TEST(FitPresets, BestRendersEveryPatternBetterThanPaperValid) {
       paper.plan(field, theirs, stats);
       best.reset();
       best.plan(field, ours, stats);
-      const Metrics a = score_plan(field, theirs, 0, 8.6e-3, 1.4);
-      const Metrics b = score_plan(field, ours, 0, 8.6e-3, 1.4);
+      const Metrics a = score_plan(field, theirs, 0, 8.6e-3, {1.4});
+      const Metrics b = score_plan(field, ours, 0, 8.6e-3, {1.4});
       theirs_rmse += a.rmse;
       ours_rmse += b.rmse;
       theirs_skill += a.skill_8;
@@ -365,7 +365,7 @@ TEST(FitPresets, ASmallContactGetsAShortLoopThatRendersIt) {
   EXPECT_EQ(plan.paths.size(), 1U);
   EXPECT_LT(plan.paths[0].length, 0.05);
   EXPECT_GT(plan.paths[0].length, 0.03);
-  EXPECT_GT(score_plan(field, plan, 0, 8.6e-3, 1.4).coverage, 0.99);
+  EXPECT_GT(score_plan(field, plan, 0, 8.6e-3, {1.4}).coverage, 0.99);
 }
 
 TEST(FitPresets, AContactMuchSmallerThanABlockIsFound) {
@@ -381,7 +381,7 @@ TEST(FitPresets, AContactMuchSmallerThanABlockIsFound) {
     PlanStats stats;
     ASSERT_EQ(planner.plan(field, plan, stats), PlanStatus::Planned);
     ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, samples_of(preset(name)), 0.140));
-    EXPECT_GT(score_plan(field, plan, 0, 8.6e-3, 1.4).coverage, 0.99) << name;
+    EXPECT_GT(score_plan(field, plan, 0, 8.6e-3, {1.4}).coverage, 0.99) << name;
   }
 }
 
@@ -394,8 +394,8 @@ TEST(FitPresets, FramesContinueFromThePathsBefore) {
   planner.plan(frame, first, stats);
   planner.plan(frame, second, stats);
   // the same target again: the paths stay where they are, or get better
-  const Metrics a = score_plan(frame.patches[0], first, 0, 8.6e-3, 1.4);
-  const Metrics b = score_plan(frame.patches[0], second, 0, 8.6e-3, 1.4);
+  const Metrics a = score_plan(frame.patches[0], first, 0, 8.6e-3, {1.4});
+  const Metrics b = score_plan(frame.patches[0], second, 0, 8.6e-3, {1.4});
   EXPECT_LT(b.rmse, 1.03 * a.rmse);
 
   // after a reset it is as new

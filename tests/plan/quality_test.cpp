@@ -39,7 +39,7 @@ Metrics median_over_seeds(const TargetField& target, const std::string& preset,
     settings.seed = seed;
     Plan plan;
     plan_with(target, settings, plan);
-    const Metrics m = score_plan(target, plan, 0, settings.sigma, settings.gain);
+    const Metrics m = score_plan(target, plan, 0, settings.sigma, settings.gain_law());
     rmse.push_back(m.rmse);
     correlation.push_back(m.correlation);
     coverage.push_back(m.coverage);
@@ -88,9 +88,9 @@ TEST(PlanQuality, TurningTheFieldLeavesTheMeanErrorAlone) {
     Plan plan;
     PlanStats stats;
     planner.plan(field, plan, stats);
-    upright += score_plan(field, plan, 0, settings.sigma, settings.gain).rmse;
+    upright += score_plan(field, plan, 0, settings.sigma, settings.gain_law()).rmse;
     planner.plan(rotated, plan, stats);
-    turned += score_plan(rotated, plan, 0, settings.sigma, settings.gain).rmse;
+    turned += score_plan(rotated, plan, 0, settings.sigma, settings.gain_law()).rmse;
   }
   // fewer fields under a sanitizer leave more of the scatter of single fields
   EXPECT_NEAR(turned / upright, 1.0, frames == 200 ? 0.02 : 0.1);
@@ -107,9 +107,9 @@ TEST(PlanQuality, EveryControlLosesToThePlan) {
     PlanStats stats;
     planner.plan(fields::make(other_pattern, 1), other, stats);
     planner.plan(field, plan, stats);
-    const Metrics ours = score_plan(field, plan, 0, settings.sigma, settings.gain);
+    const Metrics ours = score_plan(field, plan, 0, settings.sigma, settings.gain_law());
     const std::vector<Control> table =
-        controls(field, settings.sigma, settings.gain, settings.max_length, &other, 1);
+        controls(field, settings.sigma, settings.gain_law(), settings.max_length(), &other, 1);
     ASSERT_EQ(table.size(), 4u);
     for (const Control& control : table) {
       const std::string row = to_string(pattern) + ", " + control.name;
@@ -134,9 +134,9 @@ TEST(PlanQuality, TheTextbookIsAsGoodOnAverage) {
       Plan plan;
       PlanStats stats;
       ASSERT_EQ(textbook::plan(field, settings, plan, stats), PlanStatus::Planned);
-      by_textbook += score_plan(field, plan, 0, settings.sigma, settings.gain).rmse;
+      by_textbook += score_plan(field, plan, 0, settings.sigma, settings.gain_law()).rmse;
       planner.plan(field, plan, stats);
-      by_planner += score_plan(field, plan, 0, settings.sigma, settings.gain).rmse;
+      by_planner += score_plan(field, plan, 0, settings.sigma, settings.gain_law()).rmse;
     }
   }
   EXPECT_NEAR(by_textbook / by_planner, 1.0, 0.2);

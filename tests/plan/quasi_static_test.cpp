@@ -9,7 +9,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kSigma = 8.6e-3, kGain = 1.4;
+constexpr double kSigma = 8.6e-3;
+constexpr GainLaw kGain{1.4};
 
 Plan random_plan(Random& random, int paths, int points) {
   Plan plan;
@@ -50,7 +51,7 @@ double field_at(const Plan& plan, int patch, const Vec2& x) {
       pressure = (1.0 - t) * path.pressure[i] + t * path.pressure[j];
     }
   }
-  return pressure / kGain * std::exp(-0.5 * nearest * nearest / (kSigma * kSigma));
+  return pressure / kGain.gain * std::exp(-0.5 * nearest * nearest / (kSigma * kSigma));
 }
 
 TEST(QuasiStaticField, AgreesWithItsDefinition) {

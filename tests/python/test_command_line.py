@@ -48,11 +48,11 @@ def test_the_controls_are_those_of_the_command_line(program, tmp_path, pressure,
 
 def test_settings_are_those_of_a_settings_file(program, tmp_path, pressure):
     np.save(tmp_path / "field.npy", pressure)
-    (tmp_path / "s.toml").write_text("[plan]\npaths = 3\nmax_length = 0.1\nsigma = 6e-3\nseed = 7\n")
+    (tmp_path / "s.toml").write_text("[plan]\npaths = 3\ndraw_rate = 70\ngain_exponent = 0.5\nsigma = 6e-3\nseed = 7\n")
     program("plan", tmp_path / "field.npy", "--cell-mm", 5, "--settings", tmp_path / "s.toml", "--json",
             tmp_path / "plan.json")
     document = json.loads((tmp_path / "plan.json").read_text())
-    result = prostm.plan(pressure, cell_mm=5, paths=3, max_length=0.1, sigma=6e-3, seed=7)
+    result = prostm.plan(pressure, cell_mm=5, paths=3, draw_rate=70, gain_exponent=0.5, sigma=6e-3, seed=7)
     assert_same_plan(result, document)
     assert result.settings.as_dict() == document["settings"]["plan"]
 

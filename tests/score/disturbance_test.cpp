@@ -9,7 +9,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kSigma = 8.6e-3, kGain = 1.4;
+constexpr double kSigma = 8.6e-3;
+constexpr GainLaw kGain{1.4};
 
 /// exp(−r²/2σ²) about the middle of a square of skin, 1 mm cells.
 TargetField gaussian_target(double sigma) {
@@ -33,7 +34,7 @@ Plan polygon(int corners, double radius) {
   for (int i = 0; i < corners; ++i) {
     const double angle = 2.0 * kPi * i / corners;
     path.points.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
-    path.pressure.push_back(kGain);
+    path.pressure.push_back(kGain.gain);
   }
   Plan plan;
   plan.paths.push_back(path);

@@ -10,7 +10,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kSigma = 8.6e-3, kGain = 1.4;
+constexpr double kSigma = 8.6e-3;
+constexpr GainLaw kGain{1.4};
 
 /// Two rows of three cells, the last without skin.
 TargetField small_target() {

@@ -1,0 +1,115 @@
+/// The draw rate, which with the speed bounds the length of a path.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "fields/fields.hpp"
+#include "plan/planner.hpp"
+#include "plan_checks.hpp"
+#include "random_fields.hpp"
+
+namespace prostm {
+namespace {
+
+using fields::Pattern;
+
+constexpr std::size_t kCells = static_cast<std::size_t>(fields::kCells) * fields::kCells;
+
+PlanSettings settings_at(const std::string& preset, double speed, double draw_rate) {
+  PlanSettings settings;
+  settings.preset = preset;
+  settings.speed = speed;
+  settings.draw_rate = draw_rate;
+  return settings;
+}
+
+Plan plan_of(const PlanSettings& settings, const TargetField& field) {
+  Planner planner(settings, field.size());
+  Plan plan;
+  PlanStats stats;
+  EXPECT_EQ(planner.plan(field, plan, stats), PlanStatus::Planned);
+  return plan;
+}
+
+TEST(DrawRate, TheDefaultsAreThePapersLengthToTheBit) {
+  EXPECT_EQ(PlanSettings{}.max_length(), 0.140);
+  EXPECT_EQ(settings_at("best", 14.0, 100.0).max_length(), 0.140);
+  EXPECT_DOUBLE_EQ(settings_at("best", 5.0, 25.0).max_length(), 0.2);
+}
+
+TEST(DrawRate, NoPathIsDrawnMoreSeldom) {
+  for (const char* preset : {"paper-valid", "best", "fast"}) {
+    for (const double rate : {20.0, 35.0, 50.0, 90.0, 150.0, 400.0, 700.0}) {
+      const PlanSettings settings = settings_at(preset, 7.0, rate);
+      for (const Pattern pattern : {Pattern::OnePlume, Pattern::Noise, Pattern::Fingertips}) {
+        SCOPED_TRACE(std::string(preset) + " at " + std::to_string(rate) + " Hz");
+        const Plan plan = plan_of(settings, fields::make(pattern, 4));
+        ASSERT_FALSE(plan.paths.empty());
+        ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, 20, 7.0 / rate));
+        for (const FocalPath& path : plan.paths) {
+          ASSERT_EQ(path.speed, 7.0);
+          ASSERT_LE(path.period * rate, 1.0 + 1e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST(DrawRate, PathsDependOnTheLengthAlone) {
+  for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
+    const TargetField field = fields::make(Pattern::FourPlumes, 2);
+    const Plan slow = plan_of(settings_at(preset, 3.5, 25.0), field);
+    const Plan fast = plan_of(settings_at(preset, 14.0, 100.0), field);
+    ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(slow, fast, 1.0));
+    for (std::size_t k = 0; k < slow.paths.size(); ++k) {
+      EXPECT_EQ(slow.paths[k].period, 4.0 * fast.paths[k].period);
+    }
+  }
+}
+
+TEST(DrawRate, ThePapersPathsAreAsLongAsItSays) {
+  for (const double rate : {40.0, 50.0, 80.0}) {
+    const TargetField field = fields::make(Pattern::OnePlume, 0);
+    for (const FocalPath& path : plan_of(settings_at("paper", 7.0, rate), field).paths) {
+      EXPECT_NEAR(path.length, 7.0 / rate, 0.03 * path.length) << rate;
+    }
+  }
+}
+
+TEST(DrawRate, TheLeastLengthGivesWay) {
+  // a contact that would get a loop of 35 mm, at rates that do not allow it
+  TargetField field;
+  field.resize(30, 30);
+  field.cell = 4e-3;
+  field.skin.assign(field.size(), 1);
+  test::touch(field, 15, 15, 1.0);
+  for (const double rate : {250.0, 400.0}) {
+    const Plan plan = plan_of(settings_at("best", 7.0, rate), field);
+    ASSERT_EQ(plan.paths.size(), 1U);
+    EXPECT_LE(plan.paths[0].length, 7.0 / rate + 1e-9);
+    EXPECT_GT(plan.paths[0].length, 0.9 * 7.0 / rate);
+  }
+}
+
+TEST(DrawRate, OutOfBoundsIsToldInOneSentence) {
+  const auto message = [](double speed, double rate) -> std::string {
+    try {
+      Planner planner(settings_at("best", speed, rate), kCells);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message(7.0, 7.0), "");
+  EXPECT_EQ(message(7.0, 700.0), "");
+  EXPECT_EQ(message(0.1, 0.1), "");
+  EXPECT_EQ(message(100.0, 10'000.0), "");
+  EXPECT_EQ(message(7.0, 0.0), "draw_rate = 0 Hz must be between 0.1 and 10000 Hz");
+  EXPECT_EQ(message(7.0, 5.0), "speed / draw_rate = 1.4 m must be between 0.01 and 1 m");
+  EXPECT_EQ(message(7.0, 1000.0), "speed / draw_rate = 0.007 m must be between 0.01 and 1 m");
+  EXPECT_EQ(message(200.0, 50.0), "speed = 200 m/s must be between 0.1 and 100 m/s");
+}
+
+}  // namespace
+}  // namespace prostm
