@@ -158,6 +158,10 @@ def test_plans_and_their_uses(field):
         prostm.quasi_static_field(plan, field, sigma=0)
     with pytest.raises(ValueError, match="gain"):
         prostm.score_plan(field, plan, gain=-1)
+    with pytest.raises(ValueError, match="gain_exponent = 3 must be between -2 and 2"):
+        prostm.score_plan(field, plan, gain_exponent=3)
+    with pytest.raises(ValueError, match="draw_rate = 0 Hz"):
+        prostm.controls(field, draw_rate=0)
     with pytest.raises(ValueError, match="rendered has the shape"):
         prostm.score_field(field, np.zeros((3, 3)))
     with pytest.raises(ValueError, match="finite"):

@@ -35,6 +35,27 @@ def test_quasi_static_field_is_eq_1(field, preset, sigma, gain):
     np.testing.assert_allclose(ours, eq1(plan.paths, field, sigma, gain), rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.parametrize("preset", ["paper", "best"])
+def test_every_path_has_the_gain_of_its_period(field, preset):
+    settings = prostm.PlanSettings(preset=preset, gain_exponent=-0.7, draw_rate=60)
+    result, constant = prostm.plan(field, settings=settings), prostm.plan(field, preset, draw_rate=60)
+    gains = [GAIN * (path.period * 60) ** -0.7 for path in result.paths]
+    for path, other, gain in zip(result.paths, constant.paths, gains):
+        np.testing.assert_allclose(path.pressure, other.pressure * gain / GAIN, rtol=1e-12)
+    # Eq. (1) on effective pressures, and the model that a result scores itself with
+    effective = [prostm.FocalPath(path.points, path.pressure / gain) for path, gain in zip(result.paths, gains)]
+    rendered = result.quasi_static_field()
+    np.testing.assert_allclose(rendered, eq1(effective, field, gain=1.0), rtol=1e-9, atol=1e-12)
+    ours = prostm.quasi_static_field(result.plan, field, gain_exponent=-0.7, draw_rate=60)
+    assert (ours == rendered).all()
+    metrics = prostm.score_plan(field, result.plan, gain_exponent=-0.7, draw_rate=60)
+    assert metrics.as_dict() == result.metrics().as_dict()
+    assert metrics.rmse == pytest.approx(constant.metrics().rmse, rel=1e-9)
+    with_law = prostm.controls(field, other=result.plan, gain_exponent=-0.7, draw_rate=60)
+    for one, two in zip(with_law, prostm.controls(field, other=constant.plan, draw_rate=60)):
+        assert one.metrics.rmse == pytest.approx(two.metrics.rmse, rel=1e-9)
+
+
 def test_metrics_are_those_of_eq_1(field):
     result = prostm.plan(field, "paper")
     p, r = field.pressure[field.skin], eq1(result.paths, field)[field.skin]
