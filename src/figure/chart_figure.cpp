@@ -1,4 +1,4 @@
-/// Lines on logarithmic axes.
+/// Lines on logarithmic and linear axes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "figure/canvas.hpp"
 #include "figure/figures.hpp"
+#include "figure/panel.hpp"
 
 namespace prostm {
 namespace {
@@ -24,6 +25,7 @@ constexpr double kLeft = 74.0, kRight = 118.0, kTop = 52.0, kBottom = 58.0;
 struct Axis {
   double low = 0.0, high = 1.0;
   bool logarithmic = true;
+  double step = 0.0;  // between ticks, when linear
 
   double at(double value) const {
     return logarithmic ? std::log(value / low) / std::log(high / low)
@@ -32,10 +34,16 @@ struct Axis {
 };
 
 Axis axis_of(double low, double high, bool logarithmic) {
-  if (!logarithmic) return {low - 0.4, high + 0.4, false};
+  if (!logarithmic) {
+    constexpr double kMargin = 0.08, kTicks = 9.0;
+    if (low == high) return {low - 0.4, high + 0.4, false, 1.0};
+    const double margin = kMargin * (high - low);
+    return {low - margin, high + margin, false,
+            figure::tick_step(high - low + 2.0 * margin, kTicks)};
+  }
   // whole decades; a value may stand out by 2 %
   const double from = std::floor(std::log10(low) + 0.01), to = std::ceil(std::log10(high) - 0.01);
-  return {std::pow(10.0, from), std::pow(10.0, std::max(to, from + 1.0)), true};
+  return {std::pow(10.0, from), std::pow(10.0, std::max(to, from + 1.0))};
 }
 
 std::string power_text(int exponent) {
@@ -54,7 +62,7 @@ class ChartDrawing {
  public:
   ChartDrawing(Canvas& canvas, const Chart& chart, const Box& box)
       : canvas_(canvas), chart_(chart), box_(box) {
-    double low_x = HUGE_VAL, high_x = 0.0, low_y = HUGE_VAL, high_y = 0.0;
+    double low_x = HUGE_VAL, high_x = -HUGE_VAL, low_y = HUGE_VAL, high_y = -HUGE_VAL;
     for (const ChartSeries& series : chart.series) {
       const auto [x0, x1] = std::minmax_element(series.x.begin(), series.x.end());
       const auto [y0, y1] = std::minmax_element(series.y.begin(), series.y.end());
@@ -62,7 +70,7 @@ class ChartDrawing {
       low_y = std::min(low_y, *y0), high_y = std::max(high_y, *y1);
     }
     x_ = axis_of(low_x, high_x, chart.logarithmic_x);
-    y_ = axis_of(low_y, high_y, true);
+    y_ = axis_of(low_y, high_y, chart.logarithmic_y);
   }
 
   void draw() {
@@ -101,9 +109,10 @@ class ChartDrawing {
 
   void grid(const Axis& axis, bool is_x) {
     if (!axis.logarithmic) {
-      for (int i = static_cast<int>(std::ceil(axis.low)); i <= axis.high; ++i) {
-        tick(is_x, i, std::to_string(i));
-      }
+      const double first = std::ceil(axis.low / axis.step),
+                   last = std::floor(axis.high / axis.step);
+      for (double i = first; i <= last; ++i)
+        tick(is_x, i * axis.step, figure::tick_text(i * axis.step));
       return;
     }
     const int first = static_cast<int>(std::lround(std::log10(axis.low)));
@@ -116,7 +125,7 @@ class ChartDrawing {
 
   /// y ∝ x, below all lines.
   void slope() {
-    if (!x_.logarithmic) return;
+    if (!x_.logarithmic || !y_.logarithmic) return;
     double factor = HUGE_VAL;
     for (const ChartSeries& series : chart_.series) {
       for (std::size_t k = 0; k < series.x.size(); ++k) {
@@ -141,6 +150,26 @@ class ChartDrawing {
     for (const Vec2& at : page) {
       canvas_.disc(at, 4.2, figure::kPaper);
       canvas_.disc(at, 3.2, figure::path_colour(i));
+    }
+    labels(i, page);
+  }
+
+  /// Over each point its label, where there is room for it.
+  void labels(std::size_t i, const std::vector<Vec2>& page) {
+    constexpr double kAbove = 9.0, kLine = 11.0, kApart = 4.0;
+    const ChartSeries& series = chart_.series[i];
+    double taken_to = -HUGE_VAL, taken_at = 0.0;  // right end and height of the one before
+    for (std::size_t k = 0; k < series.labels.size(); ++k) {
+      const figure::TextStyle style{
+          .size = 10.5, .colour = figure::path_colour(i), .align = Align::Centre};
+      const double half = 0.5 * canvas_.text_width(series.labels[k], style);
+      const Vec2 at = page[k] - Vec2(0.0, kAbove);
+      const bool beside = at.x() - half > taken_to + kApart;
+      if (!beside && std::abs(at.y() - taken_at) < kLine) continue;
+      canvas_.fill({at.x() - half, at.y() - kLine + 2.0, 2.0 * half, kLine}, figure::kPaper);
+      canvas_.text(at, series.labels[k], style);
+      taken_to = at.x() + half;
+      taken_at = at.y();
     }
   }
 
@@ -170,17 +199,23 @@ class ChartDrawing {
 };
 
 void check(const Chart& chart) {
-  const auto good = [](const std::vector<double>& values) {
-    return !values.empty() && std::all_of(values.begin(), values.end(),
-                                          [](double v) { return std::isfinite(v) && v > 0.0; });
+  const auto good = [](const std::vector<double>& values, bool logarithmic) {
+    return !values.empty() && std::all_of(values.begin(), values.end(), [&](double v) {
+      return std::isfinite(v) && (!logarithmic || v > 0.0);
+    });
   };
   if (chart.series.empty()) {
     throw std::invalid_argument("the chart '" + chart.title + "' must have at least one line");
   }
   for (const ChartSeries& series : chart.series) {
-    if (series.x.size() == series.y.size() && good(series.x) && good(series.y)) continue;
-    throw std::invalid_argument("the line '" + series.name +
-                                "' must have as many x as y, all finite and positive");
+    if (series.x.size() != series.y.size() || !good(series.x, chart.logarithmic_x) ||
+        !good(series.y, chart.logarithmic_y)) {
+      throw std::invalid_argument("the line '" + series.name +
+                                  "' must have as many x as y, all finite, and positive on a "
+                                  "logarithmic axis");
+    }
+    if (series.labels.empty() || series.labels.size() == series.x.size()) continue;
+    throw std::invalid_argument("the line '" + series.name + "' must have a label for each point");
   }
 }
 

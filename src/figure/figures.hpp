@@ -56,16 +56,20 @@ void draw_gallery(const std::string& title, const std::vector<GalleryField>& fie
 /// One line of a chart; x ascends.
 struct ChartSeries {
   std::string name;
-  std::vector<double> x, y;  ///< as many of each, > 0
+  std::vector<double> x, y;              ///< as many of each; > 0 on a logarithmic axis
+  std::vector<std::string> labels = {};  ///< of the points: none, or one for each; what
+                                         ///< would touch the one before is left out
 };
 struct Chart {
   std::string title, x_label, y_label;
-  bool logarithmic_x = true;  ///< else x are small whole numbers
+  bool logarithmic_x = true;  ///< else linear
   std::vector<ChartSeries> series;
+  bool logarithmic_y = true;  ///< else linear
 };
-/// Charts side by side, y logarithmic, with a faint line of slope 1 where x is logarithmic too.
+/// Charts side by side, with a faint line of slope 1 where both axes are logarithmic.
 /// @throws std::invalid_argument: no chart, or a chart without points or with values that are not
-/// finite and positive. @throws InputError when the file cannot be written.
+/// finite or have no logarithm where one is taken, or labels for only some points. @throws
+/// InputError when the file cannot be written.
 void draw_charts(const std::vector<Chart>& charts, const std::string& path);
 
 /// One instant of the whole pipeline.

@@ -9,16 +9,6 @@
 namespace prostm::figure {
 namespace {
 
-/// The step of 1, 2 or 5 times a power of ten that makes about `wanted` ticks.
-double tick_step(double range, double wanted) {
-  const double rough = range / wanted;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough) return factor * power;
-  }
-  return 10.0 * power;
-}
-
 /// Calls tick(value in mm) for each multiple of the step within the range [m].
 template <class Tick>
 void for_each_tick(double low, double high, double length, const Tick& tick) {
@@ -28,16 +18,24 @@ void for_each_tick(double low, double high, double length, const Tick& tick) {
   for (int i = 0; i < kMostTicks && first + i <= last; ++i) tick((first + i) * step);
 }
 
-/// Without the rounding error of a sum of steps.
-std::string tick_text(double mm) {
-  std::string text = fmt::format("{:.6g}", mm);
-  if (text.front() == '-') text.replace(0, 1, "−");
-  return text;
-}
-
 constexpr double kTick = 4.0, kLabelSize = 10.5;
 
 }  // namespace
+
+double tick_step(double range, double wanted) {
+  const double rough = range / wanted;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+std::string tick_text(double value) {
+  std::string text = fmt::format("{:.6g}", value + 0.0);  // −0 becomes 0
+  if (text.front() == '-') text.replace(0, 1, "−");
+  return text;
+}
 
 Extent extent_of(const TargetField& field) {
   const Vec2 half = Vec2::Constant(0.5 * field.cell);

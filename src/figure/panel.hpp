@@ -23,6 +23,11 @@ Box fitted(const Box& space, const Extent& extent);
 /// A number as it stands on an axis or in a table: with a minus sign, and no zero that is negative.
 std::string number_text(double value, int decimals);
 
+/// The step of 1, 2 or 5 times a power of ten that makes about `wanted` ticks.
+double tick_step(double range, double wanted);
+/// A multiple of a step as it stands on an axis, without the rounding error of a sum of steps.
+std::string tick_text(double value);
+
 /// What is written around a panel.
 struct PanelText {
   std::string title;

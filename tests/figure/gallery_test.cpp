@@ -79,6 +79,12 @@ TEST(DrawCharts, ShowsEveryLine) {
   changed = chart();
   changed.series.pop_back();
   EXPECT_FALSE(bytes_of({changed}) == whole);
+  // linear axes, labels, points at zero and below
+  Chart linear{"Trade", "a", "b", false, {{"ours", {-1, 0, 2}, {0.1, -0.05, 0.2}}}, false};
+  const std::string plain = bytes_of({linear});
+  EXPECT_TRUE(plain.find("</svg>") != std::string::npos);
+  linear.series[0].labels = {"one", "two", "three"};
+  EXPECT_FALSE(bytes_of({linear}) == plain);
   // whole numbers along x, one value alone
   changed = {"Paths", "paths", "µs", false, {{"ours", {1}, {5}}}};
   EXPECT_TRUE(bytes_of({changed}).find("</svg>") != std::string::npos);
@@ -97,6 +103,14 @@ TEST(DrawCharts, RefusesWhatHasNoPlaceOnTheAxes) {
   }
   Chart broken = chart();
   broken.series[0].x.pop_back();
+  EXPECT_THROW(draw_charts({broken}, path), std::invalid_argument);
+  broken = chart();
+  broken.series[0].labels = {"one"};
+  EXPECT_THROW(draw_charts({broken}, path), std::invalid_argument);
+  broken = chart();
+  broken.logarithmic_y = false;
+  broken.series[0].y[2] = -1.0;
+  broken.series[0].x[0] = 0.0;
   EXPECT_THROW(draw_charts({broken}, path), std::invalid_argument);
   EXPECT_EQ(folder.entries(), 0u);
 }
