@@ -7,6 +7,7 @@
 #include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "core/random.hpp"
+#include "emit/path_emitter.hpp"
 #include "figure/figures.hpp"
 #include "io/digitised_figure.hpp"
 #include "io/field_file.hpp"
@@ -125,9 +126,27 @@ Result plan_and_score(const TargetField& target, const PlanSettings& s, bool tra
   return r;
 }
 
+PowerShare power_share(const Plan& plan, double limit) {
+  const int paths = static_cast<int>(plan.paths.size());
+  return {1.0 / paths, even_share(paths, limit), limit};
+}
+
+void print_power(std::FILE* out, const Plan& plan, double limit) {
+  const PowerShare share = power_share(plan, limit);
+  fmt::print(out,
+             "  power: {} focal points at once, each with {:.1f} % of the array's; while all want "
+             "the same, each gets at most {:.1f} % of full scale's pressure\n",
+             plan.paths.size(), 100.0 * share.array, 100.0 * share.pressure);
+}
+
 void write_plan(const Result& r, const TargetField& target, const PipelineSettings& settings,
                 const std::string& json) {
   PlanFileExtras extras;
+  PowerShare power;
+  if (!r.plan.paths.empty()) {
+    power = power_share(r.plan, settings.emit.power_limit);
+    extras.power = &power;
+  }
   extras.stats = &r.stats;
   extras.metrics = &r.metrics;
   extras.controls = &r.controls;
@@ -166,6 +185,7 @@ int plan_command(const PlanOptionsGiven& given) {
     fmt::print(out, "{}: no pressure anywhere, so no path\n", given.field);
   } else {
     print_plan(out, r.plan, r.stats, r.metrics, r.controls);
+    print_power(out, r.plan, settings.emit.power_limit);
   }
   return 0;
 }

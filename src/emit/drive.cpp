@@ -27,6 +27,10 @@ double drive_intensity(double pressure, double full_scale, double silent_below, 
   return share > 0.0 && share >= silent_below ? std::sqrt(share) : 0.0;
 }
 
+double even_share(int paths, double power_limit) {
+  return std::min(1.0, power_limit / paths);
+}
+
 bool limit_drives(std::span<Drive> drives, double max_rise, double power_limit) noexcept {
   // a common scale for what is wanted
   double power = 0.0;

@@ -33,6 +33,11 @@ void validate(const EmitSettings& settings, double sample_rate);
 /// pressure. `saturated` is set when it was clipped. @pre full_scale > 0, both finite.
 double drive_intensity(double pressure, double full_scale, double silent_below, bool& saturated);
 
+/// The largest intensity², or share of full scale's radiation pressure, that `paths` focal points
+/// may have at the same time when they want the same, (E4a): min(1, power_limit / paths).
+/// @pre paths ≥ 1, power_limit > 0.
+double even_share(int paths, double power_limit);
+
 /// Something that the pipeline wants to know of the emission, in sample counts.
 struct TakeOver {
   std::int64_t plan = 0;             ///< id of the plan

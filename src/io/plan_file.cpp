@@ -103,6 +103,12 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
   document["paths"] = Json::array();
   for (const FocalPath& path : plan.paths) document["paths"].push_back(path_json(path));
 
+  if (extras.power != nullptr) {
+    document["power"] = {{"share_of_array", extras.power->array},
+                         {"share_of_full_scale", extras.power->pressure},
+                         {"limit", extras.power->limit}};
+  }
+
   // how it came about and how good it is
   if (extras.stats != nullptr) {
     document["stage_us"] = stage_json(*extras.stats);

@@ -9,12 +9,20 @@
 
 namespace prostm {
 
+/// What each of a plan's focal points, all drawn at the same time, may have.
+struct PowerShare {
+  double array = 0.0;     ///< of the array's power: 1 / number of paths
+  double pressure = 0.0;  ///< of full scale's radiation pressure, when all want the same, (E4a)
+  double limit = 0.0;     ///< largest Σ intensity² that the emission allows
+};
+
 /// What a plan file says besides the paths.
 struct PlanFileExtras {
   std::string method = "pro-stm";
   const PlanStats* stats = nullptr;  ///< writes "stage_us" and the counts, when given
   const Metrics* metrics = nullptr;  ///< writes "metrics", when given
   const std::vector<Control>* controls = nullptr;
+  const PowerShare* power = nullptr;  ///< writes "power", when given
 };
 
 /// @param target the field that was planned: its plane and heights are repeated in the file.

@@ -59,6 +59,8 @@ def test_plan_file_says_what_the_design_says(prostm, field):
         assert len(path["pressure"]) == len(points) and min(path["pressure"]) >= 0
     assert set(plan["stage_us"]) == {"init", "kmeans", "tour", "split", "resample", "refine", "total"}
     assert set(plan["metrics"]) == {"rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill"}
+    paths = len(plan["paths"])
+    assert plan["power"] == {"share_of_array": 1 / paths, "share_of_full_scale": 1.0, "limit": 4.0}
     assert plan["plane"]["origin_mm"] == [0, 0, 200]
     assert plan["settings"]["plan"]["draw_rate"] == 50
 
@@ -195,3 +197,18 @@ def test_settings_file_reaches_every_stage(prostm, field, tmp_path):
     plan = plan_of(prostm, field, "--settings", toml)
     assert plan["preset"] == "paper" and len(plan["paths"]) <= 2
     assert plan["settings"]["plan"]["draw_rate"] == 70 and all(path["length_mm"] < 110 for path in plan["paths"])
+
+
+def test_the_power_of_many_paths_is_shared(prostm, tmp_path):
+    field = blob_field()
+    field["pressure"] = (0.1 + np.array(field["pressure"])).tolist()
+    name, toml = tmp_path / "wide.json", tmp_path / "s.toml"
+    name.write_text(json.dumps(field))
+    toml.write_text("[plan]\npaths = 8\n[emit]\npower_limit = 1.5\n")
+    plan = plan_of(prostm, name, "--settings", toml)
+    paths = len(plan["paths"])
+    assert paths > 2
+    assert plan["power"] == {"share_of_array": 1 / paths, "share_of_full_scale": 1.5 / paths, "limit": 1.5}
+    told = prostm("plan", name, "--settings", toml).stdout
+    assert f"power: {paths} focal points at once, each with {100 / paths:.1f} % of the array's" in told
+    assert f"at most {150 / paths:.1f} % of full scale's pressure" in told

@@ -76,5 +76,21 @@ TEST(LimitDrives, OneScaleForAllAndReachedInTime) {
   EXPECT_NEAR(drives[3].intensity, 0.5 / std::sqrt(2.5), 1e-12);
 }
 
+TEST(EvenShare, IsWhatTheLimitLeavesFociThatWantTheSame) {
+  EXPECT_EQ(even_share(1, 4.0), 1.0);
+  EXPECT_EQ(even_share(4, 4.0), 1.0);
+  EXPECT_EQ(even_share(8, 4.0), 0.5);
+  for (const double limit : {0.3, 1.0, 2.5, 4.0, 8.0}) {
+    for (int foci = 1; foci <= kMaxPaths; ++foci) {
+      std::vector<Drive> drives(static_cast<std::size_t>(foci));
+      for (Drive& drive : drives) drive.wanted = 1.0;
+      limit_drives(drives, 1.0, limit);
+      for (const Drive& drive : drives) {
+        EXPECT_NEAR(drive.intensity * drive.intensity, even_share(foci, limit), 1e-12);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace prostm
