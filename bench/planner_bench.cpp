@@ -2,7 +2,7 @@
 /// on captured fields, beside a textbook planner and controls.
 ///
 /// usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]
-///                      [--scaling-figure FILE] [FIELDS ...]
+///                      [--scaling-figure FILE] [--bending-figure FILE] [FIELDS ...]
 
 #include <fmt/core.h>
 
@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "figure/figures.hpp"
+#include "planner/bending.hpp"
 #include "planner/contenders.hpp"
 #include "planner/nlopt_baseline.hpp"
 #include "planner/on_skin.hpp"
 #include "planner/picture.hpp"
+#include "planner/power.hpp"
 #include "planner/quality.hpp"
 #include "planner/scaling.hpp"
 #include "planner/sequences.hpp"
@@ -28,16 +30,17 @@ namespace {
 
 constexpr const char* kUsage =
     "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]\n"
-    "                     [--scaling-figure FILE] [FIELDS ...]\n"
+    "                     [--scaling-figure FILE] [--bending-figure FILE] [FIELDS ...]\n"
     "  --frames N   scored of each field, spread over its sequence (20)\n"
     "  --seeds N    of the textbook planner, whose median counts (20)\n"
-    "  --figure FILE, --scaling-figure FILE   draw the gallery, and time against size; .png or "
-    ".svg\n"
+    "  --figure FILE, --scaling-figure FILE, --bending-figure FILE   draw the gallery, time "
+    "against size, and error\n"
+    "               against corners; .png or .svg\n"
     "FIELDS, recordings of prostm capture or field files, take the place of the generated "
     "fields.\n";
 
 struct Options {
-  std::string json, figure, scaling_figure;
+  std::string json, figure, scaling_figure, bending_figure;
   QualityOptions quality;
   std::vector<std::string> files;
 };
@@ -69,6 +72,8 @@ Options parse(int argc, char** argv) {
       options.figure = value;
     } else if (argument == "--scaling-figure") {
       options.scaling_figure = value;
+    } else if (argument == "--bending-figure") {
+      options.bending_figure = value;
     } else if (argument == "--frames") {
       options.quality.frames = number("--frames", value, 1, 10'000);
     } else if (argument == "--seeds") {
@@ -77,7 +82,8 @@ Options parse(int argc, char** argv) {
       throw InputError("there is no option " + argument);
     }
   }
-  for (const std::string& figure : {options.figure, options.scaling_figure}) {
+  for (const std::string& figure :
+       {options.figure, options.scaling_figure, options.bending_figure}) {
     if (!figure.empty()) check_figure(figure);
   }
   return options;
@@ -104,6 +110,8 @@ std::vector<Row> measure_all(const Options& options) {
   measure_steadiness(contenders, rows);
   measure_on_skin(std::min(options.quality.frames, 5), rows);
   compare_with_nlopt(std::min(options.quality.frames, 10), rows);
+  measure_bending(options.bending_figure, rows);
+  measure_power(std::min(options.quality.frames, 10), rows);
   measure_scaling(options.scaling_figure, rows);
   if (!options.figure.empty()) draw_gallery_picture(options.figure);
   return rows;

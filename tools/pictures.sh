@@ -1,5 +1,5 @@
 #!/bin/bash
-# Draws the README's pictures with the release build: tools/pictures.sh
+# Draws the pictures of the README and of docs with the release build: tools/pictures.sh
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 prostm=$root/build/release/prostm
@@ -12,4 +12,5 @@ for scene in one-plume four-plumes; do
 done
 "$prostm" capture --scene four-plumes --frames 120 --out four-plumes.h5
 "$prostm" plan four-plumes.h5 --frame 100 --preset paper --figure "$root/docs/pictures/plan.png"
-"$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png"
+"$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png" \
+  --bending-figure "$root/docs/pictures/bending.png"

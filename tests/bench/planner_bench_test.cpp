@@ -2,13 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/file.hpp"
 #include "core/units.hpp"
 #include "io/field_file.hpp"
+#include "planner/bending.hpp"
 #include "planner/contenders.hpp"
+#include "planner/power.hpp"
 #include "planner/sequences.hpp"
 #include "planner/steadiness.hpp"
 #include "planner/violations.hpp"
@@ -151,6 +154,68 @@ TEST(Contenders, OnlyAWarmOneContinues) {
   };
   EXPECT_TRUE(is_repeated(false));
   EXPECT_FALSE(is_repeated(true));
+}
+
+FocalPath through(const std::vector<Vec2>& points) {
+  FocalPath path;
+  path.points.assign(points.begin(), points.end());
+  return path;
+}
+
+TEST(Bending, IsThatOfShapesWhoseTurnsAreKnown) {
+  // convex: 2π in all, in equal parts
+  const Bending round = bending(polygon(Vec2::Zero(), 0.14));
+  EXPECT_NEAR(round.sharpest, 2.0 * kPi / 20, 1e-9);
+  EXPECT_NEAR(round.rms, 2.0 * kPi / 20, 1e-9);
+  EXPECT_NEAR(round.excess, 0.0, 1e-9);
+  // an L has five corners one way and one the other, of 90°, either way round
+  std::vector<Vec2> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  for (int way = 0; way < 2; ++way) {
+    const Bending angular = bending(through(corners));
+    EXPECT_NEAR(angular.sharpest, 0.5 * kPi, 1e-9);
+    EXPECT_NEAR(angular.rms, 0.5 * kPi, 1e-9);
+    EXPECT_NEAR(angular.excess, kPi, 1e-9);
+    std::reverse(corners.begin(), corners.end());
+  }
+  // there and back, with a point in the middle that does not turn
+  const Bending flat = bending(through({{0, 0}, {1, 0}, {2, 0}, {1, 1e-9}}));
+  EXPECT_NEAR(flat.sharpest, kPi, 1e-6);
+  EXPECT_NEAR(flat.rms, std::sqrt(0.5) * kPi, 1e-6);
+}
+
+TEST(Power, OneFocalPointGetsWhatItAsksFor) {
+  SimulatedArraySettings settings;
+  settings.realtime = false;
+  const SimulatedArray array(settings, usx_array(), Medium{});
+  const Reached one = reached(array, {{Eigen::Vector3f(0.02F, -0.01F, 0.2F), 0.5F}});
+  EXPECT_NEAR(one.superposed[0], 0.25, 1e-9);
+  EXPECT_NEAR(one.full[0], 1.0, 1e-9);
+}
+
+TEST(Power, SeveralShareTheArray) {
+  SimulatedArraySettings settings;
+  settings.realtime = false;
+  const SimulatedArray array(settings, usx_array(), Medium{});
+  // apart from each other, where the drives for one hardly sound at another
+  for (int foci = 2; foci <= 8; ++foci) {
+    std::vector<FocusSample> all;
+    for (int f = 0; f < foci; ++f) {
+      const double angle = 2.0 * kPi * f / foci + 0.3;
+      all.push_back(
+          {(Vec3(0.045 * std::cos(angle), 0.045 * std::sin(angle), 0.2)).cast<float>(), 1.0F});
+    }
+    const Reached r = reached(array, all);
+    double superposed = 0.0, full = 0.0;
+    for (int f = 0; f < foci; ++f) {
+      superposed += r.superposed[static_cast<std::size_t>(f)] / foci;
+      full += r.full[static_cast<std::size_t>(f)] / foci;
+    }
+    // at most 1/P of the power each; superposed about 1/P² of the pressure
+    EXPECT_LT(full, 1.1 / foci) << foci;
+    EXPECT_GT(full, 0.6 / foci) << foci;
+    EXPECT_LT(superposed, full) << foci;
+    EXPECT_NEAR(superposed * foci * foci, 1.0, 0.6) << foci;
+  }
 }
 
 }  // namespace
