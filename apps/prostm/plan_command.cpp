@@ -133,10 +133,12 @@ PowerShare power_share(const Plan& plan, double limit) {
 
 void print_power(std::FILE* out, const Plan& plan, double limit) {
   const PowerShare share = power_share(plan, limit);
+  const std::size_t paths = plan.paths.size();
   fmt::print(out,
-             "  power: {} focal points at once, each with {:.1f} % of the array's; while all want "
-             "the same, each gets at most {:.1f} % of full scale's pressure\n",
-             plan.paths.size(), 100.0 * share.array, 100.0 * share.pressure);
+             "  power: {} focal point{} at once, each with {:.1f} % of the array's; while all want "
+             "the same, the power limit of {:g} leaves each at most {:.1f} % of full scale's "
+             "pressure\n",
+             paths, paths == 1 ? "" : "s", 100.0 * share.array, limit, 100.0 * share.pressure);
 }
 
 void write_plan(const Result& r, const TargetField& target, const PipelineSettings& settings,
