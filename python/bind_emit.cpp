@@ -253,6 +253,16 @@ void bind_emit(py::module_& m) {
       "shape, in the unit of full_scale. Returns intensities 0..1 of the same shape.",
       py::arg("pressure"), py::arg("full_scale"),
       py::arg("silent_below") = EmitSettings{}.silent_below);
+  m.def(
+      "even_share",
+      [](int paths, double power_limit) {
+        require_between("paths", paths, 1, kMaxPaths);
+        require_between("power_limit", power_limit, 1e-6, double{kMaxPaths});
+        return even_share(paths, power_limit);
+      },
+      "min(1, power_limit / paths): the share of full scale's radiation pressure that so many\n"
+      "focal points may have at the same time when they want the same.",
+      py::arg("paths"), py::arg("power_limit") = EmitSettings{}.power_limit);
 }
 
 }  // namespace prostm::python

@@ -15,7 +15,8 @@ they show. The interpreter's lock is released while planning, scoring, emitting,
   planning             plan, Planner, PlanSettings, PlanResult, PlanStatus, PlanStats, PlanTrace
   plans                Plan, FocalPath, closed_length, read_plan, write_plan, plan_from_json, plan_to_json, PlanFile
   quality              quasi_static_field, score_plan, score_field, controls, Metrics, Control
-  samples at 40 kHz    emit, PathEmitter, EmitSettings, lift, LiftedPlan, LiftedPath, drive_intensity, EmitStats, TakeOver
+  samples at 40 kHz    emit, PathEmitter, EmitSettings, lift, LiftedPlan, LiftedPath, drive_intensity, even_share, EmitStats,
+                       TakeOver
 """
 
 import os as _os
@@ -23,7 +24,7 @@ import os as _os
 from . import _prostm
 from ._prostm import (Control, EmitSettings, EmitStats, FocalPath, InputError, LiftedPath, LiftedPlan, Metrics,
                       PathEmitter, Plan, PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace,
-                      TakeOver, TargetField, TargetFrame, __version__, closed_length, controls, drive_intensity,
+                      TakeOver, TargetField, TargetFrame, __version__, closed_length, controls, drive_intensity, even_share,
                       field_from_json, field_to_json, height_at, kMaxFieldCells, kMaxPatches, kMaxPathPoints,
                       kMaxPaths, lift, max_pressure, plan_from_json, plan_to_json, quasi_static_field, read_field,
                       read_plan, score_field, score_plan, write_field, write_plan)
@@ -34,7 +35,7 @@ __all__ = [
     "max_pressure", "height_at",
     "Plan", "FocalPath", "closed_length", "read_plan", "write_plan", "plan_from_json", "plan_to_json", "PlanFile",
     "quasi_static_field", "score_plan", "score_field", "controls", "Metrics", "Control",
-    "emit", "PathEmitter", "EmitSettings", "lift", "LiftedPlan", "LiftedPath", "drive_intensity",
+    "emit", "PathEmitter", "EmitSettings", "lift", "LiftedPlan", "LiftedPath", "drive_intensity", "even_share",
     "EmitStats", "TakeOver", "InputError", "kMaxFieldCells", "kMaxPatches", "kMaxPathPoints", "kMaxPaths",
 ]
 

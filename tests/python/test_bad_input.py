@@ -195,3 +195,7 @@ def test_samples_that_cannot_be(field):
         prostm.emit(prostm.plan(field).plan, field, float("nan"), 1.0)
     with pytest.raises(ValueError, match="full_scale"):
         prostm.drive_intensity([1.0], 0.0)
+    with pytest.raises(ValueError, match="paths = 0"):
+        prostm.even_share(0)
+    with pytest.raises(ValueError, match="power_limit = 9"):
+        prostm.even_share(2, 9)
