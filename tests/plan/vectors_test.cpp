@@ -43,7 +43,7 @@ std::array<double, kPatterns.size()> gallery_rmse(const PlanSettings& settings, 
       PlanStats stats;
       planner.reset();
       planner.plan(field, plan, stats);
-      rmse[p] += score_plan(field, plan, 0, settings.sigma, settings.gain).rmse / frames;
+      rmse[p] += score_plan(field, plan, 0, settings.sigma, settings.gain_law()).rmse / frames;
     }
   }
   return rmse;
