@@ -5,23 +5,24 @@
 #include <cstddef>
 #include <vector>
 
+#include "plan/cell_weights.hpp"
 #include "target/target_field.hpp"
 
 namespace prostm::planning {
 
-/// Eight neighbouring cells, 4 × 2. Cells without skin have weight 0. All lengths in mm from the
-/// centre of the target's cell (0, 0).
+/// Eight neighbouring cells, 4 × 2. Cells without skin that counts have weight 0. All lengths in mm
+/// from the centre of the target's cell (0, 0).
 struct alignas(32) CellTile {
   float x[8], y[8];
   float pressure[8];  ///< p* over the frame's maximum
-  float weight[8];    ///< skin area in the cell over kUnitArea
+  float weight[8];    ///< skin area in the cell over kUnitArea, times its mean weight (P17)
   float centre_x, centre_y, radius;
 };
 
 inline constexpr float kUnitArea = 4.0F;  ///< [mm²] that counts as 1 in the reconstruction error
 
 /// The target on a raster of its own or of a coarser resolution: blocks of factor × factor cells
-/// are averaged over their skin.
+/// are averaged over their skin, by its weights where the target has some.
 class CellTiles {
  public:
   static constexpr std::size_t kMaxTiles = 8192;
@@ -31,24 +32,33 @@ class CellTiles {
 
   /// Takes over the skin cells of `target`, averaged so that a block is no wider than `width` [mm]
   /// where the target's cells allow it, and wider where that would be more than kMaxBlocks.
-  /// Allocates nothing. @pre maximum > 0, sizes agree, the target has no more than max_cells.
+  /// Allocates nothing. @pre maximum > 0, sizes agree, the target has no more than max_cells and,
+  /// if it has weights, one > 0 on skin.
   void set(const TargetField& target, double maximum, double width);
 
   const std::vector<CellTile>& tiles() const { return tiles_; }
-  float peak() const { return peak_; }            ///< highest pressure of a block
+  /// Mean weight (P17) of the skin in cell c of tile t; 0 where no skin counts.
+  float mean_weight(std::size_t t, std::size_t c) const {
+    return mean_weight_.empty() ? 1.0F : mean_weight_[t][c];
+  }
+  float peak() const { return peak_; }            ///< highest mean weight · pressure of a block
   double square_norm() const { return square_; }  ///< Σ weight · pressure²
 
  private:
   struct Block {
-    double pressure;         // sums over its skin cells: in the target's unit,
-    double col, row, count;  // indices, and how many cells there are
+    double pressure;          // sums over its skin cells, by weight: in the target's unit,
+    double col, row, weight;  // indices, and the weights themselves
+    double count;             // of cells, where the target has weights
   };
-  void add_rows(const TargetField& target, int begin, int end);
-  Block sum_columns(const TargetField& target, std::size_t block, int factor);
+  void add_rows(const TargetField& target, const CellWeights* weights, int begin, int end);
+  Block sum_columns(const TargetField& target, std::size_t block, int factor) const;
+  void gather(std::size_t rows, std::size_t cols, double cell, double maximum, bool has_weights);
 
   std::vector<CellTile> tiles_;
+  std::vector<std::array<float, 8>> mean_weight_;  // of each tile, where the target has weights
   std::vector<Block> blocks_;
-  std::array<std::vector<double>, 3> columns_;  // of a row of blocks: pressure, cells, row indices
+  std::array<std::vector<double>, 4> columns_;  // of a row of blocks: pressure, weights, row
+                                                // indices, and cells where the target has weights
   float peak_ = 0.0F;
   double square_ = 0.0;
 };

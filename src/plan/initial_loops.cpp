@@ -33,11 +33,12 @@ void InitialLoops::set(const CellTiles& cells, float weak,
   for (std::size_t t = 0; t < cells.tiles().size(); ++t) {
     const CellTile& tile = cells.tiles()[t];
     for (std::size_t c = 0; c < 8; ++c) {
-      if (tile.weight[c] == 0.0F || tile.pressure[c] < threshold) continue;
+      const float pressure = cells.mean_weight(t, c) * tile.pressure[c];
+      if (tile.weight[c] == 0.0F || pressure < threshold) continue;
       if (lanes > 0 && ((owners >> (fits[t].segment[c] % lanes)) & 1U) == 0) continue;
       x_.push_back(tile.x[c]);
       y_.push_back(tile.y[c]);
-      pressure_.push_back(tile.pressure[c]);
+      pressure_.push_back(pressure);
     }
   }
   weight_.resize(x_.size());

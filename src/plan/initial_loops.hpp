@@ -28,8 +28,8 @@ class InitialLoops {
  public:
   explicit InitialLoops(std::size_t max_cells);
 
-  /// Takes over the cells with at least `weak` of the highest pressure of any, > 0. @pre some cell
-  /// has pressure.
+  /// Takes over the cells with at least `weak` of the highest weighted pressure of any, > 0. @pre
+  /// some cell that counts has pressure.
   void set(const CellTiles& cells, float weak);
   /// Of those only the cells whose closest path is in the set `owners` (a bit each).
   void set(const CellTiles& cells, float weak,
@@ -52,7 +52,7 @@ class InitialLoops {
   void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
   void tour(const StartSettings& settings, std::span<Vec2> samples);
 
-  std::vector<float> x_, y_, pressure_, weight_, sorted_[3];
+  std::vector<float> x_, y_, pressure_, weight_, sorted_[3];  // pressure_: times the cell's weight
   std::vector<std::int32_t> label_;
   Clusters centres_;
   DistanceTable distance_;

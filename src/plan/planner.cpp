@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/stage_timer.hpp"
+#include "plan/cell_weights.hpp"
 #include "plan/clustering.hpp"
 #include "plan/fit_planner.hpp"
 #include "plan/raster_rows.hpp"
@@ -23,6 +25,17 @@ constexpr double kLengthTolerance = 0.5e-3;  // [m], of "longer than L" in the s
 constexpr double kSmallestCell = 1e-6, kLargestCell = 1.0;  // [m]
 constexpr double kLargestPressure = 1e300;                  // sums and γ p* stay finite
 
+/// Whether the weights, if there are any, are as validate() asks.
+bool has_good_weights(const TargetField& target) {
+  if (target.weight.empty()) return true;
+  if (target.weight.size() != target.size()) return false;
+  const double largest =
+      planning::checked_maximum(target.weight, target.skin, std::numeric_limits<double>::max());
+  return largest > 0.0 ||
+         (largest == 0.0 && std::count(target.skin.begin(), target.skin.end(), 0) ==
+                                static_cast<std::ptrdiff_t>(target.size()));
+}
+
 /// Largest pressure on skin, or −1 when the target cannot be planned.
 double highest_pressure(const TargetField& target, std::size_t max_cells) {
   const std::size_t n = target.pressure.size();
@@ -34,7 +47,13 @@ double highest_pressure(const TargetField& target, std::size_t max_cells) {
       !std::isfinite(target.origin.x()) || !std::isfinite(target.origin.y())) {
     return -1.0;
   }
+  if (!has_good_weights(target)) return -1.0;
   return planning::checked_maximum(target.pressure, target.skin, kLargestPressure);
+}
+
+/// Whether there is pressure that a fit counts. @param maximum of highest_pressure.
+bool has_counted_pressure(const TargetField& target, double maximum) {
+  return maximum > 0.0 && (target.weight.empty() || CellWeights(target, maximum).any_pressure());
 }
 
 double total_pressure(const TargetField& target) {
@@ -83,6 +102,10 @@ struct Planner::Scratch {
   /// Appends at most `paths` paths for one patch to `plan` and adds to `stats` (all but the total).
   PlanStatus plan_patch(const TargetField& target, int patch, int paths, double budget, Plan& plan,
                         PlanStats& stats, PlanTrace* trace);
+  /// Whether there is anything to plan for. @param maximum the target's largest pressure.
+  bool has_pressure(const TargetField& target, double maximum) const {
+    return fits.empty() ? maximum > 0.0 : has_counted_pressure(target, maximum);
+  }
   void collect_points(const TargetField& target, double maximum);
   void initial_paths(int paths, PlanStats& stats, StageTimer& timer, const Vec2& origin,
                      PlanTrace* trace);
@@ -189,7 +212,7 @@ PlanStatus Planner::Scratch::plan_patch(const TargetField& target, int patch, in
   StageTimer timer;
   const double maximum = highest_pressure(target, max_cells);
   if (maximum < 0.0) return PlanStatus::InvalidTarget;
-  if (maximum == 0.0) {
+  if (!has_pressure(target, maximum)) {
     if (!fits.empty()) fits[static_cast<std::size_t>(patch)].reset();
     return PlanStatus::EmptyTarget;
   }
@@ -252,9 +275,11 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
   // what each patch has to show
   PatchPressures pressure{};
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
-    if (highest_pressure(frame.patches[i], scratch_->max_cells) < 0.0)
-      return PlanStatus::InvalidTarget;
-    pressure[i] = total_pressure(frame.patches[i]);
+    const double maximum = highest_pressure(frame.patches[i], scratch_->max_cells);
+    if (maximum < 0.0) return PlanStatus::InvalidTarget;
+    // the weights leave the sum as it is (P17)
+    if (scratch_->has_pressure(frame.patches[i], maximum))
+      pressure[i] = total_pressure(frame.patches[i]);
   }
   const std::array<int, kMaxPatches> share = share_paths(pressure, scratch_->settings.paths);
   const auto planned = std::count_if(share.begin(), share.end(), [](int n) { return n > 0; });

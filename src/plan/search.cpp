@@ -104,12 +104,14 @@ StartSettings Search::draw_start(int paths) {
   return start;
 }
 
-/// Paths that the area with pressure asks for; more would chase the same small contact.
+/// Paths that the area with pressure that counts asks for; more would chase the same small contact.
 int Search::needed_paths(int paths) const {
   double area = 0.0;
-  for (const CellTile& tile : coarse_.tiles()) {
+  for (std::size_t t = 0; t < coarse_.tiles().size(); ++t) {
+    const CellTile& tile = coarse_.tiles()[t];
     for (std::size_t c = 0; c < 8; ++c) {
-      if (tile.pressure[c] >= kFelt) area += static_cast<double>(tile.weight[c] * kUnitArea);
+      if (tile.pressure[c] < kFelt) continue;
+      area += static_cast<double>(tile.weight[c] / coarse_.mean_weight(t, c) * kUnitArea);
     }
   }
   const FitSettings& fit = descent_.settings();

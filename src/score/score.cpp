@@ -201,4 +201,21 @@ Metrics score_plan(const TargetField& target, const Plan& plan, int patch, doubl
   return score_field(target, rendered, coverage(target, plan, patch, sigma, maximum));
 }
 
+double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,
+                     double gain) {
+  const double maximum = max_pressure(target), largest = max_weight(target);
+  if (!(maximum > 0.0)) return 0.0;
+  std::vector<double> rendered(target.size());
+  quasi_static_field(plan, patch, target, sigma, gain, rendered);
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    if (target.skin[i] == 0) continue;
+    const double w = target.weight[i] / largest,
+                 error = (rendered[i] - target.pressure[i]) / maximum;
+    sum += w * error * error;
+    weights += w;
+  }
+  return std::sqrt(sum / weights);
+}
+
 }  // namespace prostm

@@ -49,6 +49,11 @@ void validate_shape(const TargetField& field) {
                                 std::to_string(field.skin.size()) + " and " +
                                 std::to_string(field.height.size()));
   }
+  if (!field.weight.empty() && field.weight.size() != cells) {
+    throw std::invalid_argument("a raster of " + size_text +
+                                " cells must have as many weights or none, not " +
+                                std::to_string(field.weight.size()));
+  }
   if (!std::isfinite(field.cell) || field.cell <= 0.0) {
     throw std::invalid_argument("cell = " + text(field.cell) + " m must be positive and finite");
   }
@@ -69,6 +74,27 @@ void validate_plane(const Pose& X_DP) {
   }
 }
 
+void validate_weights(const TargetField& field) {
+  if (field.weight.empty()) return;
+  bool has_skin = false;
+  for (int row = 0; row < field.rows; ++row) {
+    for (int col = 0; col < field.cols; ++col) {
+      const std::size_t i = field.index(row, col);
+      const double w = field.weight[i];
+      if (!std::isfinite(w) || w < 0.0) {
+        throw std::invalid_argument("weight = " + text(w) + " at " + cell_name(row, col) +
+                                    " must be at least 0 and finite");
+      }
+      has_skin = has_skin || field.skin[i] != 0;
+    }
+  }
+  if (has_skin && max_weight(field) == 0.0) {
+    throw std::invalid_argument(
+        "weights that are 0 on all skin leave nothing to plan for; at "
+        "least one must be above 0");
+  }
+}
+
 }  // namespace
 
 void TargetField::resize(int new_rows, int new_cols) {
@@ -78,6 +104,7 @@ void TargetField::resize(int new_rows, int new_cols) {
   pressure.assign(cells, 0.0);
   skin.assign(cells, 0);
   height.assign(cells, 0.0);
+  weight.clear();
 }
 
 Pose TargetField::default_plane() {
@@ -107,12 +134,21 @@ void validate(const TargetField& field) {
       }
     }
   }
+  validate_weights(field);
 }
 
 double max_pressure(const TargetField& field) {
   double largest = 0.0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (field.skin[i] != 0) largest = std::max(largest, field.pressure[i]);
+  }
+  return largest;
+}
+
+double max_weight(const TargetField& field) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.skin[i] != 0) largest = std::max(largest, field.weight[i]);
   }
   return largest;
 }

@@ -19,7 +19,8 @@ inline constexpr std::size_t kMaxFieldCells = 1'000'000;
 /// Row-major: the centre of cell (row, col) lies at origin + cell·(col, row) in P. `pressure` is
 /// any non-negative quantity (a plan scales with it); `height` is the skin's distance from the
 /// plane along its normal, positive away from the array, so that a point x of the plane is lifted
-/// to X_DP · (x, height).
+/// to X_DP · (x, height); `weight` is how much the error of a cell counts where a plan is fitted to
+/// the field (presets `best` and `fast`): only the weights' ratios matter.
 struct TargetField {
   int rows = 0, cols = 0;
   double cell = 0.0;               ///< edge of a cell [m]
@@ -27,6 +28,7 @@ struct TargetField {
   std::vector<double> pressure;    ///< rows·cols, >= 0, 0 where there is no skin
   std::vector<std::uint8_t> skin;  ///< rows·cols, 1 where there is skin
   std::vector<double> height;      ///< rows·cols [m], finite everywhere (see fill_heights)
+  std::vector<double> weight;      ///< empty: 1 everywhere; else rows·cols, >= 0, dimensionless
   Pose X_DP = default_plane();     ///< the plane in frame D: normal is P's z axis
 
   std::size_t size() const { return pressure.size(); }
@@ -36,8 +38,8 @@ struct TargetField {
   }
   Vec2 position(int row, int col) const { return origin + cell * Vec2(col, row); }
 
-  /// Sets the shape and clears every cell to no skin, pressure 0, height 0. Allocates only when it
-  /// grows.
+  /// Sets the shape and clears every cell to no skin, pressure 0, height 0, without weights.
+  /// Allocates only when it grows.
   void resize(int new_rows, int new_cols);
 
   /// Parallel to the array, 200 mm above its centre.
@@ -47,11 +49,15 @@ struct TargetField {
 /// @throws std::invalid_argument with a sentence that names the value and the bound: sizes that
 /// disagree, an empty or too large raster, a cell size that is not positive and finite, a pressure
 /// that is negative or not finite, pressure where there is no skin, a height or plane that is not
-/// finite, a plane whose axes are not orthonormal.
+/// finite, a plane whose axes are not orthonormal, a weight that is negative or not finite, weights
+/// that are 0 on all skin.
 void validate(const TargetField& field);
 
 /// Largest pressure; 0 for a field without skin.
 double max_pressure(const TargetField& field);
+
+/// Largest weight on skin; 0 for a field without skin. @pre the field has weights.
+double max_weight(const TargetField& field);
 
 /// Continues the heights of the skin to the cells without skin (each takes the height of the
 /// nearest skin cell, by breadth-first spreading), so that a path that bridges a gap between

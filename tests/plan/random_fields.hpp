@@ -93,6 +93,23 @@ inline void spoil(TargetField& field, Random& random) {
   }
 }
 
+/// Gives the field weights of a random kind, valid or, where none is above 0 on skin, not.
+inline void add_weights(TargetField& field, Random& random) {
+  const int kind = random.below(5), split = random.below(field.rows + 1);
+  const double few = random.uniform(0.0, 0.2);
+  field.weight.assign(field.size(), 0.0);
+  for (int row = 0; row < field.rows; ++row) {
+    for (int col = 0; col < field.cols; ++col) {
+      double& w = field.weight[field.index(row, col)];
+      if (kind == 0) w = random.uniform();
+      if (kind == 1) w = row < split ? 7.0 : 1.0;
+      if (kind == 2) w = row < split ? 1.0 : 0.0;
+      if (kind == 3) w = random.uniform() < few ? 1.0 : 0.0;
+      if (kind == 4) w = std::pow(10.0, random.uniform(-300.0, 300.0));
+    }
+  }
+}
+
 /// @param max_side of the raster in cells.
 inline RandomField random_field(Random& random, int max_side) {
   RandomField result{static_cast<FieldKind>(random.below(kFieldKinds)), {}};

@@ -6,6 +6,8 @@
 
 #include "core/random.hpp"
 #include "fields/fields.hpp"
+#include "plan/planner.hpp"
+#include "plan/quasi_static.hpp"
 
 namespace prostm {
 namespace {
@@ -190,6 +192,28 @@ TEST(Controls, AreFiniteForOneCellAndForEveryPattern) {
   cell.pressure[0] = 1e-290;
   expect_finite(cell);
   for (const fields::Pattern pattern : fields::kPatterns) expect_finite(fields::make(pattern, 0));
+}
+
+TEST(WeightedRmse, CountsErrorsByTheirWeights) {
+  for (const fields::Pattern pattern : fields::kPatterns) {
+    TargetField target = fields::make(pattern, 3);
+    Plan plan;
+    PlanStats stats;
+    Planner(PlanSettings{}, target.size()).plan(target, plan, stats);
+    const double rmse = score_plan(target, plan, 0, kSigma, kGain).rmse;
+    target.weight.assign(target.size(), 1e-300);
+    EXPECT_NEAR(weighted_rmse(target, plan, 0, kSigma, kGain), rmse, 1e-12);
+
+    // one cell alone: its own error
+    const std::size_t cell = target.index(40, 40);
+    ASSERT_EQ(target.skin[cell], 1);
+    target.weight.assign(target.size(), 0.0);
+    target.weight[cell] = 1e300;
+    std::vector<double> rendered(target.size());
+    quasi_static_field(plan, 0, target, kSigma, kGain, rendered);
+    EXPECT_NEAR(weighted_rmse(target, plan, 0, kSigma, kGain),
+                std::abs(rendered[cell] - target.pressure[cell]) / max_pressure(target), 1e-12);
+  }
 }
 
 TEST(Controls, SolvedPressuresBeatAConstantPressureOnTheSameCircles) {

@@ -47,8 +47,10 @@ TargetField islands(Random& random) {
 
 TEST(TargetField, ResizeClearsAndAllocatesOnlyWhenItGrows) {
   TargetField field = palm(6, 4);
+  field.weight.assign(field.size(), 2.0);
   const test::HeapGuard guard;
   field.resize(4, 5);
+  EXPECT_TRUE(field.weight.empty());
   EXPECT_EQ(guard.allocations(), 0u);
   EXPECT_EQ(field.size(), 20u);
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -100,8 +102,33 @@ TEST(Validate, NamesWhatIsWrong) {
       {"scaled plane", [](TargetField& f) { f.X_DP.linear() *= 1.001; }, "orthonormal"},
       {"huge plane", [](TargetField& f) { f.X_DP.linear() *= 1e300; }, "orthonormal"},
       {"mirrored plane", [](TargetField& f) { f.X_DP.linear().col(0) *= -1.0; }, "right-handed"},
+      {"weights disagree", [](TargetField& f) { f.weight.assign(11, 1.0); },
+       "as many weights or none, not 11"},
+      {"negative weight", [](TargetField& f) { f.weight.assign(12, -2.0); },
+       "weight = -2 at row 0, column 0 must be at least 0 and finite"},
+      {"infinite weight",
+       [](TargetField& f) {
+         f.weight.assign(12, 1.0);
+         f.weight[7] = kInf;
+       },
+       "weight = inf at row 1, column 3"},
+      {"no weight on skin",
+       [](TargetField& f) {
+         f.weight.assign(12, 0.0);
+         f.weight[0] = 1.0;
+         f.skin[0] = 0;
+       },
+       "weights that are 0 on all skin"},
   };
   EXPECT_NO_THROW(validate(palm(3, 4)));
+  TargetField weighted = palm(3, 4);
+  weighted.weight.assign(12, 0.0);
+  weighted.weight[5] = 1e-300;
+  EXPECT_NO_THROW(validate(weighted));
+  // without skin there is nothing to weigh
+  weighted.resize(3, 4);
+  weighted.weight.assign(12, 0.0);
+  EXPECT_NO_THROW(validate(weighted));
   for (const Damage& damage : damages) {
     TargetField field = palm(3, 4);
     damage.apply(field);
@@ -121,6 +148,14 @@ TEST(MaxPressure, LooksAtSkinAlone) {
   EXPECT_EQ(max_pressure(field), 10.0);
   field.resize(3, 4);
   EXPECT_EQ(max_pressure(field), 0.0);
+}
+
+TEST(MaxWeight, LooksAtSkinAlone) {
+  TargetField field = palm(3, 4);
+  field.weight = field.pressure;
+  EXPECT_EQ(max_weight(field), 11.0);
+  field.skin[11] = 0;
+  EXPECT_EQ(max_weight(field), 10.0);
 }
 
 TEST(FillHeights, GivesEveryCellTheHeightOfANearestSkinCell) {
