@@ -12,7 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         field_from_json({reinterpret_cast<const char*>(data), size}, "fuzz.json");
     validate(field);
     const TargetField back = field_from_json(field_to_json(field), "back.json");
-    if (back.pressure != field.pressure || back.skin != field.skin) std::abort();
+    if (back.pressure != field.pressure || back.skin != field.skin || back.weight != field.weight)
+      std::abort();
   } catch (const InputError&) {
     // what bad input must answer
   }

@@ -33,10 +33,12 @@ prostm::TargetField any_field(std::string_view& bytes) {
   field.origin.x() = take<double>(bytes);
   if (take<std::uint8_t>(bytes) > 200) field.X_DP(1, 2) = take<double>(bytes);
   const std::size_t cells = take<std::uint8_t>(bytes);
+  const bool has_weights = (take<std::uint8_t>(bytes) & 1U) != 0;
   for (std::size_t i = 0; i < cells; ++i) {
     field.pressure.push_back(take<double>(bytes));
     field.height.push_back(take<double>(bytes));
     field.skin.push_back(take<std::uint8_t>(bytes) & 1U);
+    if (has_weights) field.weight.push_back(take<double>(bytes));
   }
   return field;
 }

@@ -13,6 +13,8 @@ namespace prostm {
 inline constexpr double kMaxCoordinateMm = 1e6;
 /// The largest pressure in a file, any unit: the sum of its square over a raster is still finite.
 inline constexpr double kMaxFilePressure = 1e150;
+/// The largest weight of a cell in a file.
+inline constexpr double kMaxFileWeight = 1e150;
 
 /// @return the edge of a cell [m]. @param what names the value in the message. @throws InputError
 /// unless 0.01 to 1000 mm.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -30,13 +31,17 @@ constexpr float kNanFloat = std::numeric_limits<float>::quiet_NaN();
 class Group {
  public:
   bool create(hid_t file, const char* name, const std::vector<h5::Column>& columns) {
-    const h5::Id group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-    bool ok = group.valid();
-    for (const h5::Column& column : columns) {
-      if (!ok) break;
-      ok = tables_.emplace(column.name, h5::Table(group.get(), column)).first->second.valid();
-    }
+    group_ = h5::Id(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    bool ok = group_.valid();
+    for (const h5::Column& column : columns) ok = ok && add(column);
     return ok;
+  }
+  bool has(const char* name) const { return tables_.count(name) != 0; }
+  /// One more table of the group.
+  bool add(const h5::Column& column) {
+    ok_ =
+        tables_.emplace(column.name, h5::Table(group_.get(), column)).first->second.valid() && ok_;
+    return ok_;
   }
   template <class T>
   void append(const char* name, const std::vector<T>& values, hsize_t rows) {
@@ -49,10 +54,12 @@ class Group {
   bool ok() const { return ok_; }
   bool close() {
     for (auto& [name, table] : tables_) ok_ = table.close() && ok_;
+    ok_ = group_.close() && ok_;
     return ok_;
   }
 
  private:
+  h5::Id group_;
   std::map<std::string, h5::Table> tables_;
   bool ok_ = true;
 };
@@ -98,6 +105,7 @@ struct Recorder::Impl {
   double flushed_at = 0.0;
 
   void append_target(const TargetField& field);
+  void append_weights(const TargetField& field);
   void append_hands(const HandFrame& hands);
   void append_plan(const Plan* p, const PlanStats* stats);
   bool ok() const { return error == 0 && frame.ok() && target.ok() && hand.ok() && plan.ok(); }
@@ -125,8 +133,27 @@ void Recorder::Impl::append_target(const TargetField& field) {
   }
   target.append("pressure", pressure, field.size());
   target.append("height", field.height, field.size());
+  append_weights(field);
   ++patches;
   cells += static_cast<std::int64_t>(field.size());
+}
+
+/// The table of weights is there from the first patch that has some; what was before has none.
+void Recorder::Impl::append_weights(const TargetField& field) {
+  const bool first = !target.has("weight");
+  if (first && field.weight.empty()) return;
+  std::vector<double> weight(field.size(), kNan);
+  for (std::size_t i = 0; i < field.weight.size(); ++i) {
+    if (field.skin[i] != 0) weight[i] = field.weight[i];
+  }
+  if (first && target.add(recording::weight_column())) {
+    constexpr std::int64_t kRows = 1 << 16;
+    const std::vector<double> none(kRows, kNan);
+    for (std::int64_t left = cells; left > 0; left -= kRows) {
+      target.append("weight", none, static_cast<hsize_t>(std::min(left, kRows)));
+    }
+  }
+  target.append("weight", weight, field.size());
 }
 
 void Recorder::Impl::append_hands(const HandFrame& hands) {

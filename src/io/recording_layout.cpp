@@ -39,6 +39,14 @@ std::vector<h5::Column> target_columns() {
            "of the skin along the plane's normal, like pressure"}};
 }
 
+h5::Column weight_column() {
+  return {"weight",
+          H5T_NATIVE_DOUBLE,
+          {},
+          "1",
+          "how much the error of a cell counts, like pressure; NaN = no skin, or no weights"};
+}
+
 std::vector<h5::Column> hand_columns() {
   return {
       {"id",

@@ -31,6 +31,8 @@ struct RecordingReader::Impl {
   }
   void read_index();
   TargetField read_patch(std::size_t i) const;
+  void read_weights(hsize_t first, TargetField& field) const;
+  bool has_weights = false;  // any patch
 };
 
 void RecordingReader::Impl::read_index() {
@@ -50,6 +52,7 @@ void RecordingReader::Impl::read_index() {
   read("/target/cell", H5T_NATIVE_DOUBLE, {}, 1, all, cell);
   read("/target/origin", H5T_NATIVE_DOUBLE, {2}, 2, all, origin);
   read("/target/pose", H5T_NATIVE_DOUBLE, {4, 4}, 16, all, pose);
+  has_weights = H5Lexists(file.get(), "/target/weight", H5P_DEFAULT) > 0;
 
   // frames refer to patches that are there
   for (std::size_t i = 0; i < frames; ++i) {
@@ -88,7 +91,23 @@ TargetField RecordingReader::Impl::read_patch(std::size_t i) const {
     field.skin[k] = std::isnan(field.pressure[k]) ? 0 : 1;
     if (field.skin[k] == 0) field.pressure[k] = 0.0;
   }
+  if (has_weights) read_weights(first, field);
   return field;
+}
+
+/// A patch whose skin has NaN throughout has no weights. @param first cell of the patch.
+void RecordingReader::Impl::read_weights(hsize_t first, TargetField& field) const {
+  field.weight.resize(field.size());
+  if (!h5::read_rows(file.get(), "/target/weight", H5T_NATIVE_DOUBLE, {}, first, field.size(),
+                     field.weight.data())) {
+    broken();
+  }
+  bool any = false;
+  for (std::size_t k = 0; k < field.size(); ++k) {
+    if (field.skin[k] == 0) field.weight[k] = 0.0;
+    any = any || (field.skin[k] != 0 && !std::isnan(field.weight[k]));
+  }
+  if (!any) field.weight.clear();
 }
 
 RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_unique<Impl>()) {

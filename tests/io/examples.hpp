@@ -38,6 +38,7 @@ inline void expect_same_raster(const TargetField& a, const TargetField& b) {
   EXPECT_EQ(a.pressure, b.pressure);
   EXPECT_EQ(a.skin, b.skin);
   EXPECT_EQ(a.height, b.height);
+  EXPECT_EQ(a.weight, b.weight);
 }
 
 /// `document` with its first `old_text` replaced.

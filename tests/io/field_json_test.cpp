@@ -18,6 +18,7 @@ constexpr const char* kField =
     R"({"format": "prostm-field/1", "cell_mm": 5, "origin_mm": [-10, 20.5],
  "rows": 2, "cols": 3, "pressure": [[0, 1.5, null], [2e-3, 4, 0.25]],
  "height_mm": [[1, 2, null], [3, 4.5, -6]],
+ "weight": [[1, 7, null], [0, 1.5, 2]],
  "plane": {"origin_mm": [1, 2, 180], "x": [0, 1, 0], "y": [-1, 0, 0]}})";
 
 TEST(FieldJson, ReadsEveryMember) {
@@ -31,6 +32,7 @@ TEST(FieldJson, ReadsEveryMember) {
   EXPECT_THAT(field.skin, testing::ElementsAre(1, 1, 0, 1, 1, 1));
   EXPECT_EQ(field.height[4], 0.0045);
   EXPECT_TRUE(field.height[2] == 0.002 || field.height[2] == -0.006);  // of a neighbour with skin
+  EXPECT_THAT(field.weight, testing::ElementsAre(1, 7, 0, 0, 1.5, 2));
   EXPECT_TRUE(
       (field.X_DP * Vec3(0.01, 0.02, 0.03)).isApprox(Vec3(0.001 - 0.02, 0.002 + 0.01, 0.21)));
 }
@@ -41,6 +43,7 @@ TEST(FieldJson, LiesAboveTheArrayWithoutAPlane) {
       "a");
   EXPECT_TRUE(field.X_DP.isApprox(TargetField::default_plane()));
   EXPECT_EQ(field.height[0], 0.0);
+  EXPECT_TRUE(field.weight.empty());
 }
 
 TEST(FieldJson, RoundTripsExactly) {
@@ -93,6 +96,14 @@ TEST(FieldJson, SaysWhatIsWrong) {
           {"[3, 4.5, -6]", "[3, null, -6]", "\"height_mm\"[1][1] is null; there is skin"},
           {"[[1, 2, null], ", "[", "\"height_mm\" has 1 rows; it must have \"rows\" = 2"},
           {"[3, 4.5, -6]", "[3, 4.5]", "\"height_mm\"[1] has 2 numbers"},
+          {"[0, 1.5, 2]", "[0, null, 2]", "\"weight\"[1][1] is null; there is skin"},
+          {"[0, 1.5, 2]", "[0, -1.5, 2]", "\"weight\"[1][1] is -1.5; it must be from 0 to"},
+          {"[0, 1.5, 2]", "[0, 1e200, 2]", "\"weight\"[1][1] is 1e+200; it must be from 0 to"},
+          {"[0, 1.5, 2]", "[0, \"a\", 2]", "\"weight\"[1][1] is not a number"},
+          {"[0, 1.5, 2]", "[0, 1.5]", "\"weight\"[1] has 2 numbers; every row must have"},
+          {"[[1, 7, null], [0, 1.5, 2]]", "[[0, 0, null], [0, 0, 0]]",
+           "\"weight\" is 0 on all skin; at least one weight must be above 0"},
+          {"[[1, 7, null], ", "[", "\"weight\" has 1 rows"},
           {"[0, 1, 0]", "[0, 1.1, 0]", "unit vectors at a right angle"},
           {"[0, 1, 0]", "[-1, 0, 0]", "unit vectors at a right angle"},
           {"[0, 1, 0]", "[0, 1]", "\"plane\".x has 2 numbers; it must have 3"},

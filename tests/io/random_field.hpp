@@ -2,14 +2,15 @@
 /// Random target fields for round trips.
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "core/random.hpp"
 #include "target/target_field.hpp"
 
 namespace prostm::test {
 
-/// Skin with gaps, pressures over many magnitudes, heights, a tilted plane; lengths that files hold
-/// exactly.
+/// Skin with gaps, pressures over many magnitudes, heights, weights in half of them, a tilted
+/// plane; lengths that files hold exactly.
 inline TargetField random_field(Random& random) {
   TargetField field;
   field.resize(1 + random.below(20), 1 + random.below(20));
@@ -21,6 +22,13 @@ inline TargetField random_field(Random& random) {
     field.skin[i] = 1;
     field.pressure[i] = std::exp(random.uniform(-50.0, 50.0));
     field.height[i] = (random.below(40000) - 20000) / 1000.0 / 1000.0;
+  }
+  const bool has_skin = std::count(field.skin.begin(), field.skin.end(), 1) > 0;
+  if (has_skin && random.uniform() < 0.5) {
+    field.weight.assign(field.size(), 0.0);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      if (field.skin[i] != 0) field.weight[i] = std::exp(random.uniform(-50.0, 50.0));
+    }
   }
   fill_heights(field);
   const Quat q =

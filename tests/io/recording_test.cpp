@@ -76,6 +76,45 @@ TEST(Recording, ReadsBackWhatWasWritten) {
   for (int i = 199; i >= 0; --i) expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
 }
 
+TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
+  const test::TemporaryFolder folder;
+  const auto has_table = [](const std::string& path) {
+    return read_file(path).find("weight") != std::string::npos;
+  };
+  std::vector<TargetFrame> frames = random_frames(30);
+  for (TargetFrame& frame : frames) {
+    for (TargetField& field : frame.patches) field.weight.clear();
+  }
+  EXPECT_FALSE(has_table(record(folder.file("none.h5"), frames)));
+
+  // from a patch in the middle on
+  TargetFrame late = frames.back();
+  late.patches.assign(1, frames[0].patches.empty() ? TargetField() : frames[0].patches[0]);
+  late.patches[0].resize(2, 2);
+  late.patches[0].cell = 5e-3;
+  late.patches[0].skin = {1, 1, 0, 1};
+  late.patches[0].weight = {0.0, 3.0, 0.0, 0.25};
+  frames.insert(frames.begin() + 20, late);
+  const std::string path = record(folder.file("late.h5"), frames);
+  EXPECT_TRUE(has_table(path));
+  const RecordingReader reader(path);
+  for (int i = 0; i < reader.frames(); ++i) {
+    expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
+  }
+
+  // wrong ones are refused where they are
+  frames[20].patches[0].weight = {0.0, -3.0, 0.0, 1.0};
+  const RecordingReader negative(record(folder.file("negative.h5"), frames));
+  EXPECT_NO_THROW(static_cast<void>(negative.frame(19)));
+  EXPECT_THAT(
+      input_error([&] { static_cast<void>(negative.frame(20)); }),
+      HasSubstr("negative.h5, frame 20: weight = -3 at row 0, column 1 must be at least 0"));
+  frames[20].patches[0].weight = {0.0, 0.0, 1.0, 0.0};
+  const RecordingReader zero(record(folder.file("zero.h5"), frames));
+  EXPECT_THAT(input_error([&] { static_cast<void>(zero.frame(20)); }),
+              HasSubstr("frame 20: weights that are 0 on all skin"));
+}
+
 TEST(Recording, HoldsAnEmptyOne) {
   const test::TemporaryFolder folder;
   const RecordingReader reader(record(folder.file("r.h5"), {}));
