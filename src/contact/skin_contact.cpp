@@ -19,15 +19,24 @@ constexpr double kNearSkin = 1.5;  // a crossing is at most this far from the sk
 void ContactSettings::visit(SettingsVisitor& v) {
   v.field("offset_cells", offset_cells);
   v.field("time_constant", time_constant);
+  v.field("touch_palm", touch_palm);
+  v.field("touch_finger", touch_finger);
+  v.field("touch_tip", touch_tip);
 }
 
 SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
     : settings_(settings),
+      has_weights_(settings.touch_palm != settings.touch_finger ||
+                   settings.touch_finger != settings.touch_tip),
       grid_(grid),
       max_side_(2 * std::max({grid.nx, grid.ny, grid.nz})),
       rays_(grid) {
   require_between("offset_cells", settings.offset_cells, 0.5, 4.0);
   require_between("time_constant", settings.time_constant, 0.0, 10.0, "s");
+  // above 0, since a hand may show but one part of it
+  require_between("touch_palm", settings.touch_palm, 0.001, 1000.0);
+  require_between("touch_finger", settings.touch_finger, 0.001, 1000.0);
+  require_between("touch_tip", settings.touch_tip, 0.001, 1000.0);
   for (std::vector<Vec3>& points : visible_)
     points.reserve(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
   queue_.reserve(max_cells());
@@ -136,6 +145,8 @@ int SkinContact::gather(int hand, TargetField& patch) {
   }
   lowest -= 1.5 * patch.cell;
   const double reach = highest - lowest + 0.5 * patch.cell;
+  const HandShape& shape = shapes_[static_cast<std::size_t>(hand)];
+  if (has_weights_) patch.weight.assign(patch.size(), 0.0);
 
   int skin = 0;
   for (int row = 0; row < patch.rows; ++row) {
@@ -152,10 +163,24 @@ int SkinContact::gather(int hand, TargetField& patch) {
       // (C4)
       patch.pressure[cell] =
           std::max(0.0, pressure_at(p_D - settings_.offset_cells * patch.cell * normal));
+      if (has_weights_) patch.weight[cell] = touch_at(shape, p_D);
       ++skin;
     }
   }
   return skin;
+}
+
+/// (C5)
+double SkinContact::touch_at(const HandShape& shape, const Vec3& p_D) const {
+  switch (shape.region(p_D)) {
+    case SkinRegion::Tip:
+      return settings_.touch_tip;
+    case SkinRegion::Finger:
+      return settings_.touch_finger;
+    case SkinRegion::Palm:
+      break;
+  }
+  return settings_.touch_palm;
 }
 
 void SkinContact::take_pressure(const Fluid& fluid, double dt) {

@@ -21,6 +21,10 @@ struct ContactSettings {
       1.0;  ///< the pressure is read this many cells outside the skin, towards the array
   double time_constant =
       0.0;  ///< of an exponential smoothing of the fluid's pressure on the skin [s]; 0 = none
+  // how much an error counts on each part of the hand, where all three are not the same
+  double touch_palm = 1.0;    ///< on the palm and the ball of the thumb
+  double touch_finger = 1.0;  ///< on the phalanges but the last
+  double touch_tip = 1.0;     ///< on the last phalanges
 
   void visit(SettingsVisitor& v);
 };
@@ -38,7 +42,8 @@ struct ContactStats {
 /// points by least squares without regard to pressure (C1), with its axes and origin fixed so that
 /// they neither flip nor wander (C2). Each raster cell then marches along the plane's normal to the
 /// skin nearest to the array (C3), keeps its height, and reads the fluid's pressure `offset_cells`
-/// outside it, from fluid cells alone (C4), clamped at 0. Skin outside the box has no target.
+/// outside it, from fluid cells alone (C4), clamped at 0. Skin outside the box has no target. Where
+/// the settings touch_* differ the patches have weights (C5).
 class SkinContact {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
@@ -61,8 +66,10 @@ class SkinContact {
   bool place_patch(std::span<const Vec3> visible, TargetField& patch) const;
   int gather(int hand, TargetField& patch);
   double pressure_at(const Vec3& p_D) const;
+  double touch_at(const HandShape& shape, const Vec3& p_D) const;
 
   ContactSettings settings_;
+  bool has_weights_;  // whether patches get weights
   GridShape grid_;
   int max_side_;
   boost::container::static_vector<HandShape, 2> shapes_;

@@ -1,6 +1,7 @@
 #include "hand/hand_shape.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace prostm {
 namespace {
@@ -20,6 +21,27 @@ CornerSphere corner(const Hand& hand, int joint, double least_radius = 0.0) {
 
 CornerSphere between(const CornerSphere& a, const CornerSphere& b, double u, double radius) {
   return {a.centre + u * (b.centre - a.centre), radius, a.velocity + u * (b.velocity - a.velocity)};
+}
+
+/// What the cones are of, in the order in which set() adds them; triangles are the palm's.
+constexpr std::array<SkinRegion, HandShape::kMaxCones> kConeRegions = [] {
+  std::array<SkinRegion, HandShape::kMaxCones> regions{};
+  regions.fill(SkinRegion::Finger);
+  for (std::size_t finger = 0; finger < 4; ++finger) regions[3 * finger + 2] = SkinRegion::Tip;
+  regions.back() = SkinRegion::Tip;  // the thumb's
+  return regions;
+}();
+
+/// Lowers `nearest` to the body's distance where that is less. @return whether it is.
+template <class Body>
+bool take_nearer(const Body& body, const Vec3& p, double& nearest) noexcept {
+  // no nearer than its bounds are
+  const double outside = (body.lower() - p).cwiseMax(p - body.upper()).cwiseMax(0.0).squaredNorm();
+  if (outside > std::max(nearest, 0.0) * nearest) return false;
+  const double distance = body.distance(p);
+  if (distance >= nearest) return false;
+  nearest = distance;
+  return true;
 }
 
 }  // namespace
@@ -75,16 +97,21 @@ void HandShape::set(const Hand& hand) noexcept {
 
 double HandShape::distance(const Vec3& p) const noexcept {
   double nearest = 1e30;
-  const auto ask = [&](const auto& body) {
-    // no nearer than its bounds are
-    const double outside =
-        (body.lower() - p).cwiseMax(p - body.upper()).cwiseMax(0.0).squaredNorm();
-    if (outside > std::max(nearest, 0.0) * nearest) return;
-    nearest = std::min(nearest, body.distance(p));
-  };
-  for (const RoundCone& cone : cones_) ask(cone);
-  for (const SphereTriangle& triangle : triangles_) ask(triangle);
+  for (const RoundCone& cone : cones_) take_nearer(cone, p, nearest);
+  for (const SphereTriangle& triangle : triangles_) take_nearer(triangle, p, nearest);
   return nearest;
+}
+
+SkinRegion HandShape::region(const Vec3& p) const noexcept {
+  double nearest = 1e30;
+  SkinRegion region = SkinRegion::Palm;
+  for (std::size_t n = 0; n < cones_.size(); ++n) {
+    if (take_nearer(cones_[n], p, nearest)) region = kConeRegions[n];
+  }
+  for (const SphereTriangle& triangle : triangles_) {
+    if (take_nearer(triangle, p, nearest)) region = SkinRegion::Palm;
+  }
+  return region;
 }
 
 SurfacePoint HandShape::query(const Vec3& p) const noexcept {

@@ -2,6 +2,7 @@
 /// The surface of a hand: round cones along the bones and sphere-triangles across the palm.
 
 #include <boost/container/static_vector.hpp>
+#include <cstdint>
 #include <span>
 
 #include "core/geometry.hpp"
@@ -9,6 +10,9 @@
 #include "track/hand_frame.hpp"
 
 namespace prostm {
+
+/// What part of a hand skin belongs to: the last phalanges, the other phalanges, the rest.
+enum class SkinRegion : std::uint8_t { Palm, Finger, Tip };
 
 /// Signed distance, normal and velocity of the skin of one hand, in the frame of the hand it was
 /// made from (D in the pipeline). The union (minimum) of round cones along the phalanges and of
@@ -25,6 +29,8 @@ class HandShape {
 
   SurfacePoint query(const Vec3& p) const noexcept;
   double distance(const Vec3& p) const noexcept;
+  /// Of the body that is nearest to p, the first of equals.
+  SkinRegion region(const Vec3& p) const noexcept;
 
   /// Axis-aligned bounds of the skin [m].
   Vec3 lower() const { return lower_; }

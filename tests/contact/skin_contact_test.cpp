@@ -21,13 +21,13 @@ constexpr int kCells = 64;
 /// A scripted hand in smoke, with everything that a target needs.
 struct Bench {
   explicit Bench(const ScriptedHandSettings& hand, const std::string& scene = "one-plume",
-                 bool filter_on = true, int threads = 2)
+                 bool filter_on = true, int threads = 2, const ContactSettings& settings = {})
       : pool(threads),
         filter(filter_settings(filter_on)),
         source(make_scripted_hand(hand, filter_settings(filter_on))),
         fluid(fluid_settings(), scene_from_name(scene), pool),
         rasteriser(fluid.grid()),
-        contact(ContactSettings{}, fluid.grid()) {}
+        contact(settings, fluid.grid()) {}
 
   static FluidSettings fluid_settings() {
     FluidSettings s;
@@ -272,6 +272,59 @@ TEST(SkinContact, DoesNotDependOnTheThreadsAndAllocatesNothing) {
   }
 }
 
+TEST(SkinContact, SkinHasTheWeightOfItsPartOfTheHand) {
+  ContactSettings finer;
+  finer.touch_finger = 3.0;
+  finer.touch_tip = 7.0;
+  Bench bench(still_hand(), "one-plume", true, 2, finer);
+  for (int i = 0; i < 5; ++i) {
+    interlock(bench, 9.0 + i * kStep);
+    const test::HeapGuard guard;
+    bench.extract();
+    if (i > 3) {  // the patches have their size by then
+      EXPECT_EQ(guard.allocations(), 0u);
+    }
+  }
+  ASSERT_EQ(bench.target.patches.size(), 2u);
+  for (std::size_t n = 0; n < 2; ++n) {
+    const TargetField& patch = bench.target.patches[n];
+    const HandShape shape(bench.hands.hands[n]);
+    validate(patch);
+    ASSERT_EQ(patch.weight.size(), patch.size());
+    int tips = 0, fingers = 0, palm = 0;
+    for (int row = 0; row < patch.rows; ++row) {
+      for (int col = 0; col < patch.cols; ++col) {
+        const std::size_t c = patch.index(row, col);
+        const double w = patch.weight[c];
+        if (patch.skin[c] == 0) {
+          EXPECT_EQ(w, 0.0);
+          continue;
+        }
+        const Vec2 x = patch.position(row, col);
+        const SkinRegion region = shape.region(patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]));
+        EXPECT_EQ(w, region == SkinRegion::Tip ? 7.0 : region == SkinRegion::Finger ? 3.0 : 1.0);
+        tips += w == 7.0 ? 1 : 0;
+        fingers += w == 3.0 ? 1 : 0;
+        palm += w == 1.0 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(tips, 20);
+    EXPECT_GT(fingers, tips);
+    EXPECT_GT(palm, tips);
+  }
+}
+
+TEST(SkinContact, PatchesHaveNoWeightsWhereTouchIsTheSameAllOver) {
+  ContactSettings same;
+  same.touch_palm = same.touch_finger = same.touch_tip = 5.0;
+  for (const ContactSettings& settings : {ContactSettings{}, same}) {
+    Bench bench(still_hand(), "one-plume", true, 2, settings);
+    bench.step();
+    bench.extract();
+    EXPECT_TRUE(bench.target.patches.at(0).weight.empty());
+  }
+}
+
 TEST(SkinContact, AHandOutsideTheBoxHasNoTargetAndIsCounted) {
   Bench bench(still_hand());
   bench.source->sample(kStep, bench.hands);
@@ -354,6 +407,13 @@ TEST(SkinContact, RejectsBadSettings) {
   s = {};
   s.time_constant = -1.0;
   EXPECT_THROW(SkinContact(s, grid), std::invalid_argument);
+  for (double ContactSettings::*touch :
+       {&ContactSettings::touch_palm, &ContactSettings::touch_finger,
+        &ContactSettings::touch_tip}) {
+    s = {};
+    s.*touch = 0.0;
+    EXPECT_THROW(SkinContact(s, grid), std::invalid_argument);
+  }
 }
 
 }  // namespace

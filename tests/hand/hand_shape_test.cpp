@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.hpp"
@@ -110,6 +111,53 @@ TEST(HandShape, MovesAndTurnsWithTheHand) {
     EXPECT_LT((X_DT.linear() * before.normal - after.normal).norm(), 1e-6);
     EXPECT_LT((X_DT.linear() * before.velocity - after.velocity).norm(), 1e-6);
   }
+}
+
+TEST(HandShape, KnowsTipsAndFingersFromThePalm) {
+  for (const double t : {1.0, 4.0, 11.5}) {
+    const Hand hand = scripted_hand(t);
+    const HandShape shape(hand);
+    const auto between = [&](int joint) {
+      const auto j = static_cast<std::size_t>(joint);
+      return shape.region(0.5 * (hand.position[j] + hand.position[j + 1]));
+    };
+    for (const int knuckle : {kIndexProximal, kMiddleProximal, kRingProximal, kLittleProximal}) {
+      EXPECT_EQ(between(knuckle), SkinRegion::Finger) << t;
+      EXPECT_EQ(between(knuckle + 1), SkinRegion::Finger) << t;
+      EXPECT_EQ(between(knuckle + 2), SkinRegion::Tip) << t;
+    }
+    EXPECT_EQ(between(kThumbProximal), SkinRegion::Finger) << t;
+    EXPECT_EQ(between(kThumbDistal), SkinRegion::Tip) << t;
+    for (const int joint : {kPalm, kWrist, kThumbMetacarpal, kMiddleMetacarpal}) {
+      EXPECT_EQ(shape.region(hand.position[static_cast<std::size_t>(joint)]), SkinRegion::Palm);
+    }
+  }
+}
+
+TEST(HandShape, TheRegionOfAPointIsThatOfItsNearestBody) {
+  const HandShape shape(scripted_hand(4.0));
+  Random random(3);
+  int counted[3] = {};
+  for (int n = 0; n < 5000; ++n) {
+    Vec3 p;
+    for (int a = 0; a < 3; ++a)
+      p[a] = random.uniform(shape.lower()[a] - 0.02, shape.upper()[a] + 0.02);
+    double palm = 1e9, finger = 1e9, tip = 1e9;
+    for (const SphereTriangle& triangle : shape.triangles())
+      palm = std::min(palm, triangle.distance(p));
+    for (std::size_t k = 0; k < shape.cones().size(); ++k) {
+      double& own = k == 2 || k == 5 || k == 8 || k == 11 || k == 13 ? tip : finger;
+      own = std::min(own, shape.cones()[k].distance(p));
+    }
+    const SkinRegion region = shape.region(p);
+    const double nearest = std::min({palm, finger, tip});
+    EXPECT_EQ(region == SkinRegion::Palm     ? palm
+              : region == SkinRegion::Finger ? finger
+                                             : tip,
+              nearest);
+    ++counted[static_cast<int>(region)];
+  }
+  for (const int count : counted) EXPECT_GT(count, 200);
 }
 
 TEST(HandShape, SettingAllocatesNothing) {
