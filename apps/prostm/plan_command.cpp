@@ -184,9 +184,15 @@ int plan_command(const PlanOptionsGiven& given) {
   }
   std::FILE* out = prose(given.common.json);
   if (r.status == PlanStatus::EmptyTarget) {
-    fmt::print(out, "{}: no pressure anywhere, so no path\n", given.field);
+    const bool pressed = max_pressure(target) > 0.0;
+    fmt::print(out, "{}: no pressure {}, so no path\n", given.field,
+               pressed ? "where its weight is above 0" : "anywhere");
   } else {
     print_plan(out, r.plan, r.stats, r.metrics, r.controls);
+    if (!target.weight.empty()) {
+      fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights",
+                 weighted_rmse(target, r.plan, 0, s.sigma, s.gain));
+    }
     print_power(out, r.plan, settings.emit.power_limit);
   }
   return 0;

@@ -44,6 +44,11 @@ def changed(**changes):
         (changed(pressure=None), ["pressure"]),
         (changed(rows=20000, cols=20000, pressure=[[0] * 10]), ["20000"]),
         (changed(height_mm=[[0, 0, 0]]), ["height"]),
+        (changed(weight=[[1, 1, 1]]), ["weight", "rows"]),
+        (changed(weight=[[1, 1, 1], [1, -4, 1]]), ["weight", "-4", "from 0"]),
+        (changed(weight=[[1, 1, 1], [1, None, 1]]), ["weight", "null"]),
+        (changed(weight=[[0, 0, 0], [0, 0, 0]]), ["weight", "above 0"]),
+        (changed(weight="all"), ["weight"]),
         (changed(plane={"origin_mm": [0, 0, 200], "x": [1, 0, 0], "y": [1, 0, 0]}), ["plane"]),
     ],
 )

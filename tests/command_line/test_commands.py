@@ -81,6 +81,47 @@ def test_a_stronger_field_gives_the_same_paths(prostm, field, tmp_path):
         assert [1024 * p for p in weak_path["pressure"]] == strong_path["pressure"]
 
 
+def test_weights_draw_the_path_to_where_errors_count_more(prostm, field, tmp_path):
+    two = blob_field()
+    pressure = np.zeros((20, 40))
+    pressure[8:12, 6:10] = pressure[8:12, 30:34] = 1
+    weight = np.ones_like(pressure)
+    weight[:, :20] = 3
+    two.update(rows=20, cols=40, origin_mm=[0, 0], cell_mm=4, pressure=pressure.tolist(), weight=weight.tolist())
+    two.pop("height_mm", None)
+    path = tmp_path / "two.json"
+    path.write_text(json.dumps(two))
+    settings = tmp_path / "one.toml"
+    settings.write_text("[plan]\npaths = 1\n")
+    plan = plan_of(prostm, path, "--settings", settings)
+    assert np.mean(plan["paths"][0]["points_mm"], axis=0)[0] < 60
+    assert "by the field's weights" in prostm("plan", path).stdout
+    assert "by the field's weights" not in prostm("plan", field).stdout
+
+    # where none of the pressure counts there is nothing to plan
+    two["weight"] = (pressure == 0).astype(int).tolist()
+    path.write_text(json.dumps(two))
+    assert "no pressure where its weight is above 0" in prostm("plan", path).stdout
+    assert prostm("plan", path, "--preset", "paper").stdout.count("path ") > 1
+
+
+def test_the_settings_of_touch_weigh_a_captured_hand(prostm, refuses, tmp_path):
+    finer = tmp_path / "finer.toml"
+    finer.write_text("[contact]\ntouch_palm = 1\ntouch_finger = 3\ntouch_tip = 7\n")
+    capture = ["capture", "--scene", "four-plumes", "--grid", "32", "--frames", "2", "--out"]
+    prostm(*capture, tmp_path / "same.h5")
+    prostm(*capture, tmp_path / "finer.h5", "--settings", finer)
+    with h5py.File(tmp_path / "same.h5") as same, h5py.File(tmp_path / "finer.h5") as other:
+        assert "weight" not in same["target"]
+        weight, pressure = other["target/weight"][:], other["target/pressure"][:]
+        np.testing.assert_array_equal(np.isnan(weight), np.isnan(pressure))
+        assert set(weight[~np.isnan(weight)]) == {1, 3, 7}
+        np.testing.assert_array_equal(pressure, same["target/pressure"][:])
+    assert "by the field's weights" in prostm("plan", tmp_path / "finer.h5").stdout
+    finer.write_text("[contact]\ntouch_tip = 0\n")
+    refuses(*capture, tmp_path / "no.h5", "--settings", finer, words=["touch_tip = 0 must be between 0.001 and 1000"])
+
+
 def test_every_field_format_gives_the_same_plan(prostm, field, tmp_path):
     pressure = np.array(blob_field()["pressure"])
     np.save(tmp_path / "blob.npy", pressure)
