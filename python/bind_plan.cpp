@@ -80,7 +80,7 @@ void bind_planner(py::module_& m) {
   py::enum_<PlanStatus>(m, "PlanStatus", "How a call of the planner ended.")
       .value("Planned", PlanStatus::Planned, "the plan holds 1..paths paths")
       .value("EmptyTarget", PlanStatus::EmptyTarget,
-             "no skin, or no pressure on it: the plan holds no path")
+             "no skin, or no pressure on it that counts: the plan holds no path")
       .value("InvalidTarget", PlanStatus::InvalidTarget,
              "raised as ValueError in Python, never returned");
 

@@ -25,6 +25,9 @@ height: None (flat) or (rows, cols), the skin's distance from the plane along it
     positive away from the array; values off the skin do not count.
 X_DP: None (parallel to the array, 200 mm above its centre) or the plane's pose in the device's
     frame, a homogeneous (4, 4) matrix in metres.
+weight: None (1 everywhere) or (rows, cols), how much the error of each cell counts where the presets
+    best and fast fit a plan: finite and >= 0, above 0 somewhere on the skin; only ratios matter,
+    and values off the skin do not count.
 
 A masked array's masked cells are no skin. Raises ValueError, TypeError.)";
 
@@ -55,9 +58,19 @@ void set_heights(TargetField& field, const py::object& height) {
   fill_heights(field);
 }
 
+void set_weights(TargetField& field, const py::object& weight) {
+  if (weight.is_none()) return;
+  const Numbers given = numbers(weight, "weight", {field.rows, field.cols});
+  field.weight.assign(field.size(), 0.0);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.skin[i] != 0) field.weight[i] = given.data()[i];
+  }
+  validate(field);
+}
+
 TargetField make_field(const py::object& pressure, std::optional<double> cell,
                        std::optional<double> cell_mm, const py::object& origin,
-                       const py::object& height, const py::object& X_DP) {
+                       const py::object& height, const py::object& X_DP, const py::object& weight) {
   if (cell.has_value() == cell_mm.has_value()) {
     throw std::invalid_argument(
         "the edge of a cell must be given once: as cell in metres or as cell_mm in millimetres");
@@ -77,6 +90,7 @@ TargetField make_field(const py::object& pressure, std::optional<double> cell,
   }
   validate(field);
   set_heights(field, height);
+  set_weights(field, weight);
   return field;
 }
 
@@ -121,7 +135,7 @@ void bind_field(py::module_& m) {
       .def(py::init(&make_field), kTargetFieldInitDoc, py::arg("pressure"),
            py::arg("cell") = py::none(), py::kw_only(), py::arg("cell_mm") = py::none(),
            py::arg("origin") = py::make_tuple(0.0, 0.0), py::arg("height") = py::none(),
-           py::arg("X_DP") = py::none())
+           py::arg("X_DP") = py::none(), py::arg("weight") = py::none())
       .def_readonly("rows", &TargetField::rows, "Number of rows.")
       .def_readonly("cols", &TargetField::cols, "Number of columns.")
       .def_property_readonly(
@@ -157,6 +171,15 @@ void bind_field(py::module_& m) {
           "(rows, cols) height of the skin along the plane's normal [m], continued off the skin; "
           "a view.")
       .def_property_readonly(
+          "weight",
+          [](const py::object& self) -> py::object {
+            const auto& f = self.cast<const TargetField&>();
+            if (f.weight.empty()) return py::none();
+            return view(shape_of(f), f.weight.data(), self);
+          },
+          "(rows, cols) how much the error of each cell counts, 0 where there is no skin; a view. "
+          "None: 1 everywhere.")
+      .def_property_readonly(
           "X_DP", [](const TargetField& f) { return pose_matrix(f.X_DP); },
           "(4, 4) pose of the plane in the device's frame [m]; a copy.")
       .def("__repr__",
@@ -174,10 +197,11 @@ void bind_field(py::module_& m) {
               if (f.skin[i] == 0) pressure.mutable_data()[i] = std::nan("");
             }
             return py::make_tuple(pressure, f.cell, py::make_tuple(f.origin.x(), f.origin.y()),
-                                  copy(f.height), pose_matrix(f.X_DP));
+                                  copy(f.height), pose_matrix(f.X_DP),
+                                  f.weight.empty() ? py::object(py::none()) : copy(f.weight));
           },
           [](const py::tuple& t) {
-            return make_field(t[0], t[1].cast<double>(), std::nullopt, t[2], t[3], t[4]);
+            return make_field(t[0], t[1].cast<double>(), std::nullopt, t[2], t[3], t[4], t[5]);
           }));
 }
 

@@ -115,6 +115,25 @@ def test_pickles_are_the_same_to_the_bit(field):
     twin = pickle.loads(pickle.dumps(tilted))
     for name in ["pressure", "skin", "height", "origin", "X_DP", "cell", "shape"]:
         np.testing.assert_array_equal(getattr(twin, name), getattr(tilted, name))
+    assert tilted.weight is None and twin.weight is None
+    weighted = prostm.TargetField(blobs(), 5e-3, weight=height + 1)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(weighted)).weight, weighted.weight)
+
+
+def test_weights_say_where_errors_count():
+    pressure = np.zeros((24, 40))
+    pressure[10:14, 6:10] = pressure[10:14, 30:34] = 1.0
+    pressure[0, 0] = np.nan
+    weight = np.ones((24, 40))
+    weight[:, 20:] = 4
+    weight[0, 0] = np.nan  # no skin, so it does not count
+    field = prostm.TargetField(pressure, cell_mm=4, weight=weight)
+    assert field.weight[0, 0] == 0 and field.weight[5, 5] == 1 and field.weight[5, 25] == 4
+    assert not field.weight.flags.writeable and field.weight.base is not None
+    assert prostm.plan(field, paths=1).paths[0].points[:, 0].mean() > 0.1
+    assert prostm.plan(prostm.TargetField(pressure, cell_mm=4, weight=5 - weight),
+                       paths=1).paths[0].points[:, 0].mean() < 0.06
+    np.testing.assert_array_equal(prostm.field_from_json(prostm.field_to_json(field)).weight, field.weight)
 
 
 def test_a_planner_gives_the_same_plan_again(field):
