@@ -23,6 +23,7 @@
 #include "planner/scaling.hpp"
 #include "planner/sequences.hpp"
 #include "planner/steadiness.hpp"
+#include "planner/weights.hpp"
 #include "report.hpp"
 
 namespace prostm::bench {
@@ -109,6 +110,7 @@ std::vector<Row> measure_all(const Options& options) {
   if (!options.files.empty()) return rows;
   measure_steadiness(contenders, rows);
   measure_on_skin(std::min(options.quality.frames, 5), rows);
+  measure_weights(std::min(options.quality.frames, 10), rows);
   compare_with_nlopt(std::min(options.quality.frames, 10), rows);
   measure_bending(options.bending_figure, rows);
   measure_power(std::min(options.quality.frames, 10), rows);
