@@ -124,6 +124,32 @@ TEST(CellTiles, KeepTheWeightedMassOfTheTarget) {
   }
 }
 
+TEST(InitialLoops, TourWhatCounts) {
+  // both contacts, but only one of them where the other has less than 1 % of its weight
+  for (const double right : {1.0, 5e-3}) {
+    TargetField field = contacts({12, 32});
+    field.weight.assign(field.size(), 1.0);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      if (i % 45 >= 22) field.weight[i] = right;
+    }
+    CellTiles cells(field.size());
+    cells.set(field, max_pressure(field), 4.0);
+    InitialLoops initial(field.size());
+    initial.set(cells, 0.01F);
+    Random random(1);
+    StartSettings start;
+    start.paths = 1;
+    start.most_length = 300.0;
+    Loops loops;
+    initial.make(start, 20, random, loops);
+    double farthest = 0.0;
+    for (int i = 0; i < loops.samples; ++i) {
+      farthest = std::max(farthest, loops.point(i, 0).x());
+    }
+    EXPECT_EQ(farthest < 3.0 * 22, right < 1.0) << farthest;
+  }
+}
+
 /// Loops laid over a pattern with weights, and the cells that they are to render.
 struct Case {
   CellTiles cells{kCells};
