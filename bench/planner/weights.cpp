@@ -83,22 +83,18 @@ void measure_weights(int frames, std::vector<Row>& rows) {
       kWeight, frames, "", "upper", "weighed", "change", "lower", "weighed", "change", "", "", "",
       "%", "", "", "%");
   Planner planner(PlanSettings{}, static_cast<std::size_t>(fields::kCells) * fields::kCells);
-  Distribution upper, lower, upper_without, lower_without;
+  Distribution upper, lower;  // changes [%]
   Line sum;
   for (const fields::Pattern pattern : fields::kPatterns) {
     const Line line = measure_pattern(pattern, frames, planner);
     line.print(to_string(pattern));
     sum.add(line);
-    upper.add(line.with.upper);
-    lower.add(line.with.lower);
-    upper_without.add(line.without.upper);
-    lower_without.add(line.without.lower);
+    upper.add(100.0 * (line.with.upper / line.without.upper - 1.0));
+    lower.add(100.0 * (line.with.lower / line.without.lower - 1.0));
   }
   sum.print("sum");
-  rows.push_back({"planner/best/RMSE, half weighed 4 times", "1", upper.summary(),
-                  "without weights", upper_without.summary().p50});
-  rows.push_back({"planner/best/RMSE, the other half", "1", lower.summary(), "without weights",
-                  lower_without.summary().p50});
+  rows.push_back({"planner/best/RMSE, half weighed 4 times", "%", upper.summary(), "", 0.0});
+  rows.push_back({"planner/best/RMSE, the other half", "%", lower.summary(), "", 0.0});
 }
 
 }  // namespace prostm::bench

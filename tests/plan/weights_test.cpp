@@ -368,7 +368,9 @@ TEST(Weights, OfAnyKindGiveValidPlans) {
     ++planned;
     ASSERT_NE(input.kind, test::FieldKind::Invalid);
     ASSERT_GE(plan.paths.size(), 1U);
-    ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, 20, 0.140));
+    const PlanSettings& used = planner.settings();
+    const int samples = used.preset == "best" ? used.fit_samples : used.samples;
+    ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, samples, 0.140));
     const double most = kGain * max_pressure(input.field) * (1.0 + 1e-6);
     for (const FocalPath& path : plan.paths) {
       for (const double p : path.pressure) ASSERT_LE(p, most);
