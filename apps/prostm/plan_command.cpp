@@ -191,7 +191,7 @@ int plan_command(const PlanOptionsGiven& given) {
     print_plan(out, r.plan, r.stats, r.metrics, r.controls);
     if (!target.weight.empty()) {
       fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights",
-                 weighted_rmse(target, r.plan, 0, s.sigma, s.gain));
+                 weighted_rmse(target, r.plan, 0, s.sigma, s.gain_law()));
     }
     print_power(out, r.plan, settings.emit.power_limit);
   }

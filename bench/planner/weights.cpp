@@ -25,7 +25,7 @@ Halves errors_of(const TargetField& field, Planner& planner) {
   planner.reset();
   planner.plan(field, plan, stats);
   std::vector<double> rendered(field.size());
-  quasi_static_field(plan, 0, field, s.sigma, s.gain, rendered);
+  quasi_static_field(plan, 0, field, s.sigma, s.gain_law(), rendered);
   const double maximum = max_pressure(field);
   const std::size_t middle = field.index(field.rows / 2, 0);
   double sum[2] = {}, cells[2] = {};

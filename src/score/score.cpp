@@ -202,7 +202,7 @@ Metrics score_plan(const TargetField& target, const Plan& plan, int patch, doubl
 }
 
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,
-                     double gain) {
+                     const GainLaw& gain) {
   const double maximum = max_pressure(target), largest = max_weight(target);
   if (!(maximum > 0.0)) return 0.0;
   std::vector<double> rendered(target.size());

@@ -37,7 +37,7 @@ Metrics score_plan(const TargetField& target, const Plan& plan, int patch, doubl
 /// (Q1) of a plan with each cell's error counted by its weight, √(Σ w (p̂ − p*)² / Σ w); 0 for a
 /// target without pressure. @pre the target has weights, at least one > 0 on skin.
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,
-                     double gain);
+                     const GainLaw& gain);
 
 /// One row of the controls' table: what a metric says about something that must lose.
 struct Control {

@@ -22,7 +22,8 @@ namespace {
 using fields::Pattern;
 
 constexpr std::size_t kCells = static_cast<std::size_t>(fields::kCells) * fields::kCells;
-constexpr double kSigma = 8.6e-3, kGain = 1.4;
+constexpr double kSigma = 8.6e-3;
+constexpr GainLaw kGain;
 
 PlanSettings preset(const std::string& name) {
   PlanSettings settings;
@@ -371,7 +372,7 @@ TEST(Weights, OfAnyKindGiveValidPlans) {
     const PlanSettings& used = planner.settings();
     const int samples = used.preset == "best" ? used.fit_samples : used.samples;
     ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, samples, 0.140));
-    const double most = kGain * max_pressure(input.field) * (1.0 + 1e-6);
+    const double most = kGain.gain * max_pressure(input.field) * (1.0 + 1e-6);
     for (const FocalPath& path : plan.paths) {
       for (const double p : path.pressure) ASSERT_LE(p, most);
     }
