@@ -66,8 +66,8 @@ double FocusMotion::advance() {
   ++sample_;
   const double share = static_cast<double>(sample_) / static_cast<double>(lap_);
   double s = arc_start_ + direction_ * path_.length * share;
-  if (s >= path_.length) s -= path_.length;
   if (s < 0.0) s += path_.length;
+  if (s >= path_.length) s -= path_.length;  // also where the line above rounds up to it
 
   // position: on the path, plus what is left of the offset
   const PathPoint point = sample_at(s);
