@@ -74,6 +74,7 @@ void FitPlanner::move_to(const Vec2& origin) {
     fit_.loops.x[i] += static_cast<float>(shift.x());
     fit_.loops.y[i] += static_cast<float>(shift.y());
   }
+  phases_.move(shift);
   origin_ = origin;
 }
 
@@ -181,25 +182,36 @@ void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
 
 void FitPlanner::append(const TargetField& target, double maximum, int patch, Plan& plan,
                         PlanStats& stats) {
-  const std::size_t before = plan.paths.size();
-  for (int k = 0; k < fit_.loops.paths; ++k) {
+  const int n = fit_.loops.samples, paths = fit_.loops.paths;
+  std::array<double, kMaxPaths> factor{}, period{};
+  for (int k = 0; k < paths; ++k) {
+    const std::span<const Vec2> loop = copy_path(k, 0);
+    const auto place = static_cast<std::size_t>(k);
+    factor[place] = skin_factor(target, loop);
+    period[place] = loop_length(loop) / kMmPerMetre * factor[place] / settings_.speed;
+  }
+  const LapStarts starts = phases_.choose(fit_.loops, period);
+
+  for (int k = 0; k < paths; ++k) {
+    const auto place = static_cast<std::size_t>(k);
     FocalPath path;
     path.patch = patch;
-    for (int i = 0; i < fit_.loops.samples; ++i) {
-      path.points.push_back(target.origin + fit_.loops.point(i, k) / kMmPerMetre);
+    for (int i = 0; i < n; ++i) {
+      path.points.push_back(target.origin +
+                            fit_.loops.point(starts[place].sample(i, n), k) / kMmPerMetre);
     }
     path.length = closed_length(path);
     path.speed = settings_.speed;
-    path.period = path.length * skin_factor(target, copy_path(k, 0)) / path.speed;
+    path.period = path.length * factor[place] / path.speed;
     const double gain = settings_.gain_law().of(path.period);
-    for (int i = 0; i < fit_.loops.samples; ++i) {
-      path.pressure.push_back(
-          gain * maximum *
-          static_cast<double>(fit_.reconstruction.pressure[fit_.loops.node(i, k)]));
+    for (int i = 0; i < n; ++i) {
+      const std::size_t node = fit_.loops.node(starts[place].sample(i, n), k);
+      path.pressure.push_back(gain * maximum *
+                              static_cast<double>(fit_.reconstruction.pressure[node]));
     }
     plan.paths.push_back(path);
   }
-  stats.leaves += static_cast<int>(plan.paths.size() - before);
+  stats.leaves += paths;
 }
 
 void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch, int paths,
@@ -211,6 +223,7 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
 
   move_to(target.origin);
   const bool continues = has_previous_ && fit_.loops.paths <= paths;
+  if (!continues) phases_.forget();
   stats.cost_evaluations += search_.run(paths, continues, fit_);
   std::array<float, kMaxPaths> most{};
   for (int k = 0; k < fit_.loops.paths; ++k) {

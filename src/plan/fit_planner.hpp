@@ -5,14 +5,16 @@
 #include <boost/container/static_vector.hpp>
 #include <span>
 
+#include "plan/phases.hpp"
 #include "plan/planner.hpp"
 #include "plan/search.hpp"
 #include "plan/spacing.hpp"
 
 namespace prostm::planning {
 
-/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15). Remembers the last
-/// plan, so that the next can start from it. Sized once; plan() allocates and throws nothing.
+/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15), and where their focal
+/// points start, (P16). Remembers the last plan, so that the next can start from it. Sized once;
+/// plan() allocates and throws nothing.
 class FitPlanner {
  public:
   FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells);
@@ -41,6 +43,7 @@ class FitPlanner {
 
   PlanSettings settings_;
   Search search_;
+  Phases phases_;
   Fit fit_;                     // of the last plan until the next
   Vec2 origin_ = Vec2::Zero();  // of the target that fit_ is for [m]
   bool has_previous_ = false, is_flat_ = false;

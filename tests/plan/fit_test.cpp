@@ -5,6 +5,7 @@
 #include "fields/fields.hpp"
 #include "plan/descent.hpp"
 #include "plan/initial_loops.hpp"
+#include "plan/lifted_plan.hpp"
 #include "plan/planner.hpp"
 #include "plan/spacing.hpp"
 #include "plan_checks.hpp"
@@ -403,6 +404,98 @@ TEST(FitPresets, FramesContinueFromThePathsBefore) {
   Plan again;
   planner.plan(frame, again, stats);
   ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(first, again, 1.0));
+}
+
+double signed_area(const FocalPath& path) {
+  double area = 0.0;
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    area += 0.5 * cross(path.points[i], path.points[(i + 1) % path.points.size()]);
+  }
+  return area;
+}
+
+/// Mean of d^−8 over the pairs of focal points and 40 ms, as a distance [m]. @param later the start
+/// of each path, in samples after its first point.
+double mean_distance(const Plan& plan, const std::array<int, kMaxPaths>& later) {
+  LiftedPlan lifted;
+  TargetFrame flat;
+  flat.patches.emplace_back();
+  flat.patches[0].resize(2, 2);
+  flat.patches[0].cell = 1e-3;
+  lift(plan, flat, lifted);
+  double sum = 0.0, terms = 0.0;
+  for (double t = 0.0; t < 0.04; t += 5e-4) {
+    boost::container::static_vector<Vec3, kMaxPaths> x;
+    for (std::size_t k = 0; k < plan.paths.size(); ++k) {
+      const LiftedPath& path = lifted.paths[k];
+      const double start = path.s[static_cast<std::size_t>(kLiftedPointsPerSegment * later[k])];
+      x.push_back(point_at(path, start + path.length * t / plan.paths[k].period).p_D);
+    }
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      for (std::size_t j = 0; j < k; ++j) {
+        sum += std::pow((x[k] - x[j]).norm(), -8.0);
+        terms += 1.0;
+      }
+    }
+  }
+  return std::pow(sum / terms, -1.0 / 8.0);
+}
+
+TEST(FitPresets, FocalPointsRunTheSameWayRoundAndStartApart) {
+  Random random(1);
+  for (const char* name : {"best", "fast"}) {
+    Planner planner(preset(name), kCells);
+    double gain = 0.0;
+    int plans = 0, better = 0, draws = 0;
+    for (const Pattern pattern : fields::kPatterns) {
+      planner.reset();
+      for (const int frame : {10, 60}) {
+        Plan plan;
+        PlanStats stats;
+        planner.plan(fields::make(pattern, frame), plan, stats);
+        for (const FocalPath& path : plan.paths) EXPECT_GT(signed_area(path), 0.0);
+        if (plan.paths.size() < 2) continue;
+        const double planned = mean_distance(plan, {});
+        for (int draw = 0; draw < 20; ++draw) {
+          std::array<int, kMaxPaths> later{};
+          for (int& start : later) start = random.below(20);
+          const double drawn = mean_distance(plan, later);
+          gain += std::log(planned / drawn);
+          better += planned > 0.97 * drawn ? 1 : 0;
+          ++draws;
+        }
+        ++plans;
+      }
+    }
+    ASSERT_GT(plans, 10);
+    EXPECT_GT(better, draws * 95 / 100) << better << " of " << draws;
+    EXPECT_GT(std::exp(gain / draws), 1.2) << name;
+  }
+}
+
+TEST(FitPresets, PathsThatGoOnKeepTheirFirstPoints) {
+  Planner planner(preset("fast"), kCells);
+  Plan before;
+  int kept = 0, all = 0;
+  for (int frame = 20; frame < 30; ++frame) {
+    // a field that moves, with the raster's origin moving the other way
+    TargetField field = fields::make(Pattern::FourPlumes, 20);
+    field.origin += Vec2(1e-3 * (frame - 20), 5e-4 * (frame - 20));
+    Plan plan;
+    PlanStats stats;
+    planner.plan(field, plan, stats);
+    for (const FocalPath& path : plan.paths) {
+      double least = 1.0;
+      for (const FocalPath& other : before.paths) {
+        least = std::min(least, (path.points[0] - other.points[0]).norm());
+      }
+      if (frame == 20) continue;
+      kept += least < 6e-3 ? 1 : 0;
+      ++all;
+    }
+    before = plan;
+  }
+  EXPECT_GE(kept, all * 9 / 10) << kept << " of " << all;
 }
 
 TEST(Spacing, PushesApartWhatIsTooNear) {
