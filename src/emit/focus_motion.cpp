@@ -22,6 +22,12 @@ double FocusMotion::step_of(const LiftedPath& path) const {
   return std::min(path.speed / sample_rate_, max_step_);
 }
 
+std::int64_t FocusMotion::lap_samples(const LiftedPath& path) const {
+  if (path.speed <= kSlowest) return 1;
+  return std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(std::ceil(path.length / step_of(path) - kRounding)));
+}
+
 bool FocusMotion::reaches(const LiftedPath& path, const PathPlace& place) const {
   // (E3) shrinks the offset by at least the spare step
   const double spare = max_step_ - step_of(path);
@@ -35,11 +41,8 @@ void FocusMotion::start(const LiftedPath& path, const PathPlace& place) {
   direction_ = last_step_.dot(place.tangent) < 0.0 ? -1.0 : 1.0;
   edge_ = 0;
   sample_ = 0;
-  lap_ = 1;
-  if (path.speed > kSlowest) {
-    lap_ = std::max<std::int64_t>(
-        1, static_cast<std::int64_t>(std::ceil(path.length / step_of(path) - kRounding)));
-  } else {
+  lap_ = lap_samples(path);
+  if (path.speed <= kSlowest) {
     path_.length = 0.0;
     path_.p_D[0] = place.p_D;
     path_.pressure[0] = point_at(path, place.s).pressure;
@@ -58,6 +61,11 @@ void FocusMotion::jump(const LiftedPath& path, const PathPlace& place) {
   offset_.setZero();
   moving_over_ = false;
   p_D_ = base_;
+}
+
+Vec3 FocusMotion::ahead(std::int64_t samples) const {
+  const double share = static_cast<double>((sample_ + samples) % lap_) / static_cast<double>(lap_);
+  return point_at(path_, arc_start_ + direction_ * path_.length * share).p_D;
 }
 
 double FocusMotion::advance() {

@@ -31,6 +31,9 @@ class FocusMotion {
   double advance();
 
   const Vec3& position() const { return p_D_; }
+  /// Where it will be on its path so many samples from now, if it goes on round it [m].
+  /// @pre a path was joined or jumped to; samples >= 0.
+  Vec3 ahead(std::int64_t samples) const;
   /// Where the lap ends [m]. @pre a path was joined or jumped to.
   const Vec3& lap_end() const { return lap_end_; }
   bool lap_ended() const { return sample_ == lap_; }
@@ -38,6 +41,8 @@ class FocusMotion {
   bool on_path() const { return !moving_over_; }  ///< the offset is zero
   double length() const { return path_.length; }  ///< of a lap [m]
   std::int64_t lap_samples() const { return lap_; }
+  /// Samples that a lap on `path` takes; 1 on one where it would be at rest.
+  std::int64_t lap_samples(const LiftedPath& path) const;
 
   static constexpr double kMaxTransit = 20e-3;  ///< longest move from path to path [s]
   static constexpr double kMaxOffset = 10e-3;   ///< about the diameter of a focus [m]

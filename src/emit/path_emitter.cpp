@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <cstddef>
 
@@ -9,6 +10,7 @@
 #include "emit/drive.hpp"
 #include "emit/focus_motion.hpp"
 #include "emit/matching.hpp"
+#include "emit/start_place.hpp"
 #include "emit/take_over_log.hpp"
 
 namespace prostm {
@@ -98,6 +100,7 @@ struct PathEmitter::Impl {
   void release();
   bool join(Focus& f, std::int64_t sample);
   void jump(Focus& f, std::int64_t sample);
+  PathPlace start_place(const Focus& f, const LiftedPath& path) const;
   void adopt(Focus& f, std::int64_t sample);
   void take_over(Focus& f, Drive& d, std::int64_t sample);
   void cut_lap(const Focus& f);
@@ -204,6 +207,22 @@ bool PathEmitter::Impl::join(Focus& f, std::int64_t sample) {
   return true;
 }
 
+/// Where a silent focal point begins a path: at its first point, as planned, with those that begin
+/// at the same time; beside others that run already, where it keeps away from them.
+PathPlace PathEmitter::Impl::start_place(const Focus& f, const LiftedPath& path) const {
+  boost::container::static_vector<const FocusMotion*, kMaxPaths> others;
+  bool any_runs = false;
+  for (int i = 0; i < settings.foci; ++i) {
+    const Focus& other = focus[static_cast<std::size_t>(i)];
+    if (&other == &f || other.state != State::Following) continue;
+    others.push_back(&other.motion);
+    any_runs = any_runs || !other.jumped;
+  }
+  if (!any_runs) return first_place(path);
+  return place_apart(path, f.motion,
+                     std::span<const FocusMotion* const>(others.data(), others.size()));
+}
+
 /// Goes over to the next path, or to rest, in silence.
 void PathEmitter::Impl::jump(Focus& f, std::int64_t sample) {
   f.has_next = false;
@@ -215,7 +234,7 @@ void PathEmitter::Impl::jump(Focus& f, std::int64_t sample) {
     return;
   }
   const LiftedPath& path = plan().paths[static_cast<std::size_t>(f.next)];
-  f.motion.jump(path, nearest_place(path, f.motion.position()));
+  f.motion.jump(path, start_place(f, path));
   f.in_fade = f.jumped = true;
   adopt(f, sample);
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "emit/paths.hpp"
 #include "support/heap_guard.hpp"
@@ -190,6 +191,67 @@ TEST(PathEmitter, NewPathIsDrawnInTheDirectionOfTravel) {
   // the same circle listed the other way round: nothing changes
   for (std::size_t i = 41; i + 800 < player.kept.size(); ++i) {
     EXPECT_LT(distance(player.kept[i], player.kept[i + 800]), 1e-6);
+  }
+}
+
+/// Least and largest distance of the first two focal points while both sound.
+std::pair<double, double> distances(const Player& player, std::size_t foci, std::size_t from = 0) {
+  std::pair<double, double> out(std::numeric_limits<double>::max(), 0.0);
+  for (std::size_t i = from * foci; i < player.kept.size(); i += foci) {
+    const FocusSample &a = player.kept[i], &b = player.kept[i + 1];
+    if (std::min(a.intensity, b.intensity) < 0.01F) continue;
+    out.first = std::min(out.first, distance(a, b));
+    out.second = std::max(out.second, distance(a, b));
+  }
+  return out;
+}
+
+TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
+  const double apart = 0.05;
+  const LiftedPath a = ring(kCentre, 0.140, 50, 1.0),
+                   b = ring(kCentre + Vec3(apart, 0, 0), 0.140, 50, 1.0);
+  Player player(settings_for(2));
+  player.keep = true;
+  player.submit({a, b});
+  player.play(100);
+  EXPECT_EQ(player.kept[0].p_D, a.p_D[0].cast<float>());
+  // so the distance that is planned stays
+  EXPECT_NEAR(distances(player, 2).first, apart, 1e-6);
+  EXPECT_NEAR(distances(player, 2).second, apart, 1e-6);
+
+  // again after a loss, from wherever they came to rest
+  player.emitter.lose();
+  player.play(50);
+  const std::size_t silent = player.kept.size() / 2;
+  player.submit({ring(kCentre + Vec3(0, 0.04, 0), 0.140, 50, 1.0),
+                 ring(kCentre + Vec3(apart, 0.04, 0), 0.140, 50, 1.0)});
+  player.play(100);
+  EXPECT_NEAR(distances(player, 2, silent).first, apart, 1e-6);
+  EXPECT_NEAR(distances(player, 2, silent).second, apart, 1e-6);
+  EXPECT_TRUE(player.watch.holds());
+}
+
+TEST(PathEmitter, AFocalPointBeginsWhereItKeepsAwayFromThoseThatRun) {
+  // another ring appears at any time of the first one's lap
+  const double radius = 0.140 / (2.0 * kPi);
+  const LiftedPath a = ring(kCentre, 0.140, 50, 1.0);
+  for (const double apart : {0.055, 0.0}) {
+    const double outline = apart > 0.0 ? 0.140 : 0.060;
+    LiftedPath b = ring(kCentre + Vec3(apart, 0, 0), outline, 50, 1.0, 7.0 * outline / 0.140);
+    for (int blocks = 3; blocks < 23; ++blocks) {
+      Player player(settings_for(2));
+      player.keep = true;
+      player.submit({a});
+      player.play(blocks);
+      player.submit({a, b});
+      player.play(140);
+      // of two equal rings the centres' distance, of a ring in another that of opposite sides; both
+      // to half of a 32nd of a lap
+      const double best = apart > 0.0 ? apart : radius + outline / (2.0 * kPi);
+      const double off = 2.0 * radius * std::sin(kPi / 64.0);
+      EXPECT_GT(distances(player, 2).first, best - off) << blocks;
+      EXPECT_TRUE(player.watch.holds());
+    }
   }
 }
 
