@@ -22,6 +22,7 @@
 #include "planner/quality.hpp"
 #include "planner/scaling.hpp"
 #include "planner/sequences.hpp"
+#include "planner/simultaneous.hpp"
 #include "planner/steadiness.hpp"
 #include "planner/weights.hpp"
 #include "report.hpp"
@@ -109,6 +110,7 @@ std::vector<Row> measure_all(const Options& options) {
   append_rows(outcomes, rows);
   if (!options.files.empty()) return rows;
   measure_steadiness(contenders, rows);
+  measure_simultaneous(std::min(options.quality.frames, 10), rows);
   measure_on_skin(std::min(options.quality.frames, 5), rows);
   measure_weights(std::min(options.quality.frames, 10), rows);
   compare_with_nlopt(std::min(options.quality.frames, 10), rows);

@@ -13,6 +13,7 @@
 #include "planner/contenders.hpp"
 #include "planner/power.hpp"
 #include "planner/sequences.hpp"
+#include "planner/simultaneous.hpp"
 #include "planner/steadiness.hpp"
 #include "planner/violations.hpp"
 #include "support/input_errors.hpp"
@@ -105,6 +106,61 @@ TEST(Violations, EachKindIsCounted) {
   FocalPath broken = polygon(Vec2::Zero(), 0.14);
   broken.pressure[3] = std::numeric_limits<double>::infinity();
   EXPECT_EQ(violations_of(plan_of({broken})).non_finite, 1);
+}
+
+TEST(LeastDistances, AreThoseOfTheNearestTwoThatSound) {
+  LeastDistances d;
+  d.add(std::vector<Vec3>{Vec3::Zero()});
+  EXPECT_EQ(d.instants(), 0u);
+  EXPECT_EQ(d.least(), 0.0);
+  for (int i = 1; i <= 20; ++i) {
+    d.add(std::vector<Vec3>{Vec3::Zero(), Vec3(1.0, 0, 0), Vec3(1.0, 1e-3 * i, 0)});
+  }
+  EXPECT_EQ(d.instants(), 20u);
+  EXPECT_DOUBLE_EQ(d.least(), 1e-3);
+  EXPECT_DOUBLE_EQ(d.quantile(0.05), 1e-3);
+  EXPECT_DOUBLE_EQ(d.quantile(0.5), 10e-3);
+  EXPECT_DOUBLE_EQ(d.share_below(5.5e-3), 0.25);
+}
+
+TEST(Simultaneous, FocalPointsAreFollowedInTheirOwnPeriods) {
+  // two circles of one length begun at the same angle keep the distance of their centres, those of
+  // the other sense meet where they are nearest
+  const auto follow_two = [](FocalPath a, FocalPath b, double b_period) {
+    a.period = 0.02;
+    b.period = b_period;
+    LeastDistances d;
+    follow(plan_of({a, b}), 0.2, 0.5, d);
+    return d;
+  };
+  const FocalPath a = polygon(Vec2::Zero(), 0.14), b = polygon(Vec2(0.06, 0.0), 0.14);
+  const LeastDistances same = follow_two(a, b, 0.02);
+  EXPECT_EQ(same.instants(), 1600u);
+  EXPECT_NEAR(same.least(), 0.06, 1e-9);
+  EXPECT_NEAR(same.quantile(1.0), 0.06, 1e-9);
+  const double radius = 0.14 / (40.0 * std::sin(kPi / 20.0));
+  const LeastDistances opposite = follow_two(a, begun_at(b, 10, true), 0.02);
+  EXPECT_NEAR(opposite.least(), 0.06 - 2.0 * radius, 1e-4);
+  EXPECT_NEAR(follow_two(a, begun_at(b, 10, false), 0.02).least(), 0.06 - 2.0 * radius, 1e-4);
+  // in other periods the phases drift through all
+  EXPECT_NEAR(follow_two(a, b, 0.019).least(), 0.06 - 2.0 * radius, 2e-3);
+
+  // silent ones do not count
+  FocalPath silent = b;
+  silent.pressure.assign(silent.pressure.size(), 0.4);
+  EXPECT_EQ(follow_two(a, silent, 0.02).instants(), 0u);
+}
+
+TEST(Simultaneous, RandomStartsAreTheSamePaths) {
+  const FocalPath path = polygon(Vec2(0.01, 0.02), 0.12);
+  const FocalPath back = begun_at(path, 7, true);
+  EXPECT_EQ(back.points[0], path.points[7]);
+  EXPECT_EQ(back.points[1], path.points[6]);
+  EXPECT_EQ(back.points[19], path.points[8]);
+  Random random(1);
+  for (int draw = 0; draw < 100; ++draw) {
+    EXPECT_LT(motion(plan_of({path}), begun_anywhere(plan_of({path}), random, true)), 1e-12);
+  }
 }
 
 TEST(Sequences, FramesAreSpreadEvenly) {
