@@ -219,6 +219,16 @@ TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
   EXPECT_NEAR(distances(player, 2).first, apart, 1e-6);
   EXPECT_NEAR(distances(player, 2).second, apart, 1e-6);
 
+  // also where other places would be farther apart
+  LiftedPath turned = b;
+  std::rotate(turned.p_D.begin(), turned.p_D.begin() + 20, turned.p_D.end());
+  Player plain(settings_for(2));
+  plain.keep = true;
+  plain.submit({a, turned});
+  plain.play(1);
+  EXPECT_EQ(plain.kept[0].p_D, a.p_D[0].cast<float>());
+  EXPECT_EQ(plain.kept[1].p_D, turned.p_D[0].cast<float>());
+
   // again after a loss, from wherever they came to rest
   player.emitter.lose();
   player.play(50);

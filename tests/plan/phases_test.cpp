@@ -169,6 +169,28 @@ std::vector<double> periods_of(const std::vector<std::vector<Vec2>>& list) {
   return periods;
 }
 
+TEST(EvenLap, SamplesAndArcsFindEachOtherRoundTheEnd) {
+  // a circle whose last sample is a long way, or a short one, before the first
+  for (const double last : {0.87, 0.99}) {
+    std::vector<Vec2> loop;
+    for (int i = 0; i < 20; ++i) {
+      const double a = 2.0 * kPi * last * i / 19.0;
+      loop.push_back(20.0 * Vec2(std::cos(a), std::sin(a)));
+    }
+    EvenLap lap;
+    lap.set(loops_of({loop}), 0);
+    EXPECT_EQ(lap.nearest_sample(0), 0);
+    EXPECT_EQ(lap.nearest_sample(19), last < 0.9 ? 0 : 18);
+    EXPECT_EQ(lap.nearest_arc(19), last < 0.9 ? 17 : 0);
+    for (int arc = 0; arc < 20; ++arc) {
+      const auto i = static_cast<std::size_t>(arc);
+      EXPECT_EQ(lap.x[i], lap.x[i + 20]);
+      EXPECT_LT(std::abs(std::hypot(lap.x[i], lap.y[i]) - 20.0F), 1.7F);
+      EXPECT_NEAR(std::hypot(lap.x[i + 1] - lap.x[i], lap.y[i + 1] - lap.y[i]), 6.2, 0.4);
+    }
+  }
+}
+
 TEST(PhaseCosts, AreTheSumOfTheStatedEquation) {
   Random random(1);
   for (int round = 0; round < 50; ++round) {
@@ -293,6 +315,15 @@ TEST(Phases, StartsAreKeptUntilOthersPay) {
   other.choose(loops_of(near), periods);
   const LapStarts apart = other.choose(loops_of(within), periods);
   EXPECT_GT(distances(within, apart, periods).least, 27.0);
+
+  // a loop that is new beside one that goes on finds its start
+  Phases second;
+  second.choose(loops_of({begun_at(circle({0, 0}, 20.0), 5, false), circle({300, 0}, 20.0)}),
+                periods);
+  const LapStarts joined =
+      second.choose(loops_of({circle({0, 0}, 20.0), circle({42, 0}, 20.0)}), periods);
+  EXPECT_EQ(joined[0].first, 5);
+  EXPECT_EQ(joined[1].first, 5);
 
   // where others gain little, they stay; forgotten, they are chosen anew
   Phases third;
