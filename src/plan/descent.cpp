@@ -11,7 +11,7 @@ namespace {
 constexpr float kArmijo = 1e-4F;
 constexpr float kLeastSlope = 1e-12F;  // a direction that is flatter leads nowhere
 constexpr float kLeastCurvature = 1e-6F;
-constexpr int kHalvings = 5;          // of one step, before the memory is dropped
+constexpr int kHalvings = 12;         // of one step, before the memory is dropped
 constexpr float kFirstStep = 1.5F;    // longest move of a sample before curvature is known [mm]
 constexpr float kLongestStep = 6.0F;  // of a sample in any step [mm]
 

@@ -21,20 +21,6 @@ constexpr int kMendRounds = 8;      // at most, on uneven skin
 constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
 constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on any skin
 
-FitSettings fit_settings(const PlanSettings& s) {
-  FitSettings fit;
-  fit.reconstruction.sigma = static_cast<float>(kMmPerMetre * s.sigma);
-  fit.reconstruction.weight_coverage = static_cast<float>(s.fit_coverage);
-  fit.shape.weight_length = static_cast<float>(s.fit_length);
-  fit.shape.weight_spacing = static_cast<float>(s.fit_spacing);
-  fit.shape.weight_bending = static_cast<float>(s.fit_bending);
-  fit.shape.spacing = static_cast<float>(kMmPerMetre * s.sigma);
-  fit.shape.least_length =
-      static_cast<float>(kMmPerMetre * std::min(s.least_length, s.max_length()));
-  fit.shape.most_length.fill(static_cast<float>(kMmPerMetre * s.max_length()));
-  return fit;
-}
-
 SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   SearchSettings search;
   search.samples = preset == Preset::Best ? s.fit_samples : s.samples;
@@ -62,6 +48,20 @@ bool is_constant(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+FitSettings fit_settings(const PlanSettings& s) {
+  FitSettings fit;
+  fit.reconstruction.sigma = static_cast<float>(kMmPerMetre * s.sigma);
+  fit.reconstruction.weight_coverage = static_cast<float>(s.fit_coverage);
+  fit.shape.weight_length = static_cast<float>(s.fit_length);
+  fit.shape.weight_spacing = static_cast<float>(s.fit_spacing);
+  fit.shape.weight_bending = static_cast<float>(s.fit_bending);
+  fit.shape.spacing = static_cast<float>(kMmPerMetre * s.sigma);
+  fit.shape.least_length =
+      static_cast<float>(kMmPerMetre * std::min(s.least_length, s.max_length()));
+  fit.shape.most_length.fill(static_cast<float>(kMmPerMetre * s.max_length()));
+  return fit;
+}
 
 FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells)
     : settings_(settings),

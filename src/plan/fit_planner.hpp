@@ -12,6 +12,9 @@
 
 namespace prostm::planning {
 
+/// What the presets `fast` and `best` minimise.
+FitSettings fit_settings(const PlanSettings& settings);
+
 /// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15), and where their focal
 /// points start, (P16). Remembers the last plan, so that the next can start from it. Sized once;
 /// plan() allocates and throws nothing.
