@@ -10,9 +10,14 @@ namespace {
 constexpr float kFelt = 0.2F;   // share of the maximum from which a cell asks for paths
 constexpr double kWidth = 1.5;  // of a path in σ: how much area a path of full length serves
 constexpr float kLost = 1.4F;   // rise of the cost, relative to the target's, that calls for starts
+constexpr float kPoor =
+    0.1F;  // cost, relative to the target's, of paths that are not worth keeping
 constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
+constexpr int kSpare = 2;              // evaluations, since their time varies
+constexpr int kLeastEvaluations = 4;   // of a start where there must be one
 constexpr double kKept = 0.97;         // of a budget, so that it is not overrun by a little
-constexpr double kFinishShare = 0.35;  // of a budget, at most
+// of a budget, at most: for the finish on finer cells, or on those of the search
+constexpr double kFinishShare = 0.35, kSameShare = 0.15;
 constexpr double kLearning = 0.2;
 constexpr double kWarmShare = 0.5;  // of a budget: for the paths before, at most
 constexpr int kFewestStops = 14, kMoreStops = 7;
@@ -71,7 +76,8 @@ double Search::evaluation_time(const CellTiles& cells) const {
 /// Sets apart what the finish takes.
 void Search::share_budget() {
   if (budget_ <= 0.0) return;
-  const double most = kFinishShare * budget_;
+  const bool finer = fine().tiles().size() > coarse_.tiles().size();
+  const double most = (finer ? kFinishShare : kSameShare) * budget_;
   finish_fine_ = most >= kFewestEvaluations * evaluation_time(fine());
   const double finish = settings_.final_evaluations * evaluation_time(finish_cells());
   search_end_ = finish_end() - std::min(finish, finish_fine_ ? most : 0.5 * most);
@@ -126,8 +132,10 @@ int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
   initial_.set(coarse_, static_cast<float>(settings_.weak));
   for (int start = 0; start < starts; ++start) {
     int evaluations = affordable(settings_.start_evaluations);
-    // without any paths yet, one start there must be
-    if (best.cost == std::numeric_limits<float>::max()) evaluations = std::max(evaluations, 4);
+    // without paths that are worth keeping, one start there must be
+    if (best.cost > kPoor * static_cast<float>(coarse_.square_norm())) {
+      evaluations = std::max(evaluations, kLeastEvaluations);
+    }
     if (evaluations == 0) break;
     const int count = start == 0 ? paths : paths - random_.below(paths - needed + 1);
     initial_.make(draw_start(count), settings_.samples, random_, trial_.loops);
@@ -179,7 +187,8 @@ int Search::run(int paths, bool continues, Fit& best) {
     used += try_starts(paths, settings_.starts, 0.0F, best);
   } else {
     // something new is to be tried in every plan
-    const int few = static_cast<int>(kWarmShare * affordable(std::numeric_limits<int>::max()));
+    const int all = affordable(std::numeric_limits<int>::max());
+    const int few = std::min(static_cast<int>(kWarmShare * all), all - kFewestEvaluations - kSpare);
     used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), best);
     // where the target has changed more than the paths can follow, start as if there were none
     const bool lost = best.cost > kLost * last_cost_ * norm;
