@@ -25,14 +25,6 @@ PlanSettings settings_at(const std::string& preset, double speed, double draw_ra
   return settings;
 }
 
-Plan plan_of(const PlanSettings& settings, const TargetField& field) {
-  Planner planner(settings, field.size());
-  Plan plan;
-  PlanStats stats;
-  EXPECT_EQ(planner.plan(field, plan, stats), PlanStatus::Planned);
-  return plan;
-}
-
 TEST(DrawRate, TheDefaultsAreThePapersLengthToTheBit) {
   EXPECT_EQ(PlanSettings{}.max_length(), 0.140);
   EXPECT_EQ(settings_at("best", 14.0, 100.0).max_length(), 0.140);
@@ -45,7 +37,7 @@ TEST(DrawRate, NoPathIsDrawnMoreSeldom) {
       const PlanSettings settings = settings_at(preset, 7.0, rate);
       for (const Pattern pattern : {Pattern::OnePlume, Pattern::Noise, Pattern::Fingertips}) {
         SCOPED_TRACE(std::string(preset) + " at " + std::to_string(rate) + " Hz");
-        const Plan plan = plan_of(settings, fields::make(pattern, 4));
+        const Plan plan = test::plan_of(settings, fields::make(pattern, 4));
         ASSERT_FALSE(plan.paths.empty());
         const auto samples = static_cast<int>(plan.paths.front().points.size());
         ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, samples, 7.0 / rate));
@@ -76,8 +68,8 @@ Plan begun_like(Plan plan, const Plan& like) {
 TEST(DrawRate, PathsDependOnTheLengthAlone) {
   for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
     const TargetField field = fields::make(Pattern::FourPlumes, 2);
-    const Plan slow = plan_of(settings_at(preset, 3.5, 25.0), field);
-    const Plan fast = begun_like(plan_of(settings_at(preset, 14.0, 100.0), field), slow);
+    const Plan slow = test::plan_of(settings_at(preset, 3.5, 25.0), field);
+    const Plan fast = begun_like(test::plan_of(settings_at(preset, 14.0, 100.0), field), slow);
     ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(slow, fast, 1.0));
     for (std::size_t k = 0; k < slow.paths.size(); ++k) {
       EXPECT_DOUBLE_EQ(slow.paths[k].period, 4.0 * fast.paths[k].period);
@@ -88,7 +80,7 @@ TEST(DrawRate, PathsDependOnTheLengthAlone) {
 TEST(DrawRate, ThePapersPathsAreAsLongAsItSays) {
   for (const double rate : {40.0, 50.0, 80.0}) {
     const TargetField field = fields::make(Pattern::OnePlume, 0);
-    for (const FocalPath& path : plan_of(settings_at("paper", 7.0, rate), field).paths) {
+    for (const FocalPath& path : test::plan_of(settings_at("paper", 7.0, rate), field).paths) {
       EXPECT_NEAR(path.length, 7.0 / rate, 0.03 * path.length) << rate;
     }
   }
@@ -102,7 +94,7 @@ TEST(DrawRate, TheLeastLengthGivesWay) {
   field.skin.assign(field.size(), 1);
   test::touch(field, 15, 15, 1.0);
   for (const double rate : {250.0, 400.0}) {
-    const Plan plan = plan_of(settings_at("best", 7.0, rate), field);
+    const Plan plan = test::plan_of(settings_at("best", 7.0, rate), field);
     ASSERT_EQ(plan.paths.size(), 1U);
     EXPECT_LE(plan.paths[0].length, 7.0 / rate + 1e-9);
     EXPECT_GT(plan.paths[0].length, 0.9 * 7.0 / rate);

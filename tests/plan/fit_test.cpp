@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "fields/fields.hpp"
+#include "gradient_check.hpp"
 #include "plan/descent.hpp"
+#include "plan/fit_planner.hpp"
 #include "plan/initial_loops.hpp"
 #include "plan/lifted_plan.hpp"
 #include "plan/planner.hpp"
@@ -20,12 +22,6 @@ namespace {
 using fields::Pattern;
 
 constexpr std::size_t kCells = static_cast<std::size_t>(fields::kCells) * fields::kCells;
-
-FitSettings fit_settings() {
-  FitSettings settings;
-  settings.shape.most_length.fill(140.0F);
-  return settings;
-}
 
 /// Loops laid over a pattern, and the cells that they are to render.
 struct Case {
@@ -176,39 +172,23 @@ TEST(Reconstruction, VectorKernelAgreesWithThePlainOne) {
   EXPECT_GT(compared_gradients, count / 2);
 }
 
-/// The cost has kinks where a cell changes its closest segment, so a few differences may be off.
 TEST(Descent, GradientAgreesWithCentralDifferences) {
-  int tried = 0, off = 0;
+  test::GradientCheck check;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed), 4, 20,
                  seed);
-    Descent descent(CellTiles::kMaxTiles, 20, fit_settings());
-    Fit fit;
-    fit.loops = c.loops;
-    descent.run(c.cells, fit, 10);
-    for (std::size_t a = 0; a < fit.loops.nodes(); a += 3) {
-      constexpr float kStep = 0.01F;
-      Fit up = fit, down = fit;
-      up.loops.x[a] += kStep;
-      down.loops.x[a] -= kStep;
-      descent.evaluate(c.cells, up);
-      descent.evaluate(c.cells, down);
-      const float difference = (up.cost - down.cost) / (2.0F * kStep);
-      ++tried;
-      if (std::abs(difference - fit.reconstruction.gradient_x[a]) >
-          0.02F * std::abs(difference) + 0.02F) {
-        ++off;
-      }
-    }
+    check.add(c.cells, c.loops);
   }
-  EXPECT_LT(off, tried / 10) << off << " of " << tried;
+  check.expect_agreement();
 }
 
 TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  constexpr std::uint64_t kSeeds = 40;
+  float left = 0.0F;  // of the costs, mean
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed),
                  1 + static_cast<int>(seed % 8), 20, seed);
-    Descent descent(CellTiles::kMaxTiles, 20, fit_settings());
+    Descent descent(CellTiles::kMaxTiles, 20, fit_settings(PlanSettings{}));
     Fit fit;
     fit.loops = c.loops;
     descent.evaluate(c.cells, fit);
@@ -220,8 +200,9 @@ TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
       EXPECT_LE(fit.cost, before * 1.001F + 1e-3F);
       before = fit.cost;
     }
-    EXPECT_LT(fit.cost, 0.9F * start);
+    left += fit.cost / start / kSeeds;
   }
+  EXPECT_LT(left, 0.6F);
 }
 
 TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {

@@ -29,14 +29,6 @@ PlanSettings settings_with(const std::string& preset, double exponent) {
   return settings;
 }
 
-Plan plan_of(const PlanSettings& settings, const TargetField& field) {
-  Planner planner(settings, field.size());
-  Plan plan;
-  PlanStats stats;
-  EXPECT_EQ(planner.plan(field, plan, stats), PlanStatus::Planned);
-  return plan;
-}
-
 void expect_near(const Metrics& a, const Metrics& b) {
   constexpr double kTolerance = 1e-9;
   EXPECT_NEAR(a.rmse, b.rmse, kTolerance);
@@ -84,7 +76,7 @@ TEST(GainLaw, ScalesTheRenderedPressuresOfEveryPresetAndNoScore) {
       const TargetField field = fields::make(pattern, 3);
       const PlanSettings plain = settings_with(preset, 0.0);
       const PlanSettings scaled = settings_with(preset, kExponent);
-      const Plan a = plan_of(plain, field), b = plan_of(scaled, field);
+      const Plan a = test::plan_of(plain, field), b = test::plan_of(scaled, field);
       ASSERT_NO_FATAL_FAILURE(expect_scaled(a, b, kExponent));
       const Metrics of_a = score_plan(field, a, 0, plain.sigma, plain.gain_law());
       expect_near(of_a, score_plan(field, b, 0, scaled.sigma, scaled.gain_law()));
@@ -98,7 +90,7 @@ TEST(GainLaw, ScalesTheRenderedPressuresOfEveryPresetAndNoScore) {
 TEST(GainLaw, ShortPathsAreRenderedWeakerAndTheWrongLawShows) {
   const TargetField field = fields::make(Pattern::Fingertips, 3);
   const PlanSettings settings = settings_with("best", 1.0);
-  const Plan plan = plan_of(settings, field);
+  const Plan plan = test::plan_of(settings, field);
   double shortest = 1.0;
   for (const FocalPath& path : plan.paths) shortest = std::min(shortest, path.period * 50.0);
   ASSERT_LT(shortest, 0.7);
@@ -109,8 +101,8 @@ TEST(GainLaw, ShortPathsAreRenderedWeakerAndTheWrongLawShows) {
 TEST(GainLaw, CountsThePeriodOnTheSkin) {
   const TargetField field =
       fields::with_skin(fields::make(Pattern::Ridge, 2), fields::SkinShape::Fist, false);
-  const Plan plain = plan_of(settings_with("best", 0.0), field);
-  const Plan scaled = plan_of(settings_with("best", -1.0), field);
+  const Plan plain = test::plan_of(settings_with("best", 0.0), field);
+  const Plan scaled = test::plan_of(settings_with("best", -1.0), field);
   bool longer = false;
   for (const FocalPath& path : plain.paths) {
     longer = longer || path.period > 1.02 * path.length / path.speed;
@@ -147,7 +139,7 @@ TEST(GainLaw, ControlsAndTheTextbookScoreAsWithAConstant) {
   const TargetField field = fields::make(Pattern::FourPlumes, 5);
   const TargetField elsewhere = fields::make(Pattern::Fingertips, 5);
   const PlanSettings plain = settings_with("best", 0.0), scaled = settings_with("best", kExponent);
-  const Plan a = plan_of(plain, elsewhere), b = plan_of(scaled, elsewhere);
+  const Plan a = test::plan_of(plain, elsewhere), b = test::plan_of(scaled, elsewhere);
   const auto of_a = controls(field, plain.sigma, plain.gain_law(), 0.14, &a, 1);
   const auto of_b = controls(field, scaled.sigma, scaled.gain_law(), 0.14, &b, 1);
   ASSERT_EQ(of_a.size(), 4U);

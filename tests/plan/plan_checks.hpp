@@ -6,9 +6,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/plan.hpp"
+#include "plan/planner.hpp"
 
 namespace prostm::test {
+
+/// Of a planner of its own.
+inline Plan plan_of(const PlanSettings& settings, const TargetField& field) {
+  Planner planner(settings, field.size());
+  Plan plan;
+  PlanStats stats;
+  EXPECT_EQ(planner.plan(field, plan, stats), PlanStatus::Planned);
+  return plan;
+}
 
 inline double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   const double length2 = (b - a).squaredNorm();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fields/fields.hpp"
+#include "gradient_check.hpp"
 #include "plan/cell_weights.hpp"
 #include "plan/descent.hpp"
 #include "plan/initial_loops.hpp"
@@ -168,33 +169,13 @@ struct Case {
   }
 };
 
-/// The cost has kinks where a cell changes its closest segment, so a few differences may be off.
 TEST(Descent, WeightedGradientAgreesWithCentralDifferences) {
-  int tried = 0, off = 0;
-  FitSettings settings;
-  settings.shape.most_length.fill(140.0F);
+  test::GradientCheck check;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const Case c(seed);
-    Descent descent(CellTiles::kMaxTiles, 20, settings);
-    Fit fit;
-    fit.loops = c.loops;
-    descent.run(c.cells, fit, 10);
-    for (std::size_t a = 0; a < fit.loops.nodes(); a += 3) {
-      constexpr float kStep = 0.01F;
-      Fit up = fit, down = fit;
-      up.loops.y[a] += kStep;
-      down.loops.y[a] -= kStep;
-      descent.evaluate(c.cells, up);
-      descent.evaluate(c.cells, down);
-      const float difference = (up.cost - down.cost) / (2.0F * kStep);
-      ++tried;
-      if (std::abs(difference - fit.reconstruction.gradient_y[a]) >
-          0.02F * std::abs(difference) + 0.02F) {
-        ++off;
-      }
-    }
+    check.add(c.cells, c.loops);
   }
-  EXPECT_LT(off, tried / 10) << off << " of " << tried;
+  check.expect_agreement();
 }
 
 TEST(Weights, OfOneEverywhereAreAsGoodAsNone) {

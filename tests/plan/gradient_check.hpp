@@ -1,0 +1,50 @@
+#pragma once
+/// Whether the gradient of what `fast` and `best` minimise is that of its cost.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plan/descent.hpp"
+#include "plan/fit_planner.hpp"
+
+namespace prostm::test {
+
+/// Counts central differences that a gradient does not agree with.
+struct GradientCheck {
+  int tried = 0, off = 0;
+
+  /// Compares them on the cost of loops after a short descent.
+  void add(const planning::CellTiles& cells, const planning::Loops& loops) {
+    planning::Descent descent(planning::CellTiles::kMaxTiles, loops.samples,
+                              planning::fit_settings(PlanSettings{}));
+    planning::Fit fit;
+    fit.loops = loops;
+    descent.run(cells, fit, 10);
+    const planning::Reconstruction& at = fit.reconstruction;
+    for (std::size_t a = 0; a < loops.nodes(); a += 3) {
+      const auto cost_at = [&](planning::NodeArray planning::Loops::*coordinate, float step) {
+        planning::Fit moved = fit;
+        (moved.loops.*coordinate)[a] += step;
+        descent.evaluate(cells, moved);
+        return moved.cost;
+      };
+      constexpr float kStep = 0.01F;
+      using planning::Loops;
+      compare((cost_at(&Loops::x, kStep) - cost_at(&Loops::x, -kStep)) / (2.0F * kStep),
+              at.gradient_x[a]);
+      compare((cost_at(&Loops::y, kStep) - cost_at(&Loops::y, -kStep)) / (2.0F * kStep),
+              at.gradient_y[a]);
+    }
+  }
+  /// The cost has kinks where a cell changes its closest segment, so a few may be off.
+  void expect_agreement() const { EXPECT_LT(off, tried / 10) << off << " of " << tried; }
+
+ private:
+  void compare(float difference, float gradient) {
+    ++tried;
+    off += std::abs(difference - gradient) > 0.02F * std::abs(difference) + 0.02F ? 1 : 0;
+  }
+};
+
+}  // namespace prostm::test
