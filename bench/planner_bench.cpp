@@ -24,6 +24,7 @@
 #include "planner/sequences.hpp"
 #include "planner/simultaneous.hpp"
 #include "planner/steadiness.hpp"
+#include "planner/vectors.hpp"
 #include "planner/weights.hpp"
 #include "report.hpp"
 
@@ -31,10 +32,12 @@ namespace prostm::bench {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]\n"
-    "                     [--scaling-figure FILE] [--bending-figure FILE] [FIELDS ...]\n"
+    "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--vectors NAME]\n"
+    "                     [--figure FILE] [--scaling-figure FILE] [--bending-figure FILE] [FIELDS "
+    "...]\n"
     "  --frames N   scored of each field, spread over its sequence (20)\n"
     "  --seeds N    of the textbook planner, whose median counts (20)\n"
+    "  --vectors NAME   no better vector instructions than these: AVX2, SSE4, …, none\n"
     "  --figure FILE, --scaling-figure FILE, --bending-figure FILE   draw the gallery, time "
     "against size, and error\n"
     "               against corners; .png or .svg\n"
@@ -78,6 +81,8 @@ Options parse(int argc, char** argv) {
       options.bending_figure = value;
     } else if (argument == "--frames") {
       options.quality.frames = number("--frames", value, 1, 10'000);
+    } else if (argument == "--vectors") {
+      limit_vectors(value);
     } else if (argument == "--seeds") {
       options.quality.seeds = number("--seeds", value, 1, 1000);
     } else {
