@@ -12,10 +12,11 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kTileCols = 4, kTileRows = 2;
+constexpr std::size_t kTileCols = 4, kTileRows = 2;
 constexpr std::size_t kMaxBlocks = 2 * CellTiles::kMaxTiles;  // a tile spans two rows at least
 
-std::size_t blocks(int cells, int factor) {
+template <typename N>
+std::size_t blocks(N cells, N factor) {
   return static_cast<std::size_t>((cells + factor - 1) / factor);
 }
 
@@ -32,7 +33,8 @@ void enclose(CellTile& tile) {
   }
   tile.centre_x = 0.5F * (low_x + high_x);
   tile.centre_y = 0.5F * (low_y + high_y);
-  tile.radius = std::hypot(high_x - tile.centre_x, high_y - tile.centre_y);
+  const float dx = high_x - tile.centre_x, dy = high_y - tile.centre_y;
+  tile.radius = std::sqrt(dx * dx + dy * dy);
   for (std::size_t k = 0; k < 8; ++k) {
     if (tile.weight[k] != 0.0F) continue;
     tile.x[k] = tile.centre_x;
@@ -43,24 +45,17 @@ void enclose(CellTile& tile) {
 }  // namespace
 
 CellTiles::CellTiles(std::size_t max_cells) {
-  const std::size_t most = std::min(max_cells, kMaxBlocks);
-  blocks_.resize(most);
-  tiles_.reserve(std::min(most, kMaxTiles));
+  tiles_.reserve(std::min(max_cells, kMaxTiles));
   mean_weight_.reserve(tiles_.capacity());
-  for (std::size_t q = 0; q < 3; ++q) columns_[q].resize(max_cells);
-  columns_[3].reserve(max_cells);
+  for (std::vector<double>& sums : columns_) sums.reserve(max_cells);
 }
 
 /// Sums rows [begin, end) into columns_. @param weights of the cells, or null: 1.
 void CellTiles::add_rows(const TargetField& target, const CellWeights* weights, int begin,
                          int end) {
   const auto cols = static_cast<std::size_t>(target.cols);
-  if (weights != nullptr) columns_[3].resize(cols);
-  for (std::vector<double>& sums : columns_) {
-    std::fill_n(sums.begin(), std::min(sums.size(), cols), 0.0);
-  }
-  const std::span<double> pressure(columns_[0].data(), cols), weight(columns_[1].data(), cols),
-      rows(columns_[2].data(), cols);
+  for (std::vector<double>& sums : columns_) sums.assign(cols, 0.0);
+  const std::span<double> pressure = columns_[0], weight = columns_[1], rows = columns_[2];
   for (int row = begin; row < end; ++row) {
     const std::size_t first = target.index(row, 0);
     if (weights == nullptr) {
@@ -96,57 +91,66 @@ CellTiles::Block CellTiles::sum_columns(const TargetField& target, std::size_t b
   return sum;
 }
 
+/// Fills the tiles with row `row` of the blocks. @param cell edge of the target's cells [mm].
+void CellTiles::fill_row(const TargetField& target, std::size_t row, int factor, double cell,
+                         double maximum) {
+  const auto unit = static_cast<float>(cell * cell) / kUnitArea;
+  const std::size_t cols = blocks(target.cols, factor),
+                    first = row / kTileRows * blocks(cols, kTileCols);
+  for (std::size_t c = 0; c < cols; ++c) {
+    const Block block = sum_columns(target, c, factor);
+    if (block.weight == 0.0) continue;
+    const std::size_t t = first + c / kTileCols, k = row % kTileRows * kTileCols + c % kTileCols;
+    const double each = 1.0 / block.weight;
+    CellTile& tile = tiles_[t];
+    tile.x[k] = static_cast<float>(cell * each * block.col);
+    tile.y[k] = static_cast<float>(cell * each * block.row);
+    tile.pressure[k] = static_cast<float>(block.pressure * each / maximum);
+    tile.weight[k] = static_cast<float>(block.weight) * unit;
+    if (!mean_weight_.empty()) mean_weight_[t][k] = static_cast<float>(block.weight / block.count);
+  }
+}
+
+/// Leaves out the tiles without skin that counts, and completes the others.
+void CellTiles::complete() {
+  peak_ = 0.0F;
+  square_ = 0.0;
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < tiles_.size(); ++t) {
+    CellTile& tile = tiles_[t];
+    if (std::all_of(tile.weight, tile.weight + 8, [](float w) { return w == 0.0F; })) continue;
+    enclose(tile);
+    for (std::size_t k = 0; k < 8; ++k) {
+      peak_ = std::max(peak_, mean_weight(t, k) * tile.pressure[k]);
+      square_ += static_cast<double>(tile.weight[k] * tile.pressure[k] * tile.pressure[k]);
+    }
+    tiles_[kept] = tile;
+    if (!mean_weight_.empty()) mean_weight_[kept] = mean_weight_[t];
+    ++kept;
+  }
+  tiles_.resize(kept);
+  if (!mean_weight_.empty()) mean_weight_.resize(kept);
+}
+
 void CellTiles::set(const TargetField& target, double maximum, double width) {
   const double cell = kMmPerMetre * target.cell;
   int factor = std::max(1, static_cast<int>(std::floor(width / cell + 1e-6)));
   while (blocks(target.rows, factor) * blocks(target.cols, factor) > kMaxBlocks) ++factor;
-  const std::size_t cols = blocks(target.cols, factor), rows = blocks(target.rows, factor);
-
-  // average the blocks
-  const bool has_weights = !target.weight.empty();
-  std::optional<CellWeights> weights;
-  if (has_weights) weights.emplace(target, maximum);
-  for (int row = 0; row < target.rows; row += factor) {
-    add_rows(target, has_weights ? &*weights : nullptr, row, std::min(row + factor, target.rows));
-    Block* const block = &blocks_[static_cast<std::size_t>(row / factor) * cols];
-    for (std::size_t c = 0; c < cols; ++c) block[c] = sum_columns(target, c, factor);
-  }
-  gather(rows, cols, cell, maximum, has_weights);
-}
-
-/// Fills tiles_ with the blocks whose skin counts. @param cell edge of the target's cells [mm].
-void CellTiles::gather(std::size_t rows, std::size_t cols, double cell, double maximum,
-                       bool has_weights) {
-  tiles_.clear();
+  const std::size_t rows = blocks(target.rows, factor), cols = blocks(target.cols, factor);
+  const std::size_t tiles = blocks(rows, kTileRows) * blocks(cols, kTileCols);
+  tiles_.assign(tiles, CellTile{});
   mean_weight_.clear();
-  peak_ = 0.0F;
-  square_ = 0.0;
-  const auto unit = static_cast<float>(cell * cell) / kUnitArea;
-  for (std::size_t row = 0; row < rows; row += kTileRows) {
-    for (std::size_t col = 0; col < cols; col += kTileCols) {
-      CellTile tile{};
-      std::array<float, 8> mean_weight{};
-      bool skin = false;
-      for (std::size_t k = 0; k < 8; ++k) {
-        const std::size_t r = row + k / kTileCols, c = col + k % kTileCols;
-        if (r >= rows || c >= cols || blocks_[r * cols + c].weight == 0.0) continue;
-        const Block& block = blocks_[r * cols + c];
-        const double each = 1.0 / block.weight;
-        tile.x[k] = static_cast<float>(cell * each * block.col);
-        tile.y[k] = static_cast<float>(cell * each * block.row);
-        tile.pressure[k] = static_cast<float>(block.pressure * each / maximum);
-        tile.weight[k] = static_cast<float>(block.weight) * unit;
-        mean_weight[k] = has_weights ? static_cast<float>(block.weight / block.count) : 1.0F;
-        peak_ = std::max(peak_, mean_weight[k] * tile.pressure[k]);
-        square_ += static_cast<double>(tile.weight[k] * tile.pressure[k] * tile.pressure[k]);
-        skin = true;
-      }
-      if (!skin) continue;
-      enclose(tile);
-      tiles_.push_back(tile);
-      if (has_weights) mean_weight_.push_back(mean_weight);
-    }
+  std::optional<CellWeights> weights;
+  if (!target.weight.empty()) {
+    weights.emplace(target, maximum);
+    mean_weight_.resize(tiles);
   }
+  for (std::size_t row = 0; row < rows; ++row) {
+    const int begin = static_cast<int>(row) * factor;
+    add_rows(target, weights ? &*weights : nullptr, begin, std::min(begin + factor, target.rows));
+    fill_row(target, row, factor, cell, maximum);
+  }
+  complete();
 }
 
 }  // namespace prostm::planning

@@ -52,12 +52,13 @@ class CellTiles {
   };
   void add_rows(const TargetField& target, const CellWeights* weights, int begin, int end);
   Block sum_columns(const TargetField& target, std::size_t block, int factor) const;
-  void gather(std::size_t rows, std::size_t cols, double cell, double maximum, bool has_weights);
+  void fill_row(const TargetField& target, std::size_t row, int factor, double cell,
+                double maximum);
+  void complete();
 
   std::vector<CellTile> tiles_;
   std::vector<std::array<float, 8>> mean_weight_;  // of each tile, where the target has weights
-  std::vector<Block> blocks_;
-  std::array<std::vector<double>, 4> columns_;  // of a row of blocks: pressure, weights, row
+  std::array<std::vector<double>, 4> columns_;     // of a row of blocks: pressure, weights, row
                                                 // indices, and cells where the target has weights
   float peak_ = 0.0F;
   double square_ = 0.0;

@@ -17,6 +17,7 @@ InitialLoops::InitialLoops(std::size_t max_cells) {
   for (std::vector<float>* v : {&x_, &y_, &pressure_, &weight_}) v->reserve(max_cells);
   for (std::vector<float>& v : sorted_) v.resize(max_cells);
   label_.reserve(max_cells);
+  moments_.reserve(max_cells);
 }
 
 void InitialLoops::set(const CellTiles& cells, float weak) {
@@ -56,7 +57,12 @@ void InitialLoops::weigh() {
 void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
   centres_.centre.clear();
   centres_.mass.clear();
-  Centres cx{}, cy{}, mass{}, sum_x{}, sum_y{};
+  Centres cx{}, cy{}, mass{};
+  std::array<std::array<Moments, kMaxClusters>, 2> sums;
+  moments_.clear();
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    moments_.emplace_back(weight_[i], weight_[i] * x_[i], weight_[i] * y_[i], 0.0F);
+  }
   const std::size_t count = static_cast<std::size_t>(k), cells = group.end - group.begin;
 
   float total = 0.0F;
@@ -75,22 +81,21 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
   }
 
   for (int pass = 0; pass <= passes; ++pass) {
-    mass.fill(0.0F);
-    sum_x.fill(0.0F);
-    sum_y.fill(0.0F);
+    for (auto& half : sums) std::fill_n(half.begin(), count, Moments::Zero());
     nearest_centres({x_.data() + group.begin, cells}, {y_.data() + group.begin, cells},
                     {cx.data(), count}, {cy.data(), count}, {label_.data() + group.begin, cells});
-    for (std::size_t i = group.begin; i < group.end; ++i) {
-      const auto nearest = static_cast<std::size_t>(label_[i]);
-      mass[nearest] += weight_[i];
-      sum_x[nearest] += weight_[i] * x_[i];
-      sum_y[nearest] += weight_[i] * y_[i];
+    // every other cell to sums of its own: neighbours have the same centre, and would wait for each
+    // other
+    for (std::size_t i = 0; i < cells; ++i) {
+      sums[i % 2][static_cast<std::size_t>(label_[group.begin + i])] += moments_[i];
     }
     const float relaxation = pass < passes - 1 ? kRelaxation : 1.0F;
     for (std::size_t c = 0; c < count; ++c) {
+      const Moments sum = sums[0][c] + sums[1][c];
+      mass[c] = sum[0];
       if (mass[c] == 0.0F) continue;
-      cx[c] += relaxation * (sum_x[c] / mass[c] - cx[c]);
-      cy[c] += relaxation * (sum_y[c] / mass[c] - cy[c]);
+      cx[c] += relaxation * (sum[1] / mass[c] - cx[c]);
+      cy[c] += relaxation * (sum[2] / mass[c] - cy[c]);
     }
   }
   for (std::size_t c = 0; c < count; ++c) {

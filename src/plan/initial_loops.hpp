@@ -47,6 +47,7 @@ class InitialLoops {
     std::size_t begin, end;
   };
   using Centres = std::array<float, kMaxClusters>;
+  using Moments = Eigen::Array4f;  // weight, weight · x, weight · y, 0
   void weigh();
   void cluster(Group group, int k, int passes, Random& random);
   void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
@@ -54,6 +55,7 @@ class InitialLoops {
 
   std::vector<float> x_, y_, pressure_, weight_, sorted_[3];  // pressure_: times the cell's weight
   std::vector<std::int32_t> label_;
+  std::vector<Moments> moments_;  // of the cells of the group that is clustered
   Clusters centres_;
   DistanceTable distance_;
 };

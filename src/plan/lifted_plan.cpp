@@ -41,7 +41,8 @@ double smooth_height(const FlatPath& flat, const Lengths& height, std::size_t i,
   double weights = flat.weight[i];
   if (weights <= 0.0) return height[i];
   double sum = weights * height[i];
-  const double reach = std::min(half_width, 0.5 * flat.length), falloff = 1.0 / half_width;
+  // no wider than the path, so that the point opposite to this one has no weight from either side
+  const double reach = std::min(half_width, 0.5 * flat.length), falloff = 1.0 / reach;
   const auto add = [&](std::size_t j, double distance) {
     const double weight = (1.0 - distance * falloff) * flat.weight[j];
     sum += weight * height[j];

@@ -37,27 +37,29 @@ double CheckedMaximum(std::span<const double> values, std::span<const std::uint8
                       double most) {
   const D d;
   const DI di;
+  const hn::Rebind<std::int32_t, D> di32;
+  const hn::Rebind<std::uint8_t, D> bytes;
   const std::size_t n = values.size(), step = hn::Lanes(d);
-  auto least = hn::Zero(di), highest = hn::Zero(di), on_skin = hn::Zero(di);
+  const std::int64_t limit = bits_of(most);
+  const auto limits = hn::Set(di, limit);
+  // negative where any value was, or was above the limit
+  auto bad = hn::Zero(di), on_skin = hn::Zero(di);
   std::size_t i = 0;
   for (; i + step <= n; i += step) {
-    const V value = hn::Add(hn::LoadU(d, values.data() + i), hn::Zero(d));
-    const auto bits = hn::BitCast(di, value);
-    const auto counts = hn::RebindMask(di, hn::Gt(ones(skin.data() + i), hn::Zero(d)));
-    least = hn::Min(least, bits);
-    highest = hn::Max(highest, bits);
-    on_skin = hn::Max(on_skin, hn::IfThenElseZero(counts, bits));
+    const auto bits = hn::BitCast(di, hn::Add(hn::LoadU(d, values.data() + i), hn::Zero(d)));
+    bad = hn::Or(bad, hn::Or(bits, hn::VecFromMask(di, hn::Gt(bits, limits))));
+    const auto mask = hn::PromoteTo(di32, hn::LoadU(bytes, skin.data() + i));
+    const auto counts = hn::Gt(hn::PromoteTo(di, mask), hn::Zero(di));
+    on_skin = hn::IfThenElse(hn::Gt(hn::IfThenElseZero(counts, bits), on_skin), bits, on_skin);
   }
-  std::int64_t low = hn::GetLane(hn::MinOfLanes(di, least));
-  std::int64_t high = hn::GetLane(hn::MaxOfLanes(di, highest));
-  std::int64_t found = hn::GetLane(hn::MaxOfLanes(di, on_skin));
+  bool is_bad = hn::GetLane(hn::MinOfLanes(di, bad)) < 0;
+  std::int64_t highest = hn::GetLane(hn::MaxOfLanes(di, on_skin));
   for (; i < n; ++i) {
     const std::int64_t bits = bits_of(values[i]);
-    low = std::min(low, bits);
-    high = std::max(high, bits);
-    if (skin[i] != 0) found = std::max(found, bits);
+    is_bad = is_bad || bits < 0 || bits > limit;
+    if (skin[i] != 0) highest = std::max(highest, bits);
   }
-  return low < 0 || high > bits_of(most) ? -1.0 : std::bit_cast<double>(found);
+  return is_bad ? -1.0 : std::bit_cast<double>(highest);
 }
 
 void AddRow(std::span<const double> values, std::span<const std::uint8_t> skin, int row,

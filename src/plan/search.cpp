@@ -127,6 +127,7 @@ int Search::needed_paths(int paths) const {
 }
 
 int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
+  if (starts == 0) return 0;
   int used = 0;
   const int needed = needed_paths(paths);
   initial_.set(coarse_, static_cast<float>(settings_.weak));
@@ -134,7 +135,7 @@ int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
     int evaluations = affordable(settings_.start_evaluations);
     // without paths that are worth keeping, one start there must be
     if (best.cost > kPoor * static_cast<float>(coarse_.square_norm())) {
-      evaluations = std::max(evaluations, kLeastEvaluations);
+      evaluations = std::max(evaluations, std::min(kLeastEvaluations, settings_.start_evaluations));
     }
     if (evaluations == 0) break;
     const int count = start == 0 ? paths : paths - random_.below(paths - needed + 1);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/random.hpp"
 #include "core/units.hpp"
@@ -116,6 +118,31 @@ TEST(Lift, StairsOfARasterDoNotStretchThePath) {
   for (Vec3& p : raw.p_D) p.z() = height_at(stairs.patches[0], p.head<2>());
   measure(raw);
   EXPECT_GT(raw.length, 1.03 * a.paths[0].length);
+}
+
+/// Also where the kernel of (E1) is as wide as the path: a circle's opposite point is as near one
+/// way round as the other.
+TEST(Lift, LengthDoesNotDependOnWhereThePathBegins) {
+  Random random(1);
+  for (const double length : {0.010, 0.019, 0.021, 0.040, 0.140}) {
+    for (int draw = 0; draw < 200; ++draw) {
+      const TargetFrame frame =
+          frame_with_height([&](const Vec2&) { return 0.01 * random.uniform(); });
+      Plan plan;
+      plan.paths.push_back(circle(20, length));
+      const Vec2 centre(random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05));
+      for (Vec2& x : plan.paths[0].points) x += centre;
+      plan.paths.push_back(plan.paths[0]);
+      std::vector<Vec2> later(plan.paths[0].points.begin(), plan.paths[0].points.end());
+      std::rotate(later.begin(), later.begin() + 1 + random.below(19), later.end());
+      if (random.below(2) == 0) std::reverse(later.begin(), later.end());
+      std::copy(later.begin(), later.end(), plan.paths[1].points.begin());
+      LiftedPlan lifted;
+      lift(plan, frame, lifted);
+      ASSERT_NEAR(lifted.paths[1].length, lifted.paths[0].length, 1e-9 * lifted.paths[0].length)
+          << length << ", draw " << draw;
+    }
+  }
 }
 
 TEST(Lift, DegeneratePathsAreAtRest) {
