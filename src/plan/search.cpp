@@ -182,6 +182,7 @@ int Search::try_kicks(Fit& best) {
 int Search::run(int paths, bool continues, Fit& best) {
   int used = 0;
   const auto norm = static_cast<float>(coarse_.square_norm());
+  bool lost = !continues;
   if (!continues) {
     random_ = Random(settings_.seed);
     best.cost = std::numeric_limits<float>::max();
@@ -192,12 +193,13 @@ int Search::run(int paths, bool continues, Fit& best) {
     const int few = std::min(static_cast<int>(kWarmShare * all), all - kFewestEvaluations - kSpare);
     used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), best);
     // where the target has changed more than the paths can follow, start as if there were none
-    const bool lost = best.cost > kLost * last_cost_ * norm;
+    lost = best.cost > std::min(kLost * reached_, kPoor) * norm;
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
     used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, margin, best);
   }
   used += try_kicks(best);
-  last_cost_ = best.cost / norm;
+  // not merely the plan before, or paths could be left behind little by little
+  reached_ = lost ? best.cost / norm : std::min(best.cost / norm, reached_);
   return used;
 }
 

@@ -72,7 +72,7 @@ class Search {
   Fit trial_;
   Loops laid_;
   StageTimer timer_;
-  float last_cost_ = 0.0F;                      // over the target's square norm
+  float reached_ = 0.0F;  // least cost since starts were made, over the target's square norm
   static constexpr double kEndingMargin = 1.2;  // since the ending's time varies
   // for a budget: time of an evaluation per tile and of what follows the finish, as measured, and
   // when starts and kicks must end, so that the finish is in time [s]

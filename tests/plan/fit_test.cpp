@@ -367,6 +367,40 @@ TEST(FitPresets, AContactMuchSmallerThanABlockIsFound) {
   }
 }
 
+/// A contact that spreads from one small spot over the whole field.
+TargetField spreading_contact(double radius) {
+  TargetField field;
+  field.resize(fields::kCells, fields::kCells);
+  field.cell = fields::kCell;
+  field.skin.assign(field.size(), 1);
+  const Vec2 spot = field.position(fields::kCells / 3, fields::kCells / 4);
+  for (int row = 0; row < field.rows; ++row) {
+    for (int col = 0; col < field.cols; ++col) {
+      const double d = (field.position(row, col) - spot).norm() / radius;
+      field.pressure[field.index(row, col)] = std::exp(-0.5 * d * d);
+    }
+  }
+  return field;
+}
+
+TEST(FitPresets, NoPathsAreLeftBehind) {
+  for (const char* name : {"fast", "best"}) {
+    Planner warm(preset(name), kCells), cold(preset(name), kCells);
+    double left = 0.0, anew = 0.0;
+    for (int frame = 0; frame < 40; ++frame) {
+      const TargetField field = spreading_contact(4e-3 * std::pow(1.07, frame));
+      Plan plan;
+      PlanStats stats;
+      warm.plan(field, plan, stats);
+      left += score_plan(field, plan, 0, 8.6e-3, {1.4}).rmse;
+      cold.reset();
+      cold.plan(field, plan, stats);
+      anew += score_plan(field, plan, 0, 8.6e-3, {1.4}).rmse;
+    }
+    EXPECT_LT(left, 1.1 * anew) << name;
+  }
+}
+
 TEST(FitPresets, FramesContinueFromThePathsBefore) {
   Planner planner(preset("best"), kCells);
   TargetFrame frame;
