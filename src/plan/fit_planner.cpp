@@ -16,7 +16,7 @@ constexpr double kSpacingShare = 0.9;  // of σ: what valid paths keep
 constexpr double kAlongShare = 2.0;    // of σ: nearer along the path, spacing is not asked for
 constexpr double kRounding = 1e-4;     // share of a bound that single precision may cost
 constexpr double kFastWidth = 6.0;     // of the cells of preset fast [mm]
-constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 3;
+constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4;
 constexpr int kMendRounds = 8;      // at most, on uneven skin
 constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
 constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on any skin

@@ -126,16 +126,17 @@ int Search::needed_paths(int paths) const {
   return std::clamp(static_cast<int>(std::ceil(area / served)), 1, paths);
 }
 
-int Search::try_starts(int paths, int starts, float hysteresis, Fit& best) {
+/// @param most evaluations of each start.
+int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& best) {
   if (starts == 0) return 0;
   int used = 0;
   const int needed = needed_paths(paths);
   initial_.set(coarse_, static_cast<float>(settings_.weak));
   for (int start = 0; start < starts; ++start) {
-    int evaluations = affordable(settings_.start_evaluations);
+    int evaluations = affordable(most);
     // without paths that are worth keeping, one start there must be
     if (best.cost > kPoor * static_cast<float>(coarse_.square_norm())) {
-      evaluations = std::max(evaluations, std::min(kLeastEvaluations, settings_.start_evaluations));
+      evaluations = std::max(evaluations, std::min(kLeastEvaluations, most));
     }
     if (evaluations == 0) break;
     const int count = start == 0 ? paths : paths - random_.below(paths - needed + 1);
@@ -182,24 +183,26 @@ int Search::try_kicks(Fit& best) {
 int Search::run(int paths, bool continues, Fit& best) {
   int used = 0;
   const auto norm = static_cast<float>(coarse_.square_norm());
-  bool lost = !continues;
   if (!continues) {
     random_ = Random(settings_.seed);
-    best.cost = std::numeric_limits<float>::max();
-    used += try_starts(paths, settings_.starts, 0.0F, best);
+    best.cost = reached_ = std::numeric_limits<float>::max();
+    used += try_starts(paths, settings_.starts, settings_.start_evaluations, 0.0F, best);
   } else {
     // something new is to be tried in every plan
     const int all = affordable(std::numeric_limits<int>::max());
     const int few = std::min(static_cast<int>(kWarmShare * all), all - kFewestEvaluations - kSpare);
     used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), best);
-    // where the target has changed more than the paths can follow, start as if there were none
-    lost = best.cost > std::min(kLost * reached_, kPoor) * norm;
+    // where the target has changed more than the paths can follow, start as if there were none; not
+    // only against the plan before, or paths could be left behind little by little
+    const bool lost = best.cost > std::min(kLost * reached_, kPoor) * norm;
+    if (lost) reached_ = std::numeric_limits<float>::max();
+    // as far down as the paths that they are compared with
+    const int most = std::max(settings_.start_evaluations, settings_.warm_evaluations);
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
-    used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, margin, best);
+    used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, most, margin, best);
   }
   used += try_kicks(best);
-  // not merely the plan before, or paths could be left behind little by little
-  reached_ = lost ? best.cost / norm : std::min(best.cost / norm, reached_);
+  reached_ = std::min(reached_, best.cost / norm);
   return used;
 }
 

@@ -55,7 +55,7 @@ class Search {
   }
   StartSettings draw_start(int paths);
   int needed_paths(int paths) const;
-  int try_starts(int paths, int starts, float hysteresis, Fit& best);
+  int try_starts(int paths, int starts, int most, float hysteresis, Fit& best);
   int try_kicks(Fit& best);
   const CellTiles& finish_cells() const { return finish_fine_ ? fine() : coarse_; }
   double evaluation_time(const CellTiles& cells) const;
