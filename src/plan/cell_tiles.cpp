@@ -16,8 +16,8 @@ constexpr std::size_t kTileCols = 4, kTileRows = 2;
 constexpr std::size_t kMaxBlocks = 2 * CellTiles::kMaxTiles;  // a tile spans two rows at least
 
 template <typename N>
-std::size_t blocks(N cells, N factor) {
-  return static_cast<std::size_t>((cells + factor - 1) / factor);
+std::size_t ceil_div(N n, N divisor) {
+  return static_cast<std::size_t>((n + divisor - 1) / divisor);
 }
 
 /// Sets the circle about the cells that have weight; the others move to its centre.
@@ -95,8 +95,8 @@ CellTiles::Block CellTiles::sum_columns(const TargetField& target, std::size_t b
 void CellTiles::fill_row(const TargetField& target, std::size_t row, int factor, double cell,
                          double maximum) {
   const auto unit = static_cast<float>(cell * cell) / kUnitArea;
-  const std::size_t cols = blocks(target.cols, factor),
-                    first = row / kTileRows * blocks(cols, kTileCols);
+  const std::size_t cols = ceil_div(target.cols, factor),
+                    first = row / kTileRows * ceil_div(cols, kTileCols);
   for (std::size_t c = 0; c < cols; ++c) {
     const Block block = sum_columns(target, c, factor);
     if (block.weight == 0.0) continue;
@@ -135,9 +135,9 @@ void CellTiles::complete() {
 void CellTiles::set(const TargetField& target, double maximum, double width) {
   const double cell = kMmPerMetre * target.cell;
   int factor = std::max(1, static_cast<int>(std::floor(width / cell + 1e-6)));
-  while (blocks(target.rows, factor) * blocks(target.cols, factor) > kMaxBlocks) ++factor;
-  const std::size_t rows = blocks(target.rows, factor), cols = blocks(target.cols, factor);
-  const std::size_t tiles = blocks(rows, kTileRows) * blocks(cols, kTileCols);
+  while (ceil_div(target.rows, factor) * ceil_div(target.cols, factor) > kMaxBlocks) ++factor;
+  const std::size_t rows = ceil_div(target.rows, factor), cols = ceil_div(target.cols, factor);
+  const std::size_t tiles = ceil_div(rows, kTileRows) * ceil_div(cols, kTileCols);
   tiles_.assign(tiles, CellTile{});
   mean_weight_.clear();
   std::optional<CellWeights> weights;

@@ -52,22 +52,12 @@ void InitialLoops::weigh() {
   for (std::size_t i = 0; i < x_.size(); ++i) weight_[i] = std::sqrt(pressure_[i]);
 }
 
-/// Lloyd's iteration from points at equal steps of the cumulative weight: fills centres_ and
-/// label_.
-void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
-  centres_.centre.clear();
-  centres_.mass.clear();
-  Centres cx{}, cy{}, mass{};
-  std::array<std::array<Moments, kMaxClusters>, 2> sums;
-  moments_.clear();
-  for (std::size_t i = group.begin; i < group.end; ++i) {
-    moments_.emplace_back(weight_[i], weight_[i] * x_[i], weight_[i] * y_[i], 0.0F);
-  }
-  const std::size_t count = static_cast<std::size_t>(k), cells = group.end - group.begin;
-
+/// The first `count` centres: cells at equal steps of the cumulative weight.
+void InitialLoops::seed(Group group, std::size_t count, Random& random, Centres& cx,
+                        Centres& cy) const {
   float total = 0.0F;
   for (std::size_t i = group.begin; i < group.end; ++i) total += weight_[i];
-  const float step = total / static_cast<float>(k);
+  const float step = total / static_cast<float>(count);
   float next = step * static_cast<float>(random.uniform()), passed = 0.0F;
   std::size_t seeds = 0;
   for (std::size_t i = group.begin; i < group.end && seeds < count; ++i) {
@@ -79,7 +69,19 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
     ++seeds;
     next += step;
   }
+}
 
+/// Lloyd's iteration from seed(): fills centres_ and label_.
+void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
+  const std::size_t count = static_cast<std::size_t>(k), cells = group.end - group.begin;
+  moments_.clear();
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    moments_.emplace_back(weight_[i], weight_[i] * x_[i], weight_[i] * y_[i], 0.0F);
+  }
+  Centres cx{}, cy{}, mass{};
+  seed(group, count, random, cx, cy);
+
+  std::array<std::array<Moments, kMaxClusters>, 2> sums;
   for (int pass = 0; pass <= passes; ++pass) {
     for (auto& half : sums) std::fill_n(half.begin(), count, Moments::Zero());
     nearest_centres({x_.data() + group.begin, cells}, {y_.data() + group.begin, cells},
@@ -98,6 +100,8 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
       cy[c] += relaxation * (sum[2] / mass[c] - cy[c]);
     }
   }
+  centres_.centre.clear();
+  centres_.mass.clear();
   for (std::size_t c = 0; c < count; ++c) {
     centres_.centre.push_back(Vec2(static_cast<double>(cx[c]), static_cast<double>(cy[c])));
     centres_.mass.push_back(static_cast<double>(mass[c]));

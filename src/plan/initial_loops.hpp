@@ -49,6 +49,7 @@ class InitialLoops {
   using Centres = std::array<float, kMaxClusters>;
   using Moments = Eigen::Array4f;  // weight, weight · x, weight · y, 0
   void weigh();
+  void seed(Group group, std::size_t count, Random& random, Centres& cx, Centres& cy) const;
   void cluster(Group group, int k, int passes, Random& random);
   void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
   void tour(const StartSettings& settings, std::span<Vec2> samples);

@@ -48,8 +48,8 @@ double CheckedMaximum(std::span<const double> values, std::span<const std::uint8
   for (; i + step <= n; i += step) {
     const auto bits = hn::BitCast(di, hn::Add(hn::LoadU(d, values.data() + i), hn::Zero(d)));
     bad = hn::Or(bad, hn::Or(bits, hn::VecFromMask(di, hn::Gt(bits, limits))));
-    const auto mask = hn::PromoteTo(di32, hn::LoadU(bytes, skin.data() + i));
-    const auto counts = hn::Gt(hn::PromoteTo(di, mask), hn::Zero(di));
+    const auto wide = hn::PromoteTo(di32, hn::LoadU(bytes, skin.data() + i));
+    const auto counts = hn::Gt(hn::PromoteTo(di, wide), hn::Zero(di));
     on_skin = hn::IfThenElse(hn::Gt(hn::IfThenElseZero(counts, bits), on_skin), bits, on_skin);
   }
   bool is_bad = hn::GetLane(hn::MinOfLanes(di, bad)) < 0;
