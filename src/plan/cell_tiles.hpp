@@ -37,7 +37,12 @@ class CellTiles {
   void set(const TargetField& target, double maximum, double width);
 
   const std::vector<CellTile>& tiles() const { return tiles_; }
-  /// Mean weight (P17) of the skin in cell c of tile t; 0 where no skin counts.
+  /// Mean weights (P17) of the skin in the cells of tile t, 0 where no skin counts; null where the
+  /// target has no weights.
+  const float* mean_weights(std::size_t t) const {
+    return mean_weight_.empty() ? nullptr : mean_weight_[t].data();
+  }
+  /// Mean weight of the skin in cell c of tile t.
   float mean_weight(std::size_t t, std::size_t c) const {
     return mean_weight_.empty() ? 1.0F : mean_weight_[t][c];
   }
@@ -45,16 +50,7 @@ class CellTiles {
   double square_norm() const { return square_; }  ///< Σ weight · pressure²
 
  private:
-  struct Block {
-    double pressure;          // sums over its skin cells, by weight: in the target's unit,
-    double col, row, weight;  // indices, and the weights themselves
-    double count;             // of cells, where the target has weights
-  };
-  void add_rows(const TargetField& target, const CellWeights* weights, int begin, int end);
-  Block sum_columns(const TargetField& target, std::size_t block, int factor) const;
-  void fill_row(const TargetField& target, std::size_t row, int factor, double cell,
-                double maximum);
-  void complete();
+  void sum_rows(const TargetField& target, const CellWeights* weights, int begin, int end);
 
   std::vector<CellTile> tiles_;
   std::vector<std::array<float, 8>> mean_weight_;  // of each tile, where the target has weights

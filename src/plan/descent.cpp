@@ -42,14 +42,16 @@ Descent::Descent(std::size_t max_tiles, int samples, const FitSettings& settings
 
 void Descent::evaluate(const CellTiles& cells, Fit& fit) {
   pairs_.update(fit.loops, settings_.shape);
-  solve(cells, fit);
+  reconstruct_(cells, fit.loops, settings_.reconstruction, Wanted::PressuresAndGradient, scratch_,
+               fit.reconstruction);
   fit.cost = fit.reconstruction.error + shape_cost(fit.loops, settings_.shape, pairs_.list(),
                                                    fit.reconstruction.gradient_x,
                                                    fit.reconstruction.gradient_y);
 }
 
 void Descent::solve(const CellTiles& cells, Fit& fit) {
-  reconstruct_(cells, fit.loops, settings_.reconstruction, scratch_, fit.reconstruction);
+  reconstruct_(cells, fit.loops, settings_.reconstruction, Wanted::Pressures, scratch_,
+               fit.reconstruction);
 }
 
 float Descent::dot(const Loops& loops, const Plane& a, const Plane& b) {

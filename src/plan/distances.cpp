@@ -52,29 +52,34 @@ void NearestCentres(std::span<const float> x, std::span<const float> y,
   if (n % step != 0) NearestOf(d, x, y, centre_x, centre_y, n - step, nearest);
 }
 
-void NodesNear(const NodeArray& x, const NodeArray& y, std::size_t nodes, std::size_t first,
-               float distance, NodeList& near) {
+/// Packs a pair in 32 bits, the first node in the lower ones.
+std::size_t PairsNear(const NodeArray& x, const NodeArray& y, std::size_t nodes, float distance,
+                      std::uint32_t* packed) {
   const hn::CappedTag<float, 8> d;
-  const hn::RebindToSigned<decltype(d)> di;
+  const hn::RebindToUnsigned<decltype(d)> du;
   const hn::Rebind<std::uint8_t, decltype(d)> bytes;
   const std::size_t step = hn::Lanes(d);
-  const auto first_x = hn::Set(d, x[first]), first_y = hn::Set(d, y[first]);
   const auto limit = hn::Set(d, distance * distance);
   std::size_t count = 0;
-  for (std::size_t b = first / step * step; b < nodes; b += step) {
-    const auto dx = hn::Sub(hn::Load(d, x.data() + b), first_x);
-    const auto dy = hn::Sub(hn::Load(d, y.data() + b), first_y);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Lt(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), limit), bits);
-    unsigned found = bits[0];
-    if (b <= first) found &= ~0U << (first + 1 - b);  // not before it, nor itself
-    if (b + step > nodes) found &= (1U << (nodes - b)) - 1U;
-    const auto places = hn::PromoteTo(di, hn::Load(bytes, kSetBits[found & 0xffU].data()));
-    hn::StoreU(hn::Add(places, hn::Set(di, static_cast<std::int32_t>(b))), di,
-               near.node.data() + count);
-    count += static_cast<std::size_t>(std::popcount(found & 0xffU));
+  for (std::size_t a = 0; a + 1 < nodes; ++a) {
+    const auto ax = hn::Set(d, x[a]), ay = hn::Set(d, y[a]);
+    const auto first = hn::Set(du, static_cast<std::uint32_t>(a));
+    const std::size_t begin = (a + 1) / step * step;
+    unsigned behind = ~0U << (a + 1 - begin);
+    for (std::size_t b = begin; b < nodes; b += step, behind = ~0U) {
+      const auto dx = hn::Sub(hn::Load(d, x.data() + b), ax);
+      const auto dy = hn::Sub(hn::Load(d, y.data() + b), ay);
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Lt(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), limit), bits);
+      unsigned found = bits[0] & behind & 0xffU;
+      if (b + step > nodes) found &= (1U << (nodes - b)) - 1U;
+      const auto places = hn::PromoteTo(du, hn::Load(bytes, kSetBits[found].data()));
+      const auto second = hn::Add(places, hn::Set(du, static_cast<std::uint32_t>(b)));
+      hn::StoreU(hn::Or(first, hn::ShiftLeft<16>(second)), du, packed + count);
+      count += static_cast<std::size_t>(std::popcount(found));
+    }
   }
-  near.count = count;
+  return count;
 }
 
 }  // namespace
@@ -86,7 +91,7 @@ HWY_AFTER_NAMESPACE();
 namespace prostm::planning {
 
 HWY_EXPORT(NearestCentres);
-HWY_EXPORT(NodesNear);
+HWY_EXPORT(PairsNear);
 
 void nearest_centres(std::span<const float> x, std::span<const float> y,
                      std::span<const float> centre_x, std::span<const float> centre_y,
@@ -94,9 +99,10 @@ void nearest_centres(std::span<const float> x, std::span<const float> y,
   HWY_DYNAMIC_DISPATCH(NearestCentres)(x, y, centre_x, centre_y, nearest);
 }
 
-void nodes_near(const NodeArray& x, const NodeArray& y, std::size_t nodes, std::size_t first,
-                float distance, NodeList& near) {
-  HWY_DYNAMIC_DISPATCH(NodesNear)(x, y, nodes, first, distance, near);
+NodePairs::NodePairs() : packed_(kMaxLoopNodes * (kMaxLoopNodes - 1) / 2 + 8) {}
+
+void NodePairs::set(const NodeArray& x, const NodeArray& y, std::size_t nodes, float distance) {
+  size_ = HWY_DYNAMIC_DISPATCH(PairsNear)(x, y, nodes, distance, packed_.data());
 }
 
 }  // namespace prostm::planning

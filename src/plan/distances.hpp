@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "plan/loops.hpp"
 
@@ -31,15 +32,27 @@ void nearest_centres(std::span<const float> x, std::span<const float> y,
                      std::span<const float> centre_x, std::span<const float> centre_y,
                      std::span<std::int32_t> nearest);
 
-/// Nodes in ascending order.
-struct NodeList {
-  std::size_t count = 0;
-  std::array<std::int32_t, kMaxLoopNodes + 8> node;  // room for a vector behind the last
+/// first < second.
+struct NodePair {
+  std::size_t first, second;
 };
 
-/// Of the first `nodes` nodes, those behind `first` that are nearer to it than `distance`.
-/// @pre x and y are aligned as a vector is.
-void nodes_near(const NodeArray& x, const NodeArray& y, std::size_t nodes, std::size_t first,
-                float distance, NodeList& near);
+/// The pairs of nodes that are near each other, in ascending order. Sized once, for as many as
+/// there can be.
+class NodePairs {
+ public:
+  NodePairs();
+
+  /// Lists the pairs of the first `nodes` nodes that are nearer than `distance`. @pre x and y are
+  /// aligned as a vector is.
+  void set(const NodeArray& x, const NodeArray& y, std::size_t nodes, float distance);
+
+  std::size_t size() const { return size_; }
+  NodePair operator[](std::size_t i) const { return {packed_[i] & 0xffffU, packed_[i] >> 16U}; }
+
+ private:
+  std::vector<std::uint32_t> packed_;  // with room for a vector behind the last
+  std::size_t size_ = 0;
+};
 
 }  // namespace prostm::planning

@@ -167,7 +167,7 @@ void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
   bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
   for (int round = 1; round == 1 || (any_long && round <= kMendRounds); ++round) {
     const auto size = static_cast<std::size_t>(paths * n);
-    paths = make_spaced(std::span<Vec2>(points_.data(), size), n, rule);
+    paths = make_spaced(std::span<Vec2>(points_.data(), size), n, rule, spacing_);
     any_long = bound_lengths(target, paths, 1.0 - round * kMendStep, rule);
   }
   if (any_long) paths = leave_out_long(target, paths, rule.least_length);

@@ -53,6 +53,7 @@ class FitPlanner {
   // scratch
   FocalPath flat_;
   std::array<Vec2, kMaxLoopNodes> points_;  // one path after the other [mm]
+  SpacingScratch spacing_;
 };
 
 }  // namespace prostm::planning

@@ -36,7 +36,7 @@ class InitialLoops {
            const std::vector<ReconstructionScratch::TileFit>& fits, int lanes,
            std::uint32_t owners);
   /// Cells with pressure.
-  std::size_t size() const { return x_.size(); }
+  std::size_t size() const { return size_; }
 
   /// Fills `loops`: as many paths as asked, or one for each cell if there are fewer.
   /// @pre size() > 0.
@@ -54,6 +54,7 @@ class InitialLoops {
   void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
   void tour(const StartSettings& settings, std::span<Vec2> samples);
 
+  std::size_t size_ = 0;
   std::vector<float> x_, y_, pressure_, weight_, sorted_[3];  // pressure_: times the cell's weight
   std::vector<std::int32_t> label_;
   std::vector<Moments> moments_;  // of the cells of the group that is clustered

@@ -129,22 +129,19 @@ void SpacedPairs::update(const Loops& loops, const ShapeSettings& settings) {
     chord[k] = kLeastChord * longest / static_cast<float>(loops.samples);
   }
   const auto paths = static_cast<std::size_t>(loops.paths);
-  for (std::size_t a = 0; a < loops.nodes(); ++a) {
-    const std::size_t k = a & (lanes - 1);
-    if (k >= paths) continue;
-    nodes_near(loops.x, loops.y, loops.nodes(), a, settings.spacing + kPairMargin, near_);
-    for (std::size_t i = 0; i < near_.count; ++i) {
-      const auto b = static_cast<std::size_t>(near_.node[i]), l = b & (lanes - 1);
-      if (l >= paths) continue;
-      float distance = settings.spacing;
-      if (k == l) {
-        const auto apart = static_cast<int>((b - a) / lanes);
-        const int steps = std::min(apart, loops.samples - apart);
-        if (steps < 2) continue;
-        distance = std::min(distance, chord[k] * static_cast<float>(steps));
-      }
-      pairs_.push_back({static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), distance});
+  near_.set(loops.x, loops.y, loops.nodes(), settings.spacing + kPairMargin);
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const auto [a, b] = near_[i];
+    const std::size_t k = a & (lanes - 1), l = b & (lanes - 1);
+    if (k >= paths || l >= paths) continue;
+    float distance = settings.spacing;
+    if (k == l) {
+      const auto apart = static_cast<int>((b - a) / lanes);
+      const int steps = std::min(apart, loops.samples - apart);
+      if (steps < 2) continue;
+      distance = std::min(distance, chord[k] * static_cast<float>(steps));
     }
+    pairs_.push_back({static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), distance});
   }
 }
 

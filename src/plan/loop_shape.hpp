@@ -44,7 +44,7 @@ class SpacedPairs {
   bool has_moved(const Loops& loops) const;
 
   std::vector<SpacedPair> pairs_;
-  NodeList near_;  // of the sample in question
+  NodePairs near_;
   alignas(64) NodeArray listed_x_, listed_y_;
   bool listed_ = false;
 };

@@ -62,26 +62,36 @@ double CheckedMaximum(std::span<const double> values, std::span<const std::uint8
   return is_bad ? -1.0 : std::bit_cast<double>(highest);
 }
 
-void AddRow(std::span<const double> values, std::span<const std::uint8_t> skin, int row,
-            const ColumnSums& sums) {
+void SumRows(std::span<const double> values, std::span<const std::uint8_t> skin, int begin, int end,
+             const ColumnSums& sums) {
   const D d;
-  const std::size_t n = values.size(), step = hn::Lanes(d);
-  const V index = hn::Set(d, static_cast<double>(row));
-  const auto add = [&](std::span<double> sum, std::size_t i, V value) HWY_ATTR {
-    hn::StoreU(hn::Add(hn::LoadU(d, sum.data() + i), value), d, sum.data() + i);
-  };
-  std::size_t i = 0;
-  for (; i + step <= n; i += step) {
-    const V one = ones(skin.data() + i);
-    add(sums.value, i, hn::Mul(one, hn::LoadU(d, values.data() + i)));
-    add(sums.count, i, one);
-    add(sums.row, i, hn::Mul(one, index));
+  const std::size_t n = sums.value.size(), step = hn::Lanes(d);
+  const std::size_t first = static_cast<std::size_t>(begin) * n;
+  const std::size_t last = static_cast<std::size_t>(end) * n;
+  const auto first_row = static_cast<double>(begin);
+  std::size_t col = 0;
+  for (; col + step <= n; col += step) {
+    V value = hn::Zero(d), count = hn::Zero(d), rows = hn::Zero(d), row = hn::Set(d, first_row);
+    for (std::size_t i = first + col; i < last; i += n) {
+      const V one = ones(skin.data() + i);
+      value = hn::MulAdd(one, hn::LoadU(d, values.data() + i), value);
+      count = hn::Add(count, one);
+      rows = hn::MulAdd(one, row, rows);
+      row = hn::Add(row, hn::Set(d, 1.0));
+    }
+    hn::StoreU(value, d, sums.value.data() + col);
+    hn::StoreU(count, d, sums.count.data() + col);
+    hn::StoreU(rows, d, sums.row.data() + col);
   }
-  for (; i < n; ++i) {
-    if (skin[i] == 0) continue;
-    sums.value[i] += values[i];
-    sums.count[i] += 1.0;
-    sums.row[i] += row;
+  for (; col < n; ++col) {
+    sums.value[col] = sums.count[col] = sums.row[col] = 0.0;
+    for (int row = begin; row < end; ++row) {
+      const std::size_t i = static_cast<std::size_t>(row) * n + col;
+      if (skin[i] == 0) continue;
+      sums.value[col] += values[i];
+      sums.count[col] += 1.0;
+      sums.row[col] += row;
+    }
   }
 }
 
@@ -95,7 +105,7 @@ namespace prostm::planning {
 namespace {
 
 HWY_EXPORT(CheckedMaximum);
-HWY_EXPORT(AddRow);
+HWY_EXPORT(SumRows);
 
 }  // namespace
 
@@ -104,9 +114,9 @@ double checked_maximum(std::span<const double> values, std::span<const std::uint
   return HWY_DYNAMIC_DISPATCH(CheckedMaximum)(values, skin, most);
 }
 
-void add_row(std::span<const double> values, std::span<const std::uint8_t> skin, int row,
-             const ColumnSums& sums) {
-  HWY_DYNAMIC_DISPATCH(AddRow)(values, skin, row, sums);
+void sum_rows(std::span<const double> values, std::span<const std::uint8_t> skin, int begin,
+              int end, const ColumnSums& sums) {
+  HWY_DYNAMIC_DISPATCH(SumRows)(values, skin, begin, end, sums);
 }
 
 }  // namespace prostm::planning

@@ -18,8 +18,9 @@ struct ColumnSums {
   std::span<double> row;    ///< of their rows' indices
 };
 
-/// Adds a row. @pre all sizes are equal; values are finite.
-void add_row(std::span<const double> values, std::span<const std::uint8_t> skin, int row,
-             const ColumnSums& sums);
+/// Sets the sums over rows [begin, end). @param values, skin the whole raster, row by row, with as
+/// many columns as there are sums. @pre values are finite.
+void sum_rows(std::span<const double> values, std::span<const std::uint8_t> skin, int begin,
+              int end, const ColumnSums& sums);
 
 }  // namespace prostm::planning

@@ -175,11 +175,12 @@ void gather_gradient(const Loops& loops, const ReconstructionSettings& settings,
 }
 
 void reconstruct_plain(const CellTiles& cells, const Loops& loops,
-                       const ReconstructionSettings& settings, ReconstructionScratch& scratch,
-                       Reconstruction& out) {
+                       const ReconstructionSettings& settings, Wanted wanted,
+                       ReconstructionScratch& scratch, Reconstruction& out) {
   scratch.clear(loops);
   fit_cells(cells, loops, settings.sigma, scratch);
   solve_pressures(loops, settings, scratch, out);
+  if (wanted == Wanted::Pressures) return;
   out.error = pull_segments(cells, loops, settings, scratch, out);
   gather_gradient(loops, settings, scratch, out);
 }

@@ -247,7 +247,7 @@ HWY_INLINE V pull_tile(const CellTile& tile, const ReconstructionScratch::TileFi
 }
 
 void Reconstruct(const CellTiles& cells, const Loops& loops, const ReconstructionSettings& settings,
-                 ReconstructionScratch& scratch, Reconstruction& out) {
+                 Wanted wanted, ReconstructionScratch& scratch, Reconstruction& out) {
   const D d;
   Segments segments;
   scratch.clear(loops);
@@ -258,6 +258,7 @@ void Reconstruct(const CellTiles& cells, const Loops& loops, const Reconstructio
     fit_tile(tiles[i], settings.sigma, segments, scratch.fits[i], scratch);
   }
   solve_pressures(loops, settings, scratch, out);
+  if (wanted == Wanted::Pressures) return;
   Quartet at_node[kMaxLoopNodes];
   for (std::size_t i = 0; i < segments.count; ++i) {
     const auto a = static_cast<std::size_t>(segments.node[i]), over = a + lanes;
@@ -285,8 +286,8 @@ namespace {
 HWY_EXPORT(Reconstruct);
 
 void reconstruct(const CellTiles& cells, const Loops& loops, const ReconstructionSettings& settings,
-                 ReconstructionScratch& scratch, Reconstruction& out) {
-  HWY_DYNAMIC_DISPATCH(Reconstruct)(cells, loops, settings, scratch, out);
+                 Wanted wanted, ReconstructionScratch& scratch, Reconstruction& out) {
+  HWY_DYNAMIC_DISPATCH(Reconstruct)(cells, loops, settings, wanted, scratch, out);
 }
 
 }  // namespace

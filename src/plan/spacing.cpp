@@ -12,20 +12,23 @@ namespace {
 
 constexpr int kRounds = 60;         // of pushing apart
 constexpr double kPushGoal = 1.02;  // pushed samples get this times the spacing
-constexpr double kRounding = 1e-6;  // of single precision, several times over
+constexpr double kSlack = 0.7;      // how far samples move before near pairs are listed anew [mm]
+constexpr double kRounding = 1e-4;  // share of a distance, far more than single precision costs
 
 using Loop = std::span<Vec2>;
 using ConstLoop = std::span<const Vec2>;
 
-/// Arc length of each sample of each path, and the paths' lengths.
+/// Path and arc length of each sample, and the paths' lengths.
 struct Measures {
-  std::array<double, static_cast<std::size_t>(kMaxPaths) * kMaxPathPoints> at;
+  std::array<std::uint8_t, kMaxLoopNodes> path;
+  std::array<double, kMaxLoopNodes> at;
   std::array<double, kMaxPaths> length{};
 
   Measures(ConstLoop x, std::size_t n) {
     for (std::size_t k = 0; k * n < x.size(); ++k) {
       const ConstLoop loop = x.subspan(k * n, n);
       for (std::size_t i = 0; i < n; ++i) {
+        path[k * n + i] = static_cast<std::uint8_t>(k);
         at[k * n + i] = length[k];
         length[k] += (loop[i + 1 < n ? i + 1 : 0] - loop[i]).norm();
       }
@@ -36,82 +39,96 @@ struct Measures {
 /// Calls visit(a, b, distance) for the pairs of samples that are nearer than `reach` and count. It
 /// may move the samples: those that this brings near enough are for the next time.
 template <typename Visit>
-void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, const Visit& visit) {
+void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, NearSamples& near,
+                    const Visit& visit) {
   const Measures measured(x, n);
-  // in single precision with a margin for its rounding, then exactly
-  alignas(64) NodeArray rough_x{}, rough_y{};
-  double largest = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    rough_x[i] = static_cast<float>(x[i].x());
-    rough_y[i] = static_cast<float>(x[i].y());
-    largest = std::max(largest, x[i].cwiseAbs().maxCoeff());
-  }
-  const auto rough_reach = static_cast<float>(reach + kRounding * (reach + largest));
-  NodeList near;
-  for (std::size_t a = 0; a < x.size(); ++a) {
-    nodes_near(rough_x, rough_y, x.size(), a, rough_reach, near);
-    for (std::size_t i = 0; i < near.count; ++i) {
-      const auto b = static_cast<std::size_t>(near.node[i]);
-      const double squared = (x[b] - x[a]).squaredNorm();
-      if (squared >= reach * reach) continue;
-      if (a / n == b / n) {
-        const double apart = measured.at[b] - measured.at[a];
-        if (std::min(apart, measured.length[a / n] - apart) <= along) continue;
-      }
-      visit(a, b, std::sqrt(squared));
+  const NodePairs& pairs = near.list(x, reach);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto [a, b] = pairs[i];
+    const double squared = (x[b] - x[a]).squaredNorm();
+    if (squared >= reach * reach) continue;
+    const std::size_t path = measured.path[a];
+    if (path == measured.path[b]) {
+      const double apart = measured.at[b] - measured.at[a];
+      if (std::min(apart, measured.length[path] - apart) <= along) continue;
     }
+    visit(a, b, std::sqrt(squared));
   }
 }
 
-bool crosses_any(ConstLoop x, std::size_t n, ConstLoop loop) {
+/// Whether any segments that are not neighbours cross. Two that cross have middles that are no
+/// farther apart than half of each.
+bool has_crossings(ConstLoop x, std::size_t n, NodePairs& near) {
+  alignas(64) NodeArray middle_x{}, middle_y{};
+  std::array<std::uint16_t, kMaxLoopNodes> next;
+  double longest2 = 0.0;
   for (std::size_t begin = 0; begin < x.size(); begin += n) {
-    if (count_crossings(x.subspan(begin, n), loop) > 0) return true;
+    for (std::size_t a = begin; a < begin + n; ++a) {
+      const std::size_t b = a + 1 < begin + n ? a + 1 : begin;
+      const Vec2 middle = 0.5 * (x[a] + x[b]) - x[0];
+      middle_x[a] = static_cast<float>(middle.x());
+      middle_y[a] = static_cast<float>(middle.y());
+      next[a] = static_cast<std::uint16_t>(b);
+      longest2 = std::max(longest2, (x[b] - x[a]).squaredNorm());
+    }
+  }
+  near.set(middle_x, middle_y, x.size(),
+           static_cast<float>(std::sqrt(longest2) * (1.0 + kRounding) + kClearance));
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto [s, t] = near[i];
+    if (next[s] == t || next[t] == s) continue;
+    if (segments_cross(x[s], x[next[s]], x[t], x[next[t]])) return true;
   }
   return false;
 }
 
-bool is_valid(ConstLoop x, std::size_t n, const SpacingRule& rule) {
+bool is_valid(ConstLoop x, std::size_t n, const SpacingRule& rule, SpacingScratch& scratch) {
   for (std::size_t begin = 0; begin < x.size(); begin += n) {
     const ConstLoop loop = x.subspan(begin, n);
-    if (loop_length(loop) > rule.most_length[begin / n] * (1.0 + 1e-9) || !is_simple(loop))
+    if (loop_length(loop) > rule.most_length[begin / n] * (1.0 + 1e-9) || folds_back(loop)) {
       return false;
-    if (crosses_any(x.first(begin), n, loop)) return false;
+    }
   }
-  return count_near_pairs(x, static_cast<int>(n), rule) == 0;
+  bool near = false;
+  for_near_pairs(x, n, rule.spacing, rule.along, scratch.samples,
+                 [&](std::size_t, std::size_t, double) { near = true; });
+  return !near && !has_crossings(x, n, scratch.segments);
 }
 
 /// Moves samples that are too near away from each other until none is, or the rounds end.
-void push_apart(Loop x, std::size_t n, const SpacingRule& rule) {
+void push_apart(Loop x, std::size_t n, const SpacingRule& rule, SpacingScratch& scratch) {
   const double goal = kPushGoal * rule.spacing;
   for (int round = 0; round < kRounds; ++round) {
-    bool near = false;
-    for_near_pairs(x, n, goal, rule.along, [&](std::size_t a, std::size_t b, double distance) {
-      near = near || distance < rule.spacing;
-      // coinciding samples part along x
-      const Vec2 way = distance > 1e-6 ? Vec2((x[b] - x[a]) / distance) : Vec2(1.0, 0.0);
-      const Vec2 push = 0.5 * (goal - distance) * way;
-      x[a] -= push;
-      x[b] += push;
-    });
+    bool any = false;
+    for_near_pairs(x, n, goal, rule.along, scratch.samples,
+                   [&](std::size_t a, std::size_t b, double distance) {
+                     any = any || distance < rule.spacing;
+                     // coinciding samples part along x
+                     const Vec2 way =
+                         distance > 1e-6 ? Vec2((x[b] - x[a]) / distance) : Vec2(1.0, 0.0);
+                     const Vec2 push = 0.5 * (goal - distance) * way;
+                     x[a] -= push;
+                     x[b] += push;
+                   });
     for (std::size_t begin = 0; begin < x.size(); begin += n) {
       shorten(x.subspan(begin, n), rule.most_length[begin / n]);
     }
-    if (!near) return;
+    if (!any) return;
   }
 }
 
 /// Keeps the paths that are valid beside those before, as they are or as circles.
-std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule) {
+std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule, SpacingScratch& scratch) {
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < x.size(); begin += n) {
     const Loop place = x.subspan(kept, n);
     const Vec2 centre = centroid(x.subspan(begin, n));
     rule.most_length[kept / n] = rule.most_length[begin / n];
     std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(begin), n, place.begin());
-    bool valid = is_valid(x.first(kept + n), n, rule);
+    bool valid = is_valid(x.first(kept + n), n, rule, scratch);
     if (!valid) {
       make_circle(place, centre, std::min(rule.least_length, rule.most_length[kept / n]));
-      valid = kept == 0 || is_valid(x.first(kept + n), n, rule);
+      valid = kept == 0 || is_valid(x.first(kept + n), n, rule, scratch);
     }
     if (valid) kept += n;
   }
@@ -120,22 +137,43 @@ std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule) {
 
 }  // namespace
 
+const NodePairs& NearSamples::list(std::span<const Vec2> x, double reach) {
+  const auto has_moved = [&](std::size_t i) {
+    return (x[i] - listed_at_[i]).squaredNorm() > kSlack * kSlack;
+  };
+  bool stale = listed_at_.size() != x.size() || std::abs(reach_ - reach) > kSlack;
+  for (std::size_t i = 0; i < x.size() && !stale; ++i) stale = has_moved(i);
+  if (!stale) return pairs_;
+  listed_at_.assign(x.begin(), x.end());
+  reach_ = reach;
+  alignas(64) NodeArray rough_x{}, rough_y{};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    rough_x[i] = static_cast<float>(x[i].x() - x[0].x());
+    rough_y[i] = static_cast<float>(x[i].y() - x[0].y());
+  }
+  // both samples may move by the slack, and the reach may be larger by it the next time
+  pairs_.set(rough_x, rough_y, x.size(),
+             static_cast<float>((reach + 3.0 * kSlack) * (1.0 + kRounding)));
+  return pairs_;
+}
+
 int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& rule) {
   int count = 0;
-  for_near_pairs(x, static_cast<std::size_t>(samples), rule.spacing, rule.along,
+  NearSamples near;
+  for_near_pairs(x, static_cast<std::size_t>(samples), rule.spacing, rule.along, near,
                  [&](std::size_t, std::size_t, double) { ++count; });
   return count;
 }
 
-int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule) {
+int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule, SpacingScratch& scratch) {
   const auto n = static_cast<std::size_t>(samples);
   for (std::size_t begin = 0; begin < x.size(); begin += n) {
     shorten(x.subspan(begin, n), rule.most_length[begin / n]);
   }
-  if (is_valid(x, n, rule)) return static_cast<int>(x.size() / n);
-  push_apart(x, n, rule);
-  if (is_valid(x, n, rule)) return static_cast<int>(x.size() / n);
-  return static_cast<int>(keep_valid(x, n, rule) / n);
+  if (is_valid(x, n, rule, scratch)) return static_cast<int>(x.size() / n);
+  push_apart(x, n, rule, scratch);
+  if (is_valid(x, n, rule, scratch)) return static_cast<int>(x.size() / n);
+  return static_cast<int>(keep_valid(x, n, rule, scratch) / n);
 }
 
 }  // namespace prostm::planning

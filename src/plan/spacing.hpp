@@ -4,8 +4,10 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "core/geometry.hpp"
+#include "plan/distances.hpp"
 #include "plan/plan.hpp"
 
 namespace prostm::planning {
@@ -20,6 +22,28 @@ struct SpacingRule {
                               ///< where the path's most_length is
 };
 
+/// The pairs of samples that are near each other, listed with a margin so that the list serves
+/// while the samples move a little. Sized once.
+class NearSamples {
+ public:
+  NearSamples() { listed_at_.reserve(kMaxLoopNodes); }
+
+  /// The pairs of samples nearer than `reach`, and some that are not. @pre at most kMaxLoopNodes
+  /// samples.
+  const NodePairs& list(std::span<const Vec2> x, double reach);
+
+ private:
+  NodePairs pairs_;
+  std::vector<Vec2> listed_at_;
+  double reach_ = 0.0;
+};
+
+/// Working memory of make_spaced().
+struct SpacingScratch {
+  NearSamples samples;
+  NodePairs segments;
+};
+
 /// Pairs of samples that are nearer than the rule allows. @param x paths of `samples` points each.
 int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& rule);
 
@@ -27,6 +51,6 @@ int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& ru
 /// other apart; where that does not end well, a path is replaced by a circle about its centroid or
 /// left out, the first ones of `x` staying as they are if they can. The kept ones are moved to the
 /// front. @return how many are kept, at least one.
-int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule);
+int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule, SpacingScratch& scratch);
 
 }  // namespace prostm::planning

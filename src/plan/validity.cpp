@@ -197,16 +197,20 @@ int count_crossings(std::span<const Vec2> a, std::span<const Vec2> b) {
   return count;
 }
 
-bool is_simple(std::span<const Vec2> loop) {
+bool folds_back(std::span<const Vec2> loop) {
   const std::size_t n = loop.size();
   for (std::size_t i = 0, last = n - 1; i < n; last = i++) {
     const Vec2 &before = loop[last], &x = loop[i], &after = loop[i + 1 < n ? i + 1 : 0];
     if (std::min(point_segment_distance2(after, before, x),
                  point_segment_distance2(before, x, after)) < kClearance * kClearance) {
-      return false;
+      return true;
     }
   }
-  return count_self_crossings(loop) == 0;
+  return false;
+}
+
+bool is_simple(std::span<const Vec2> loop) {
+  return !folds_back(loop) && count_self_crossings(loop) == 0;
 }
 
 int make_valid(std::span<Vec2> x, int samples, double max_length) {

@@ -33,6 +33,9 @@ int count_self_crossings(std::span<const Vec2> loop);
 /// Pairs of segments of two closed polygons that cross.
 int count_crossings(std::span<const Vec2> a, std::span<const Vec2> b);
 
+/// Whether a segment folds back on its neighbour, or their points coincide.
+bool folds_back(std::span<const Vec2> loop);
+
 /// No two non-adjacent segments cross, no segment folds back on its neighbour and no points
 /// coincide.
 bool is_simple(std::span<const Vec2> loop);

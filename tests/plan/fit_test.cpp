@@ -142,8 +142,8 @@ TEST(Reconstruction, VectorKernelAgreesWithThePlainOne) {
                  8 + random.below(30), seed);
     ReconstructionScratch plain_scratch(CellTiles::kMaxTiles), scratch(CellTiles::kMaxTiles);
     Reconstruction plain, vector;
-    reconstruct_plain(c.cells, c.loops, {}, plain_scratch, plain);
-    fast_reconstruct()(c.cells, c.loops, {}, scratch, vector);
+    reconstruct_plain(c.cells, c.loops, {}, Wanted::PressuresAndGradient, plain_scratch, plain);
+    fast_reconstruct()(c.cells, c.loops, {}, Wanted::PressuresAndGradient, scratch, vector);
     ASSERT_NEAR(vector.error, plain.error, 1e-5F * plain.error) << seed;
     const Ties ties = ties_of(c, plain_scratch, scratch);
     compared += ties != Ties::Between ? 1 : 0;
@@ -212,7 +212,7 @@ TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {
   settings.weight_coverage = 0.0F;
   ReconstructionScratch scratch(CellTiles::kMaxTiles);
   Reconstruction out;
-  reconstruct_plain(c.cells, c.loops, settings, scratch, out);
+  reconstruct_plain(c.cells, c.loops, settings, Wanted::PressuresAndGradient, scratch, out);
   const auto error = [&](const NodeArray& pressure) {
     double sum = 0.0;
     for (std::size_t t = 0; t < c.cells.tiles().size(); ++t) {
@@ -543,7 +543,8 @@ TEST(Spacing, PushesApartWhatIsTooNear) {
     }
   }
   ASSERT_GT(count_near_pairs(x, 20, rule), 0);
-  const int kept = make_spaced(x, 20, rule);
+  SpacingScratch scratch;
+  const int kept = make_spaced(x, 20, rule, scratch);
   ASSERT_GE(kept, 1);
   x.resize(static_cast<std::size_t>(kept) * 20);
   EXPECT_EQ(count_near_pairs(x, 20, rule), 0);
