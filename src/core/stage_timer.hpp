@@ -25,4 +25,11 @@ class StageTimer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// A moment on a timer; without one, never.
+struct Deadline {
+  const StageTimer* timer = nullptr;
+  double at = 0.0;  ///< [s]
+  bool has_passed() const { return timer != nullptr && timer->seconds() >= at; }
+};
+
 }  // namespace prostm

@@ -163,7 +163,7 @@ void copy(const Fit& from, Fit& to) {
 
 }  // namespace
 
-int Descent::run(const CellTiles& cells, Fit& fit, int evaluations) {
+int Descent::run(const CellTiles& cells, Fit& fit, int evaluations, const Deadline& deadline) {
   pairs_.clear();
   forget();
   evaluate(cells, fit);
@@ -171,7 +171,8 @@ int Descent::run(const CellTiles& cells, Fit& fit, int evaluations) {
   trial_.loops.samples = fit.loops.samples;
   trial_.loops.paths = fit.loops.paths;
   trial_.loops.lanes = fit.loops.lanes;
-  while (used < evaluations) {
+  const auto may_go_on = [&] { return used < evaluations && !deadline.has_passed(); };
+  while (may_go_on()) {
     find_direction(fit.loops, fit.reconstruction);
     float slope = 0.0F, longest2 = 0.0F;
     for (std::size_t i = 0; i < fit.loops.nodes(); ++i) {
@@ -189,7 +190,7 @@ int Descent::run(const CellTiles& cells, Fit& fit, int evaluations) {
     float length = std::min(1.0F, most / std::sqrt(longest2));
     if (remembered_ == 0) length = most / std::sqrt(longest2);
     bool lower = false;
-    for (int halving = 0; halving <= kHalvings && used < evaluations; ++halving, length *= 0.4F) {
+    for (int halving = 0; halving <= kHalvings && may_go_on(); ++halving, length *= 0.4F) {
       for (std::size_t i = 0; i < fit.loops.nodes(); ++i) {
         trial_.loops.x[i] = fit.loops.x[i] + length * direction_.x[i];
         trial_.loops.y[i] = fit.loops.y[i] + length * direction_.y[i];

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/stage_timer.hpp"
 #include "plan/loop_shape.hpp"
 #include "plan/loops.hpp"
 #include "plan/reconstruction.hpp"
@@ -38,9 +39,10 @@ class Descent {
   void solve(const CellTiles& cells, Fit& fit);
   /// The same, and `fit.cost`.
   void evaluate(const CellTiles& cells, Fit& fit);
-  /// Moves the samples downhill for at most `evaluations` evaluations; the cost never rises.
-  /// @return evaluations used; fewer when no step lowers the cost.
-  int run(const CellTiles& cells, Fit& fit, int evaluations);
+  /// Moves the samples downhill for at most `evaluations` evaluations, the last of which begins
+  /// before the deadline if it is not the first; the cost never rises.
+  /// @return evaluations used; fewer also when no step lowers the cost.
+  int run(const CellTiles& cells, Fit& fit, int evaluations, const Deadline& deadline = {});
 
  private:
   static constexpr std::size_t kMemory = 5;

@@ -17,6 +17,7 @@ constexpr double kAlongShare = 2.0;    // of σ: nearer along the path, spacing 
 constexpr double kRounding = 1e-4;     // share of a bound that single precision may cost
 constexpr double kFastWidth = 6.0;     // of the cells of preset fast [mm]
 constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4;
+constexpr int kFastRegionPasses = 3, kFastStopPasses = 2;
 constexpr int kMendRounds = 8;      // at most, on uneven skin
 constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
 constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on any skin
@@ -33,6 +34,8 @@ SearchSettings search_settings(const PlanSettings& s, Preset preset) {
     search.start_evaluations = kFastEvaluations;
     search.warm_evaluations = kFastWarmEvaluations;
     search.final_evaluations = 0;
+    search.region_passes = kFastRegionPasses;
+    search.stop_passes = kFastStopPasses;
     search.coarse_width = search.fine_width = kFastWidth;
     return search;
   }

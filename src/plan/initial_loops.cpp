@@ -9,7 +9,6 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kRegionPasses = 3, kStopPasses = 2;  // of Lloyd's iteration
 constexpr float kRelaxation = 1.5F;  // centres overshoot their mean: fewer passes do the same
 
 }  // namespace
@@ -167,7 +166,7 @@ void InitialLoops::make(const StartSettings& settings, int samples, Random& rand
   weigh();
   const int regions = std::min(settings.paths, static_cast<int>(size_));
   std::array<Group, kMaxPaths> groups{};
-  cluster({0, size_}, regions, kRegionPasses, random);
+  cluster({0, size_}, regions, settings.region_passes, random);
   sort_by_label(regions, groups);
   const auto last = std::remove_if(groups.begin(), groups.begin() + regions,
                                    [](const Group& g) { return g.begin == g.end; });
@@ -179,8 +178,8 @@ void InitialLoops::make(const StartSettings& settings, int samples, Random& rand
   const std::span<Vec2> points(storage.data(), static_cast<std::size_t>(samples));
   for (int k = 0; k < paths; ++k) {
     const Group group = groups[static_cast<std::size_t>(k)];
-    cluster(group, std::min(settings.stops, static_cast<int>(group.end - group.begin)), kStopPasses,
-            random);
+    cluster(group, std::min(settings.stops, static_cast<int>(group.end - group.begin)),
+            settings.stop_passes, random);
     tour(settings, points);
     for (int i = 0; i < samples; ++i) loops.set_point(i, k, points[static_cast<std::size_t>(i)]);
   }

@@ -17,8 +17,9 @@ namespace prostm::planning {
 /// How one start differs from another.
 struct StartSettings {
   int paths = 4;
-  int stops = 16;            ///< clusters that each path tours, at most
-  double most_length = 140;  ///< of a tour [mm]
+  int stops = 16;                          ///< clusters that each path tours, at most
+  double most_length = 140;                ///< of a tour [mm]
+  int region_passes = 6, stop_passes = 4;  ///< of Lloyd's iteration
 };
 
 /// Weighted k-means twice: the cells with pressure into one region for each path, each region into

@@ -141,9 +141,11 @@ void PhaseCosts::descend(std::span<int> arc, std::span<const bool> free) const {
         const float* const from = &row(k, j)[static_cast<std::size_t>(arcs_ - arc[j])];
         for (std::size_t a = 0; a < n; ++a) cost[a] += from[a];
       }
-      const auto least = std::min_element(cost.begin(), cost.begin() + arcs_);
-      if (*least >= (1.0F - kRounding) * cost[static_cast<std::size_t>(arc[k])]) continue;
-      arc[k] = static_cast<int>(least - cost.begin());
+      // the place of the least only where it is wanted: a search for it is hard to foretell
+      float least = cost[0];
+      for (std::size_t a = 1; a < n; ++a) least = std::min(least, cost[a]);
+      if (least >= (1.0F - kRounding) * cost[static_cast<std::size_t>(arc[k])]) continue;
+      arc[k] = static_cast<int>(std::find(cost.begin(), cost.end(), least) - cost.begin());
       lowers = true;
     }
   }

@@ -13,9 +13,10 @@ constexpr float kLost = 1.4F;   // rise of the cost, relative to the target's, t
 constexpr float kPoor =
     0.1F;  // cost, relative to the target's, of paths that are not worth keeping
 constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
-constexpr int kSpare = 2;              // evaluations, since their time varies
-constexpr int kLeastEvaluations = 4;   // of a start where there must be one
-constexpr double kKept = 0.97;         // of a budget, so that it is not overrun by a little
+// of a budget, so that it is not overrun by a little: a share of it, but no more than [s]
+constexpr double kSpareShare = 0.045, kSpareTime = 2e-4;
+constexpr int kSpare = 2;             // evaluations, since their time varies
+constexpr int kLeastEvaluations = 4;  // of a start where there must be one
 // of a budget, at most: for the finish on finer cells, or on those of the search
 constexpr double kFinishShare = 0.35, kSameShare = 0.15;
 constexpr double kLearning = 0.2;
@@ -60,7 +61,7 @@ Search::Search(std::size_t max_cells, const FitSettings& fit, const SearchSettin
 
 void Search::set_target(const TargetField& target, double maximum, double budget) {
   timer_.restart();
-  budget_ = kKept * budget;
+  budget_ = budget - std::min(kSpareShare * budget, kSpareTime);
   coarse_.set(target, maximum, settings_.coarse_width);
   if (settings_.fine_width < settings_.coarse_width) {
     fine_.set(target, maximum, settings_.fine_width);
@@ -92,10 +93,11 @@ int Search::affordable(int evaluations) const {
              : static_cast<int>(std::min(left, static_cast<double>(evaluations)));
 }
 
-/// Descent::run, timed.
-int Search::descend(const CellTiles& cells, int evaluations, Fit& fit) {
+/// Descent::run, timed. @param end when it must, where there is a budget.
+int Search::descend(const CellTiles& cells, int evaluations, double end, Fit& fit) {
   const double start = timer_.seconds();
-  const int used = descent_.run(cells, fit, evaluations);
+  const Deadline deadline{budget_ > 0.0 ? &timer_ : nullptr, end - evaluation_time(cells)};
+  const int used = descent_.run(cells, fit, evaluations, deadline);
   const double each =
       (timer_.seconds() - start) / (used * static_cast<double>(cells.tiles().size()));
   tile_time_ = learnt(tile_time_, each);
@@ -106,6 +108,8 @@ StartSettings Search::draw_start(int paths) {
   StartSettings start;
   start.paths = paths;
   start.stops = kFewestStops + random_.below(kMoreStops);
+  start.region_passes = settings_.region_passes;
+  start.stop_passes = settings_.stop_passes;
   start.most_length = static_cast<double>(descent_.settings().shape.most_length[0]);
   return start;
 }
@@ -134,14 +138,18 @@ int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& b
   initial_.set(coarse_, static_cast<float>(settings_.weak));
   for (int start = 0; start < starts; ++start) {
     int evaluations = affordable(most);
+    double end = search_end_;
     // without paths that are worth keeping, one start there must be
-    if (best.cost > kPoor * static_cast<float>(coarse_.square_norm())) {
-      evaluations = std::max(evaluations, std::min(kLeastEvaluations, most));
+    const bool is_poor =
+        start == 0 && best.cost > kPoor * static_cast<float>(coarse_.square_norm());
+    if (is_poor && evaluations < kLeastEvaluations) {
+      evaluations = std::min(kLeastEvaluations, most);
+      end = std::numeric_limits<double>::infinity();
     }
     if (evaluations == 0) break;
     const int count = start == 0 ? paths : paths - random_.below(paths - needed + 1);
     initial_.make(draw_start(count), settings_.samples, random_, trial_.loops);
-    used += descend(coarse_, evaluations, trial_);
+    used += descend(coarse_, evaluations, end, trial_);
     if (trial_.cost < best.cost - hysteresis) {
       best = trial_;
       hysteresis = 0.0F;
@@ -174,7 +182,7 @@ int Search::try_kicks(Fit& best) {
       trial_.loops.set_point(i, first, laid_.point(i, 0));
       if (count == 2) trial_.loops.set_point(i, second, laid_.point(i, 1));
     }
-    used += descend(coarse_, evaluations, trial_);
+    used += descend(coarse_, evaluations, search_end_, trial_);
     if (trial_.cost < best.cost) best = trial_;
   }
   return used;
@@ -191,7 +199,7 @@ int Search::run(int paths, bool continues, Fit& best) {
     // something new is to be tried in every plan
     const int all = affordable(std::numeric_limits<int>::max());
     const int few = std::min(static_cast<int>(kWarmShare * all), all - kFewestEvaluations - kSpare);
-    used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), best);
+    used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), search_end_, best);
     // where the target has changed more than the paths can follow, start as if there were none; not
     // only against the plan before, or paths could be left behind little by little
     const bool lost = best.cost > std::min(kLost * reached_, kPoor) * norm;
@@ -207,6 +215,7 @@ int Search::run(int paths, bool continues, Fit& best) {
 }
 
 void Search::learn_ending(double seconds) {
+  ending_deviation_ = learnt(ending_deviation_, std::abs(seconds - ending_time_));
   ending_time_ = learnt(ending_time_, seconds);
 }
 
@@ -218,7 +227,7 @@ int Search::finish(const std::array<float, kMaxPaths>& most_length, Fit& fit) {
     const double left = (finish_end() - timer_.seconds()) / evaluation_time(finish_cells());
     evaluations = std::clamp(static_cast<int>(left), 1, evaluations);
   }
-  const int used = evaluations > 0 ? descend(finish_cells(), evaluations, fit) : 0;
+  const int used = evaluations > 0 ? descend(finish_cells(), evaluations, finish_end(), fit) : 0;
   descent_.settings().shape.most_length = unbound;
   return used;
 }

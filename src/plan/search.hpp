@@ -25,6 +25,8 @@ struct SearchSettings {
   double hysteresis = 0.03;    ///< by which a new start must be cheaper than the plan before
   double coarse_width = 4.0;   ///< of the cells that starts and kicks are tried on [mm]
   double fine_width = 2.0;     ///< of the cells that the winner is finished on [mm]
+  int region_passes = 6;       ///< of clustering the cells into one region for each path
+  int stop_passes = 4;         ///< of clustering a region into stops
   double weak = 0.01;          ///< cells below are not toured, over the highest
   std::uint64_t seed = 1;
 };
@@ -59,10 +61,10 @@ class Search {
   int try_kicks(Fit& best);
   const CellTiles& finish_cells() const { return finish_fine_ ? fine() : coarse_; }
   double evaluation_time(const CellTiles& cells) const;
-  double finish_end() const { return budget_ - kEndingMargin * ending_time_; }
+  double finish_end() const { return budget_ - ending_time_ - kDeviations * ending_deviation_; }
   void share_budget();
   int affordable(int evaluations) const;
-  int descend(const CellTiles& cells, int evaluations, Fit& fit);
+  int descend(const CellTiles& cells, int evaluations, double end, Fit& fit);
 
   SearchSettings settings_;
   CellTiles coarse_, fine_;
@@ -73,10 +75,11 @@ class Search {
   Loops laid_;
   StageTimer timer_;
   float reached_ = 0.0F;  // least cost since starts were made, over the target's square norm
-  static constexpr double kEndingMargin = 1.2;  // since the ending's time varies
+  static constexpr double kDeviations = 3.0;  // since the ending's time varies
   // for a budget: time of an evaluation per tile and of what follows the finish, as measured, and
   // when starts and kicks must end, so that the finish is in time [s]
-  double budget_ = 0.0, tile_time_ = 1.5e-7, ending_time_ = 1e-4, search_end_ = 0.0;
+  double budget_ = 0.0, tile_time_ = 1.5e-7, search_end_ = 0.0;
+  double ending_time_ = 1e-4, ending_deviation_ = 2e-5;
   bool finish_fine_ = true;  // whether there is time to finish on the fine cells
 };
 

@@ -34,7 +34,8 @@ void FillTiles(const BlockRow& blocks, std::size_t half, std::span<CellTile> til
   const auto load = [&](const double* from) HWY_ATTR {
     return blocks.factor == 1 ? hn::LoadU(d, from) : hn::GatherIndex(d, from, stride);
   };
-  const auto store = [&](W value, float* to) HWY_ATTR { hn::StoreU(hn::DemoteTo(df, value), df, to); };
+  const auto store = [&](W value, float* to)
+                         HWY_ATTR { hn::StoreU(hn::DemoteTo(df, value), df, to); };
   for (std::size_t t = 0; t < tiles.size(); ++t) {
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
       const std::size_t k = 4 * half + lane, first = (4 * t + lane) * blocks.factor;
@@ -111,8 +112,8 @@ TileSums CompleteTiles(std::vector<CellTile>& tiles, MeanWeights& mean_weight) {
     V square = hn::Zero(d);
     for (std::size_t c = 0; c < 8; c += hn::Lanes(d)) {
       const V pressure = hn::Load(d, tile.pressure + c);
-      const V mean = mean_weight.empty() ? hn::Set(d, 1.0F)
-                                         : hn::LoadU(d, mean_weight[kept].data() + c);
+      const V mean =
+          mean_weight.empty() ? hn::Set(d, 1.0F) : hn::LoadU(d, mean_weight[kept].data() + c);
       peak = hn::Max(peak, hn::Mul(mean, pressure));
       square = hn::MulAdd(hn::Mul(hn::Load(d, tile.weight + c), pressure), pressure, square);
     }

@@ -73,7 +73,9 @@ void resample_polygon(std::size_t count, const Vertex& vertex, std::span<Vec2> x
 
 void DistanceTable::set(std::span<const Vec2> points) {
   for (std::size_t a = 0; a < points.size(); ++a) {
-    for (std::size_t b = 0; b < points.size(); ++b) table_[a][b] = (points[a] - points[b]).norm();
+    for (std::size_t b = 0; b < a; ++b) {
+      table_[a][b] = table_[b][a] = (points[a] - points[b]).norm();
+    }
   }
 }
 

@@ -205,6 +205,16 @@ TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
   EXPECT_LT(left, 0.6F);
 }
 
+TEST(Descent, EndsAtItsDeadline) {
+  const Case c(Pattern::Letter, 0, 4, 20, 1);
+  Descent descent(CellTiles::kMaxTiles, 20, fit_settings(PlanSettings{}));
+  const StageTimer timer;
+  Fit fit;
+  fit.loops = c.loops;
+  EXPECT_EQ(descent.run(c.cells, fit, 30, {&timer, 0.0}), 1);
+  EXPECT_GT(descent.run(c.cells, fit, 30, {&timer, 1e9}), 1);
+}
+
 TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {
   // moving any pressure either way, within its bounds, does not lower the error
   const Case c(Pattern::FourPlumes, 3, 4, 20, 5);

@@ -76,7 +76,8 @@ TEST(CellTiles, AreTheBlocksThatAPlainLoopAverages) {
   CellTiles cells(1600);
   for (std::uint64_t n = 0; n < test::reduced(5000); ++n) {
     const TargetField field = random_raster(random);
-    const double cell = kMmPerMetre * field.cell, area = cell * cell / static_cast<double>(kUnitArea);
+    const double cell = kMmPerMetre * field.cell,
+                 area = cell * cell / static_cast<double>(kUnitArea);
     const int wanted = 1 + random.below(9);
     cells.set(field, 100.0, wanted * cell);
     const int factor = std::min(wanted, std::max(field.rows, field.cols));
