@@ -45,7 +45,7 @@ struct PlanSettings {
   int seed = 1;                 ///< of the clustering
   // presets best and fast
   double least_length = 0.035;   ///< of a path [m]; L where that is shorter
-  double fit_coverage = 0.3;     ///< weight of pressure that no path reaches, (P12)
+  double fit_coverage = 0.12;    ///< weight of pressure that no path reaches, (P12)
   double fit_length = 1.0;       ///< weight of length and uneven samples, (P13)
   double fit_spacing = 0.3;      ///< weight of samples that are too near, (P14)
   double fit_bending = 0.03;     ///< weight of bending, (P15)

@@ -14,15 +14,15 @@ namespace prostm::planning {
 /// φ below e^kLeastExponent (farther than about 5 σ) counts as 0: its squares would be denormal.
 inline constexpr float kLeastExponent = -14.0F;
 
-/// φ from which a cell is covered: that of a distance of 0.93 σ, a little less than the σ that
-/// coverage is measured with.
-inline constexpr float kReach = 0.65F;
+/// φ from which a cell is covered: that of a distance of 0.57 σ. With less, paths render the field
+/// of σ as well, but a narrower focus leaves gaps.
+inline constexpr float kReach = 0.85F;
 
 struct ReconstructionSettings {
-  float sigma = 8.6F;            ///< σ of Eq. (1) [mm]
-  float smoothing = 0.01F;       ///< λ of (P11): how much neighbouring pressures hold together
-  float weight_coverage = 0.1F;  ///< of (P12)
-  float most_pressure = 1.0F;    ///< bound of the p_i, over the frame's maximum
+  float sigma = 8.6F;             ///< σ of Eq. (1) [mm]
+  float smoothing = 0.01F;        ///< λ of (P11): how much neighbouring pressures hold together
+  float weight_coverage = 0.12F;  ///< of (P12)
+  float most_pressure = 1.0F;     ///< bound of the p_i, over the frame's maximum
 };
 
 /// Effective pressures at the nodes, and the gradient of the error with respect to their places.
