@@ -14,6 +14,7 @@
 
 #include "figure/figures.hpp"
 #include "planner/bending.hpp"
+#include "planner/budgets.hpp"
 #include "planner/contenders.hpp"
 #include "planner/nlopt_baseline.hpp"
 #include "planner/on_skin.hpp"
@@ -114,6 +115,7 @@ std::vector<Row> measure_all(const Options& options) {
   std::vector<Row> rows;
   append_rows(outcomes, rows);
   if (!options.files.empty()) return rows;
+  measure_budgets(rows);
   measure_steadiness(contenders, rows);
   measure_simultaneous(std::min(options.quality.frames, 10), rows);
   measure_on_skin(std::min(options.quality.frames, 5), rows);
