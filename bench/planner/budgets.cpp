@@ -58,8 +58,10 @@ void measure(double budget, int repeats, std::vector<Row>& rows) {
 }  // namespace
 
 void measure_budgets(std::vector<Row>& rows) {
-  fmt::print("\nBudgets: time of a plan, beside a loop that ends at 97 % of the budget\n{:>8}  {:<28} {:>8} {:>8} {:>8} {:>11}\n",
-             "budget", "", "p50 ms", "p99 ms", "max ms", "over it");
+  fmt::print(
+      "\nBudgets: time of a plan, beside a loop that ends at 97 % of the budget\n{:>8}  {:<28} "
+      "{:>8} {:>8} {:>8} {:>11}\n",
+      "budget", "", "p50 ms", "p99 ms", "max ms", "over it");
   measure(1e-3, 5, rows);
   measure(20e-3, 1, rows);
 }

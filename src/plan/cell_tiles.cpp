@@ -13,7 +13,6 @@ namespace prostm::planning {
 namespace {
 
 constexpr std::size_t kTileCols = 4, kTileRows = 2;
-constexpr double kMostCells = 1e6;  // along the edge of a block: more than any target has
 constexpr std::size_t kMaxBlocks = 2 * CellTiles::kMaxTiles;  // a tile spans two rows at least
 
 template <typename N>
@@ -56,8 +55,8 @@ void CellTiles::sum_rows(const TargetField& target, const CellWeights* weights, 
 
 void CellTiles::set(const TargetField& target, double maximum, double width) {
   const double cell = kMmPerMetre * target.cell;
-  int factor = std::max(1, static_cast<int>(std::min(width / cell + 1e-6, kMostCells)));
-  factor = std::min(factor, std::max(target.rows, target.cols));
+  const double most = std::max(target.rows, target.cols);
+  int factor = static_cast<int>(std::clamp(width / cell + 1e-6, 1.0, most));
   while (ceil_div(target.rows, factor) * ceil_div(target.cols, factor) > kMaxBlocks) ++factor;
   const std::size_t rows = ceil_div(target.rows, factor), cols = ceil_div(target.cols, factor);
   const std::size_t across = ceil_div(cols, kTileCols), tiles = across * ceil_div(rows, kTileRows);
@@ -68,15 +67,15 @@ void CellTiles::set(const TargetField& target, double maximum, double width) {
     weights.emplace(target, maximum);
     mean_weight_.resize(tiles);
   }
-  BlockRow blocks{};
-  blocks.factor = static_cast<std::size_t>(factor);
-  blocks.cell = cell;
-  blocks.maximum = maximum;
-  for (std::vector<double>& sums : columns_) sums.assign(across * kTileCols * blocks.factor, 0.0);
-  blocks.pressure = columns_[0].data();
-  blocks.weight = columns_[1].data();
-  blocks.row = columns_[2].data();
-  blocks.count = weights ? columns_[3].data() : nullptr;
+  const auto width_of_block = static_cast<std::size_t>(factor);
+  for (std::vector<double>& sums : columns_) sums.assign(across * kTileCols * width_of_block, 0.0);
+  const BlockRow blocks{columns_[0].data(),
+                        columns_[1].data(),
+                        columns_[2].data(),
+                        weights ? columns_[3].data() : nullptr,
+                        width_of_block,
+                        cell,
+                        maximum};
   for (std::size_t row = 0; row < rows; ++row) {
     const int begin = static_cast<int>(row) * factor;
     sum_rows(target, weights ? &*weights : nullptr, begin, std::min(begin + factor, target.rows));
