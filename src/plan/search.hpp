@@ -79,7 +79,7 @@ class Search {
   // for a budget: time of an evaluation per tile and of what follows the finish, as measured, and
   // when starts and kicks must end, so that the finish is in time [s]
   double budget_ = 0.0, tile_time_ = 1.5e-7, search_end_ = 0.0;
-  double ending_time_ = 1e-4, ending_deviation_ = 2e-5;
+  double ending_time_ = 8e-5, ending_deviation_ = 1e-5;
   bool finish_fine_ = true;  // whether there is time to finish on the fine cells
 };
 
