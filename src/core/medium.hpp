@@ -1,14 +1,17 @@
 #pragma once
-/// Air at rest: the temperature decides the speed of sound and the density.
+/// Air at rest: the temperature decides the speed of sound and the density, and with the humidity
+/// how much of the sound is lost on its way.
 
 #include <cmath>
 
 namespace prostm {
 
-/// Dry air as an ideal gas. Equations (M1) and (M2) of docs/design.md.
+/// An ideal gas, of which the humidity changes only the absorption. Equations (M1) to (M5) of
+/// docs/design.md.
 struct Medium {
   double temperature = 293.15;  ///< [K]
   double pressure = 101325.0;   ///< static pressure [Pa]
+  double humidity = 0.5;        ///< relative, 0..1
 
   /// c = sqrt(κ R T / M) [m/s], 343.2 m/s at 20 °C.
   double speed_of_sound() const {
@@ -16,6 +19,12 @@ struct Medium {
   }
   /// ρ = p M / (R T) [kg/m³], 1.204 kg/m³ at 20 °C.
   double density() const { return pressure * kMolarMass / (kGasConstant * temperature); }
+
+  /// Attenuation α of a pure tone [Np/m], by which amplitude falls as e^{−αr}: ISO 9613-1, (M3) to
+  /// (M5); 0.152 Np/m at 40 kHz, 20 °C and a humidity of 50 %. @pre frequency > 0 [Hz].
+  double absorption(double frequency) const;
+  /// The same in dB/m, 20 lg e = 8.686 times as much.
+  double absorption_db(double frequency) const;
 
   static constexpr double kHeatRatio = 1.4;
   static constexpr double kGasConstant = 8.314463;  ///< [J/(mol K)]
