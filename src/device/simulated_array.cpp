@@ -366,12 +366,13 @@ void SimulatedArray::drives(std::span<const FocusSample> foci,
 
 std::vector<double> SimulatedArray::field(std::span<const std::complex<double>> drives,
                                           std::span<const Vec3> points) const {
+  const Wave sound = wave(impl_->array, impl_->medium);
   std::vector<double> out;
   out.reserve(points.size());
   for (const Vec3& p : points) {
     std::complex<double> sum = 0.0;
     for (std::size_t i = 0; i < drives.size(); ++i) {
-      sum += drives[i] * propagate(impl_->array, impl_->medium, i, p);
+      sum += drives[i] * propagate(impl_->array, sound, i, p);
     }
     out.push_back(std::abs(sum));
   }

@@ -1,0 +1,25 @@
+#pragma once
+/// How loud a transducer is beside its axis.
+
+namespace prostm {
+
+enum class Directivity {
+  Piston,   ///< baffled piston, (A2)
+  T4010A1,  ///< the data sheet of the Nippon Ceramic T4010A1, as AUTD3 uses it, (A8)
+  Omni,     ///< the same in all directions, behind the transducer too
+};
+
+/// The name in files: "piston", "t4010a1", "omni".
+const char* directivity_name(Directivity kind);
+
+/// Far-field pressure at the angle θ from the transducer's normal over that on its axis, 0..1 (up
+/// to 1.008 where the spline of T4010A1 overshoots). Piston (A2) and T4010A1 (A8) are 0 behind the
+/// transducer's plane, cos θ < 0.
+/// @param ka wave number × radius of the piston; other kinds do not ask for it.
+/// @param cos_theta may be out of [-1, 1] by rounding.
+double directivity(Directivity kind, double ka, double cos_theta);
+
+/// (A2): 2 J₁(ka sin θ)/(ka sin θ); 1 on axis. Even in sin θ.
+double piston_directivity(double ka, double sin_theta);
+
+}  // namespace prostm
