@@ -122,6 +122,21 @@ void add_bench(CLI::App& app, int& status) {
   command->callback([o, &status] { status = bench_command(*o); });
 }
 
+void add_solve(CLI::App& app, int& status) {
+  auto* command = app.add_subcommand("solve", "transducer drives for given focal points");
+  auto o = std::make_shared<SolveOptionsGiven>();
+  command->add_option("foci", o->foci, "focal points and their pressures (docs/files.md)")
+      ->required();
+  command->add_option("--array", o->array, "usx, autd3, or an array file (.json)")
+      ->capture_default_str();
+  command->add_option("--solver", o->solver, "superposition, ibp, gs-pat, eigenvector or lm")
+      ->capture_default_str();
+  command->add_option("--json", o->json, "write the drives as JSON; - is standard output");
+  command->footer(
+      "Example:\n  prostm solve foci.json --array autd3 --solver lm --json drives.json");
+  command->callback([o, &status] { status = solve_command(*o); });
+}
+
 void add_devices(CLI::App& app, int& status) {
   auto* command =
       app.add_subcommand("devices", "what can be driven from here, and why not, for each kind");
@@ -135,7 +150,6 @@ void add_devices(CLI::App& app, int& status) {
 void add_unbuilt(CLI::App& app) {
   const std::map<std::string, std::string> commands = {
       {"field", "the physical field of a plan"},
-      {"solve", "transducer drives for given foci"},
       {"stim", "the stimuli of earlier studies"},
       {"play", "play a plan, field or samples"},
       {"study", "the perceptual study"},
@@ -161,6 +175,7 @@ int main(int argc, char** argv) {
   add_plan(app, status);
   add_capture(app, status);
   add_bench(app, status);
+  add_solve(app, status);
   add_devices(app, status);
   add_unbuilt(app);
   try {

@@ -51,12 +51,20 @@ struct BenchOptionsGiven {
   int repeats = 3;
 };
 
+struct SolveOptionsGiven {
+  std::string foci;
+  std::string array = "usx";
+  std::string solver = "gs-pat";
+  std::string json;
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument.
 int run_command(const RunOptionsGiven& options);
 int plan_command(const PlanOptionsGiven& options);
 int capture_command(const CaptureOptionsGiven& options);
 int bench_command(const BenchOptionsGiven& options);
+int solve_command(const SolveOptionsGiven& options);
 int devices_command(const std::string& json);
 
 }  // namespace prostm::app

@@ -113,9 +113,12 @@ void validate(const TransducerArray& array) {
 }
 
 TransducerArray place(const TransducerArray& array, const Pose& X_DA) {
-  // NaN is refused before it is compared: the comparison would trap
+  // what is not finite is refused before it is compared or subtracted, which would trap
+  const Eigen::Matrix4d matrix = X_DA.matrix();
+  const bool finite =
+      std::all_of(matrix.data(), matrix.data() + 16, [](double x) { return std::isfinite(x); });
   const Eigen::Matrix3d R_DA = X_DA.linear();
-  if (!X_DA.matrix().allFinite() || !R_DA.isUnitary(1e-9) || R_DA.determinant() < 0.0) {
+  if (!finite || !R_DA.isUnitary(1e-9) || R_DA.determinant() < 0.0) {
     throw std::invalid_argument("the pose of the array \"" + array.name +
                                 "\" must be finite, a rotation and a shift");
   }

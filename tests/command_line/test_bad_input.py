@@ -229,3 +229,36 @@ def test_a_killed_recording_still_opens(program, tmp_path):
     assert len(part) == 1
     with h5py.File(part[0]) as h5:
         assert len(h5.keys()) > 0
+
+
+def foci_file(tmp_path, *positions, pressure=100):
+    path = tmp_path / "foci.json"
+    foci = [{"position_mm": p, "pressure_pa": pressure} for p in positions]
+    path.write_text(json.dumps({"format": "prostm-foci/1", "foci": foci}))
+    return path
+
+
+@pytest.mark.parametrize(
+    "positions, words",
+    [
+        ([], ["0 focal points"]),
+        ([[x, 0, 200] for x in range(1000)], ["1000", "256"]),
+        ([[0, 0, -200]], ["focal point 1", "behind the array"]),
+        ([[0, 0, 200], [5.25, 5.25, 1]], ["focal point 2", "on transducer"]),
+        ([[0, 0, 200], [0, 0, 200]], ["focal point 2", "focal point 1"]),
+        ([[0, 0, None]], ["position_mm"]),
+        ([[0, 0]], ["position_mm"]),
+    ],
+)
+def test_bad_foci(refuses, tmp_path, positions, words):
+    refuses("solve", foci_file(tmp_path, *positions), words=words)
+
+
+def test_solve_refuses_what_it_does_not_know(refuses, tmp_path):
+    good = foci_file(tmp_path, [0, 0, 200])
+    refuses("solve", good, "--array", "disc", words=["disc", "usx", "autd3"])
+    refuses("solve", good, "--solver", "magic", words=["magic", "gs-pat"])
+    refuses("solve", foci_file(tmp_path, [0, 0, 200], pressure=0), words=["above 0 Pa"])
+    (tmp_path / "array.json").write_text('{"format": "prostm-array/1", "name": "none", "frequency_hz": 40000,'
+                                         ' "radius_mm": 4.5, "directivity": "omni", "amplitude_pa_m": 3, "transducers_mm": []}')
+    refuses("solve", good, "--array", tmp_path / "array.json", words=["0 transducers"])

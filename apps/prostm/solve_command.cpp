@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "acoustics/focus_solver.hpp"
+#include "acoustics/propagation.hpp"
+#include "common.hpp"
+#include "core/file.hpp"
+#include "core/input_error.hpp"
+#include "io/array_file.hpp"
+#include "io/foci_file.hpp"
+
+namespace prostm::app {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
+
+struct NamedMethod {
+  const char* name;
+  FocusMethod method;
+};
+constexpr std::array kMethods = {
+    NamedMethod{"superposition", FocusMethod::Superposition}, NamedMethod{"ibp", FocusMethod::Ibp},
+    NamedMethod{"gs-pat", FocusMethod::GsPat}, NamedMethod{"eigenvector", FocusMethod::Eigenvector},
+    NamedMethod{"lm", FocusMethod::LevenbergMarquardt}};
+
+FocusMethod method_of(const std::string& name) {
+  for (const NamedMethod& m : kMethods) {
+    if (name == m.name) return m.method;
+  }
+  throw InputError("--solver " + name +
+                   " is unknown; it must be superposition, ibp, gs-pat, eigenvector or lm");
+}
+
+TransducerArray array_of(const std::string& name) {
+  if (name == "usx") return usx_array();
+  if (name == "autd3") return autd3_array();
+  if (name.ends_with(".json")) return array_from_json(read_file(name, kMaxFileBytes), name);
+  throw InputError("--array " + name + " is unknown; it must be usx, autd3 or a file (.json)");
+}
+
+}  // namespace
+
+int solve_command(const SolveOptionsGiven& options) {
+  const TransducerArray array = array_of(options.array);
+  FocusSettings settings;
+  settings.method = method_of(options.solver);
+  if (!options.json.empty()) check_writable(options.json);
+  const FociFile foci = foci_from_json(read_file(options.foci, kMaxFileBytes), options.foci);
+
+  const Medium air;
+  const Propagation propagation = propagation_to(array, air, foci.position);
+  const Eigen::VectorXd target = Eigen::Map<const Eigen::VectorXd>(
+      foci.pressure.data(), static_cast<Eigen::Index>(foci.pressure.size()));
+  const FocusSolution solution = solve_foci(propagation, target, settings);
+  const Eigen::VectorXd errors = focus_errors(solution, target);
+
+  std::FILE* out = prose(options.json);
+  fmt::print(out, "{} on {}: {} focal points, {:.1f} % of what they ask for\n", options.solver,
+             array.name, target.size(), 100.0 * solution.level);
+  fmt::print(out, "  {:>6} {:>10} {:>10} {:>22}\n", "focus", "asked Pa", "reached Pa",
+             "error of its share, %");
+  for (Eigen::Index m = 0; m < target.size(); ++m) {
+    fmt::print(out, "  {:>6} {:>10.1f} {:>10.1f} {:>22.2f}\n", m + 1, target[m],
+               std::abs(solution.pressure[m]), 100.0 * errors[m]);
+  }
+  const double high = array.amplitude_high / array.amplitude;
+  if (high > 1.0) {
+    fmt::print(out, "sources differ on the array: between {:.2f} and {:.2f} times as much\n",
+               array.amplitude_low / array.amplitude, high);
+  }
+  if (!options.json.empty()) write_file(options.json, drives_to_json(array, air, foci, solution));
+  return 0;
+}
+
+}  // namespace prostm::app
