@@ -80,17 +80,17 @@ VectorXcd eigenvector_phases(const Propagation& g, const VectorXd& target, const
 }
 
 /// (A14): q of least Σ_m |G q − p|² + Σ_n |s_n^γ q_n|², s_n² = |Σ_m G_mn a_m| / M, with G over the
-/// root mean square norm of its rows and a over the largest. With W = diag(s^−2γ) it is
+/// root mean square norm of its rows. With W = diag(s^−2γ) it is
 /// W Gᴴ (G W Gᴴ + 1)⁻¹ p.
 VectorXcd least_squares(const Propagation& propagation, const VectorXd& target, const VectorXcd& p,
                         double gamma) {
   const auto foci = static_cast<double>(propagation.rows());
   const MatrixXcd g = propagation / (propagation.norm() / std::sqrt(foci));
-  const VectorXcd a = (target / target.maxCoeff()).cast<Complex>();
-  const VectorXd w = (g.transpose() * a).unaryExpr([&](const Complex& sum) -> double {
-    const double s2 = std::abs(sum) / foci;
-    return s2 > 0.0 ? std::pow(s2, -gamma) : 0.0;
-  });
+  const VectorXd w =
+      (g.transpose() * target.cast<Complex>()).unaryExpr([&](const Complex& sum) -> double {
+        const double s2 = std::abs(sum) / foci;
+        return s2 > 0.0 ? std::pow(s2, -gamma) : 0.0;
+      });
   const MatrixXcd wg = w.cast<Complex>().asDiagonal() * g.adjoint();
   const MatrixXcd normal = g * wg + MatrixXcd::Identity(g.rows(), g.rows());
   return wg * normal.llt().solve(p);
@@ -193,16 +193,21 @@ void check(const Propagation& g, const VectorXd& target, const FocusSettings& se
 FocusSolution solve_foci(const Propagation& propagation, const Eigen::VectorXd& target,
                          const FocusSettings& settings, const Eigen::VectorXd& start) {
   check(propagation, target, settings, start);
+  // over the largest, so that squares of any target are in a double's range
+  const double highest = target.maxCoeff();
+  const VectorXd shares = target / highest;
   FocusSolution out;
-  out.drive = drives_of(propagation, target, settings, start_phases(start, target.size()));
+  out.drive = drives_of(propagation, shares, settings, start_phases(start, target.size()));
+  const double largest = out.drive.cwiseAbs().maxCoeff();
+  if (largest > 0.0) out.drive /= largest;
   out.pressure = propagation * out.drive;
-  // to the targets, or until the largest drive is 1
-  const double most = 1.0 / out.drive.cwiseAbs().maxCoeff();
-  const double level = level_of(out.pressure, target);
-  const double factor = level * most > 1.0 ? 1.0 / level : most;
-  out.drive *= factor;
-  out.pressure *= factor;
-  out.level = factor * level;
+  // to the targets where the largest drive, now 1, is more than that takes
+  const double reached = level_of(out.pressure, shares);
+  if (reached > highest) {
+    out.drive *= highest / reached;
+    out.pressure *= highest / reached;
+  }
+  out.level = std::min(reached / highest, 1.0);
   return out;
 }
 

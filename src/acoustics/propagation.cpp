@@ -25,8 +25,8 @@ void check(const TransducerArray& array, std::span<const Vec3> foci) {
     for (std::size_t n = 0; n < array.position.size(); ++n) {
       const Vec3 way = foci[m] - array.position[n];
       if (way.norm() < kNearestPoint) {
-        refuse(m, "is on transducer " + std::to_string(n + 1) +
-                      "; it must be at least 10 mm from every transducer");
+        refuse(m, "is on transducer " + std::to_string(n) +
+                      " (from 0); it must be at least 10 mm from every transducer");
       }
       in_front = in_front || way.dot(array.normal[n]) > 0.0;
     }

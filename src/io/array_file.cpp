@@ -51,8 +51,7 @@ void read_positions(const JsonNode& node, TransducerArray& array) {
   constexpr double kFarthestMm = 10e3;
   array.position.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 mm = node.at(i).vec3(-kFarthestMm, kFarthestMm);
-    array.position.emplace_back(from_milli(mm.x()), from_milli(mm.y()), from_milli(mm.z()));
+    array.position.push_back(from_milli(node.at(i).vec3(-kFarthestMm, kFarthestMm)));
   }
 }
 

@@ -32,7 +32,7 @@ FociFile foci_from_json(std::string_view text, const std::string& file) {
     const JsonNode focus = foci.at(m);
     const Vec3 mm = focus.at("position_mm", "a place [x, y, z] in mm, z from the array up")
                         .vec3(-kFarthestMm, kFarthestMm);
-    out.position.emplace_back(from_milli(mm.x()), from_milli(mm.y()), from_milli(mm.z()));
+    out.position.push_back(from_milli(mm));
     out.pressure.push_back(
         focus.at("pressure_pa", "the rms acoustic pressure in Pa").number(0.0, kMostPressure));
   }

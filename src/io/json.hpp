@@ -58,6 +58,9 @@ double to_milli(double x);
 inline double from_milli(double thousandths) {
   return thousandths / 1000.0;
 }
+inline Vec3 from_milli(const Vec3& thousandths) {
+  return thousandths / 1000.0;
+}
 nlohmann::ordered_json milli_json(const Vec2& x);
 nlohmann::ordered_json milli_json(const Vec3& x);
 

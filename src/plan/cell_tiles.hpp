@@ -19,6 +19,9 @@ struct alignas(32) CellTile {
   float centre_x, centre_y, radius;
 };
 
+/// Mean weight (P17) of each cell of each tile; empty where the target has none: 1.
+using MeanWeights = std::vector<std::array<float, 8>>;
+
 inline constexpr float kUnitArea = 4.0F;  ///< [mm²] that counts as 1 in the reconstruction error
 
 /// The target on a raster of its own or of a coarser resolution: blocks of factor × factor cells
@@ -53,8 +56,8 @@ class CellTiles {
   void sum_rows(const TargetField& target, const CellWeights* weights, int begin, int end);
 
   std::vector<CellTile> tiles_;
-  std::vector<std::array<float, 8>> mean_weight_;  // of each tile, where the target has weights
-  std::array<std::vector<double>, 4> columns_;     // of a row of blocks: pressure, weights, row
+  MeanWeights mean_weight_;
+  std::array<std::vector<double>, 4> columns_;  // of a row of blocks: pressure, weights, row
                                                 // indices, and cells where the target has weights
   float peak_ = 0.0F;
   double square_ = 0.0;

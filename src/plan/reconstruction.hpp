@@ -51,11 +51,13 @@ struct ReconstructionScratch {
   void clear(const Loops& loops);
 };
 
+/// What a call is to fill in.
+enum class Wanted { Pressures, PressuresAndGradient };
+
 /// min over 0 ≤ p ≤ most of Σ w (p̂ − p*)² + λ Σ (p_{i+1} − p_i)² (P11), and (P12), p̂ of
 /// Eq. (1) at the closest point over all segments, p linear along them. The gradient is exact where
 /// no cell changes its closest segment and no pressure its bound.
 /// @param wanted with Pressures alone, the error and its gradient stay as they are.
-enum class Wanted { Pressures, PressuresAndGradient };
 using ReconstructFunction = void (*)(const CellTiles& cells, const Loops& loops,
                                      const ReconstructionSettings& settings, Wanted wanted,
                                      ReconstructionScratch& scratch, Reconstruction& out);

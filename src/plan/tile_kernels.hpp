@@ -11,9 +11,6 @@
 
 namespace prostm::planning {
 
-/// Mean weight (P17) of each cell of each tile; empty where the target has none: 1.
-using MeanWeights = std::vector<std::array<float, 8>>;
-
 /// Sums over the rows of one row of blocks, column by column, with zeros behind the last column up
 /// to the end of the last tile.
 struct BlockRow {

@@ -149,6 +149,30 @@ TEST(FocusSolver, UnitsAndTheOrderOfFocalPointsDoNotMatter) {
   }
 }
 
+TEST(FocusSolver, AnyTargetIsReachedOrSharedOut) {
+  const Propagation g = propagation_to({{0.02, 0.0, 0.2}, {-0.02, 0.0, 0.2}, {0.0, 0.03, 0.2}});
+  for (const FocusMethod method : kMethods) {
+    for (const double pressure : {1e-200, 1e-9, 1.0, 1e200}) {
+      const Eigen::Vector3d target(pressure, 0.0, 0.5 * pressure);
+      const FocusSolution s = solve_foci(g, target, with(method));
+      EXPECT_GT(s.level, 0.0);
+      EXPECT_LE(s.level, 1.0);
+      EXPECT_LE(s.drive.cwiseAbs().maxCoeff(), 1.0 + 1e-12);
+      EXPECT_LT(focus_errors(s, target).cwiseAbs().maxCoeff(), 0.5);
+    }
+  }
+}
+
+TEST(FocusSolver, FocalPointsThatCancelGetNothing) {
+  const Propagation one = propagation_to({{0.0, 0.0, 0.2}});
+  Propagation g(2, one.cols());
+  g << one, one;
+  const FocusSolution s = solve_foci(g, Eigen::Vector2d(10.0, 10.0),
+                                     with(FocusMethod::Superposition), Eigen::Vector2d(0.0, kPi));
+  EXPECT_LE(s.drive.cwiseAbs().maxCoeff(), 1.0);
+  EXPECT_TRUE(std::isfinite(s.level));
+}
+
 TEST(FocusSolver, StartsAtThePhasesOfTheSolutionBefore) {
   // the phases that it ends with are a fixed point, or near one: drives hardly move
   Random random(5);
@@ -166,6 +190,9 @@ TEST(FocusSolver, StartsAtThePhasesOfTheSolutionBefore) {
         .maxCoeff();
   };
   EXPECT_LT(largest_turn(solve_foci(g, target, with(FocusMethod::GsPat), phases)), 0.5);
+  // from others they do
+  const Eigen::VectorXd others = phases + Eigen::Vector4d(0.0, 2.0, -2.0, 3.0);
+  EXPECT_GT(largest_turn(solve_foci(g, target, with(FocusMethod::GsPat), others)), 1.0);
 }
 
 TEST(FocusSolver, RefusesWhatCannotBe) {

@@ -173,11 +173,12 @@ TEST(Arrays, JoinRefusesWhatCannotSoundAsOne) {
 
 TEST(Arrays, PlaceRefusesWhatIsNoPose) {
   const TransducerArray array = usx_array();
-  Pose stretched = Pose::Identity(), mirrored = stretched, lost = stretched;
+  Pose stretched = Pose::Identity(), mirrored = stretched, lost = stretched, far = stretched;
   stretched.linear() *= 1.001;
   mirrored.linear()(0, 0) = -1.0;
   lost.translation().x() = std::numeric_limits<double>::quiet_NaN();
-  for (const Pose& pose : {stretched, mirrored, lost}) {
+  far.translation().y() = std::numeric_limits<double>::infinity();
+  for (const Pose& pose : {stretched, mirrored, lost, far}) {
     EXPECT_THAT(refusal([&] { place(array, pose); }), HasSubstr("a rotation and a shift"));
   }
 }
