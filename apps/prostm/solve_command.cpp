@@ -14,8 +14,6 @@
 namespace prostm::app {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
-
 struct NamedMethod {
   const char* name;
   FocusMethod method;
@@ -36,7 +34,7 @@ FocusMethod method_of(const std::string& name) {
 TransducerArray array_of(const std::string& name) {
   if (name == "usx") return usx_array();
   if (name == "autd3") return autd3_array();
-  if (name.ends_with(".json")) return array_from_json(read_file(name, kMaxFileBytes), name);
+  if (name.ends_with(".json")) return read_array(name);
   throw InputError("--array " + name + " is unknown; it must be usx, autd3 or a file (.json)");
 }
 
@@ -47,7 +45,7 @@ int solve_command(const SolveOptionsGiven& options) {
   FocusSettings settings;
   settings.method = method_of(options.solver);
   if (!options.json.empty()) check_writable(options.json);
-  const FociFile foci = foci_from_json(read_file(options.foci, kMaxFileBytes), options.foci);
+  const FociFile foci = read_foci(options.foci);
 
   const Medium air;
   const Propagation propagation = propagation_to(array, air, foci.position);

@@ -8,7 +8,7 @@
 namespace prostm::bench {
 
 /// Times plans of `best` on the generated fields under budgets of 1 and 20 ms, each in turn with a
-/// loop that does nothing but watch the clock until what a plan aims at: what that loop is late,
+/// loop that does nothing but watch the clock until 97 % of the budget: what that loop is late,
 /// the machine is. Prints the table.
 void measure_budgets(std::vector<Row>& rows);
 

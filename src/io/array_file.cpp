@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "io/json.hpp"
 
@@ -113,6 +114,10 @@ TransducerArray array_from_json(std::string_view text, const std::string& file) 
     throw InputError(fmt::format("{}: {}", file, e.what()));
   }
   return array;
+}
+
+TransducerArray read_array(const std::string& path) {
+  return array_from_json(read_file(path, kMaxJsonBytes), path);
 }
 
 }  // namespace prostm

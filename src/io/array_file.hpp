@@ -15,5 +15,7 @@ std::string array_to_json(const TransducerArray& array);
 /// @throws InputError with a sentence: what is not JSON, missing, of another kind, or refused by
 /// `validate`.
 TransducerArray array_from_json(std::string_view text, const std::string& file);
+/// The same from a file. @throws InputError also when it cannot be read.
+TransducerArray read_array(const std::string& path);
 
 }  // namespace prostm

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/file.hpp"
 #include "core/units.hpp"
 #include "io/json.hpp"
 
@@ -66,6 +67,10 @@ std::string drives_to_json(const TransducerArray& array, const Medium& medium, c
                          {"absorption_np_m", medium.absorption(array.frequency)},
                          {"directivity", directivity_name(array.directivity)}};
   return to_text(document);
+}
+
+FociFile read_foci(const std::string& path) {
+  return foci_from_json(read_file(path, kMaxJsonBytes), path);
 }
 
 }  // namespace prostm

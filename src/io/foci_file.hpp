@@ -18,6 +18,8 @@ struct FociFile {
 /// @throws InputError with a sentence: what is not JSON, missing, or out of bounds; no focal point,
 /// or more than kMaxTransducers.
 FociFile foci_from_json(std::string_view text, const std::string& file);
+/// The same from a file. @throws InputError also when it cannot be read.
+FociFile read_foci(const std::string& path);
 
 /// prostm-drives/1: the drives in the array's order, what they reach, and all that is needed to
 /// compute p = Σ amplitude · drive · D(θ)/r · e^{i(kr + phase) − αr} again.

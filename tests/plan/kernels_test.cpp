@@ -179,6 +179,7 @@ TEST(Spacing, LeavesNoCrossingAndNothingTooNear) {
     }
   }
   EXPECT_GT(as_they_were, 0);
+  EXPECT_LT(as_they_were, static_cast<int>(test::reduced(3000)));
 }
 
 }  // namespace
