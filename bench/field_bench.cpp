@@ -1,15 +1,26 @@
-/// What the field of an array costs: rows of the propagation matrix.
+/// What the field of an array costs: rows of the propagation matrix, and the field of a whole loop
+/// beside the direct product of matrices through OpenBLAS.
 ///
 /// usage: field_bench [--json FILE]
 
+#ifdef PROSTM_WITH_OPENBLAS
+#include <cblas.h>
+#endif
+
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "acoustics/loop_field.hpp"
 #include "acoustics/propagation_kernels.hpp"
 #include "core/distribution.hpp"
 #include "core/stage_timer.hpp"
+#include "fields/fields.hpp"
+#include "plan/planner.hpp"
 #include "report.hpp"
+#include "score/loop_drives.hpp"
 
 namespace prostm {
 namespace {
@@ -55,9 +66,186 @@ void add_propagation_rows(int points, int repeats, std::vector<Row>& rows) {
   rows.push_back({name + ", only written", "ns", floor.summary(), "kernel", ours.summary().p50});
 }
 
+constexpr int kSamples = 800;  // 20 ms at 40 kHz
+constexpr int kSide = 64;      // of the raster of points
+
+/// What the transducers of a USX put out in 20 ms of four paths of a plan of preset best.
+LoopDrives gallery_drives(fields::Pattern pattern) {
+  const TargetField target = fields::make(pattern, 0);
+  Planner planner(PlanSettings(), target.size());
+  Plan plan;
+  PlanStats stats;
+  planner.plan(target, plan, stats);
+  TargetFrame frame;
+  frame.patches.push_back(target);
+  LiftedPlan lifted;
+  lift(plan, frame, lifted);
+  EmitSettings emit;
+  for (const LiftedPath& path : lifted.paths) {
+    for (const double p : path.pressure) {
+      emit.full_scale_pressure = std::max(emit.full_scale_pressure, p);
+    }
+  }
+  LoopDriveResult result;
+  loop_drives(usx_array(), Medium(), loop_samples(lifted, emit, 40e3), LoopDriveSettings(),
+              [](int, int) { return true; }, result);
+  LoopDrives drives(result.output.rows(), kSamples);
+  for (Eigen::Index k = 0; k < kSamples; ++k) {
+    drives.col(k) = result.output.col(k % result.output.cols());
+  }
+  return drives;
+}
+
+/// The raster, facing the array.
+SurfacePoints surface() {
+  SurfacePoints out;
+  out.p_D = raster(kSide);
+  out.normal.assign(out.p_D.size(), -Vec3::UnitZ());
+  return out;
+}
+
+#ifdef PROSTM_WITH_OPENBLAS
+/// The same by direct products: G in the precision of T, ready made, times the drives, in blocks
+/// of rows whose product stays in the cache, and the sum of squares of each row by BLAS, too.
+template <class T>
+class DirectProduct {
+ public:
+  DirectProduct(const PackedArray& packed, const SurfacePoints& at, const LoopDrives& drives)
+      : points_(static_cast<int>(at.p_D.size())),
+        n_(static_cast<int>(packed.transducers())),
+        g_(at.p_D.size() * packed.transducers()),
+        a_(static_cast<std::size_t>(n_) * kSamples),
+        z_(static_cast<std::size_t>(kBlock) * kSamples) {
+    for (std::size_t m = 0; m < at.p_D.size(); ++m) {
+      for (std::size_t n = 0; n < packed.transducers(); ++n) {
+        const Vec3 way = (at.p_D[m] - packed.array.position[n]).normalized();
+        g_[m * packed.transducers() + n] = static_cast<std::complex<T>>(
+            std::max(-way.dot(at.normal[m]), 0.0) *
+            propagate(packed.array, packed.wave, n, at.p_D[m]));
+      }
+    }
+    for (int n = 0; n < n_; ++n) {
+      for (int k = 0; k < kSamples; ++k) {
+        a_[static_cast<std::size_t>(n) * kSamples + static_cast<std::size_t>(k)] =
+            static_cast<std::complex<T>>(drives(n, k));
+      }
+    }
+  }
+
+  void mean(double unit, std::vector<float>& out) {
+    for (int first = 0; first < points_; first += kBlock) {
+      multiply(first);
+      for (int m = 0; m < kBlock; ++m) {
+        const T* row = reinterpret_cast<const T*>(z_.data()) +
+                       static_cast<std::size_t>(m) * 2 * kSamples;
+        out[static_cast<std::size_t>(first + m)] =
+            static_cast<float>(unit / kSamples * square(row));
+      }
+    }
+  }
+
+  void envelope(double unit, std::vector<float>& out) {
+    for (int first = 0; first < points_; first += kBlock) {
+      multiply(first);
+      for (int m = 0; m < kBlock; ++m) {
+        const std::complex<T>* row = z_.data() + static_cast<std::size_t>(m) * kSamples;
+        T most = 0;
+        for (int k = 0; k < kSamples; ++k) most = std::max(most, std::norm(row[k]));
+        out[static_cast<std::size_t>(first + m)] =
+            static_cast<float>(unit * static_cast<double>(most));
+      }
+    }
+  }
+
+ private:
+  static constexpr int kBlock = 256;
+  void multiply(int first) {
+    const std::complex<T> one(1), zero(0);
+    const auto* from = g_.data() + static_cast<std::size_t>(first) * static_cast<std::size_t>(n_);
+    if constexpr (sizeof(T) == 4) {
+      cblas_cgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, kBlock, kSamples, n_, &one, from, n_,
+                  a_.data(), kSamples, &zero, z_.data(), kSamples);
+    } else {
+      cblas_zgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, kBlock, kSamples, n_, &one, from, n_,
+                  a_.data(), kSamples, &zero, z_.data(), kSamples);
+    }
+  }
+  static double square(const T* row) {
+    if constexpr (sizeof(T) == 4) {
+      return static_cast<double>(cblas_sdot(2 * kSamples, row, 1, row, 1));
+    } else {
+      return cblas_ddot(2 * kSamples, row, 1, row, 1);
+    }
+  }
+  int points_, n_;
+  std::vector<std::complex<T>> g_, a_, z_;
+};
+
+/// Largest difference over the largest value.
+double difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double worst = 0.0;
+  float most = 0.0F;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    worst = std::max(worst, static_cast<double>(std::abs(a[i] - b[i])));
+    most = std::max(most, b[i]);
+  }
+  return worst / static_cast<double>(most);
+}
+
+/// Milliseconds of a loop's field with so many threads, all patterns of the gallery, interleaved.
+/// Ours builds G, the products are given it.
+void add_loop_rows(const std::vector<LoopDrives>& loops, int threads, std::vector<Row>& rows) {
+  const PackedArray packed(usx_array(), Medium());
+  const SurfacePoints at = surface();
+  const double unit = radiation_pressure(1.0, Medium());
+  WorkerPool pool(threads);
+  openblas_set_num_threads(threads);
+  Distribution mean, direct, envelope, direct_envelope, mean_error, envelope_error, rank;
+  std::vector<float> expected(at.p_D.size()), largest(at.p_D.size());
+  const auto time = [](Distribution& out, auto&& work) {
+    const StageTimer timer;
+    work();
+    out.add(1e3 * timer.seconds());
+  };
+  for (const LoopDrives& drives : loops) {
+    DirectProduct<float> product(packed, at, drives);
+    DirectProduct<double> reference(packed, at, drives);
+    std::vector<float> ours;
+    LoopPressure loop;
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      time(mean, [&] { ours = mean_radiation_pressure(packed, Medium(), drives, at, pool); });
+      time(direct, [&] { product.mean(unit, expected); });
+      time(envelope, [&] { loop = loop_pressure(packed, Medium(), drives, at, 0, pool); });
+      time(direct_envelope, [&] { product.envelope(unit, largest); });
+    }
+    reference.mean(unit, expected);
+    reference.envelope(unit, largest);
+    mean_error.add(difference(ours, expected));
+    envelope_error.add(difference(loop.envelope, largest));
+    rank.add(static_cast<double>(covariance_factor(drives, pool, 1e-6).cols()));
+  }
+  const std::string with = ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  rows.push_back({"mean over the loop" + with, "ms", mean.summary(), "cgemm, G given",
+                  direct.summary().p50});
+  rows.push_back({"envelope and mean" + with, "ms", envelope.summary(), "cgemm, G given",
+                  direct_envelope.summary().p50});
+  if (threads > 1) return;
+  rows.push_back({"mean: difference from zgemm", "1", mean_error.summary(), "", 0.0});
+  rows.push_back({"envelope: difference from zgemm", "1", envelope_error.summary(), "", 0.0});
+  rows.push_back({"rank of the drives' covariance", "1", rank.summary(), "", 0.0});
+}
+#endif
+
 std::vector<Row> measure_field() {
   std::vector<Row> rows;
   for (const int points : {4, 32, 4096}) add_propagation_rows(points, 15, rows);
+#ifdef PROSTM_WITH_OPENBLAS
+  std::vector<LoopDrives> loops;
+  for (const fields::Pattern pattern : fields::kPatterns) loops.push_back(gallery_drives(pattern));
+  for (const int threads : {1, 2}) add_loop_rows(loops, threads, rows);
+#else
+  fmt::print("libopenblas-dev is not there: nothing to compare the field of a loop with\n");
+#endif
   return rows;
 }
 

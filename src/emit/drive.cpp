@@ -31,6 +31,11 @@ double even_share(int paths, double power_limit) {
   return std::min(1.0, power_limit / paths);
 }
 
+double largest_slew(double fade_time, double sample_rate) {
+  constexpr double kMaxSlew = 1.0 / 40.0;
+  return std::min(kMaxSlew, 1.0 / (fade_time * sample_rate));
+}
+
 bool limit_drives(std::span<Drive> drives, double max_rise, double power_limit) noexcept {
   // a common scale for what is wanted
   double power = 0.0;

@@ -15,6 +15,10 @@ struct Drive {
   double intensity = 0.0;  ///< emitted last, then emitted now
 };
 
+/// Largest change of intensity per sample for a fade over the full range in `fade_time` [s], never
+/// above 1/40. @pre both > 0.
+double largest_slew(double fade_time, double sample_rate);
+
 /// Moves every intensity towards what is wanted, by at most max_rise up and max_fall down, with Σ
 /// intensity² <= power limit, (E4). @return true when the power limit scaled the wanted intensities
 /// down.

@@ -16,17 +16,10 @@
 namespace prostm {
 namespace {
 
-constexpr double kMaxSpeed = 8.0;        // of a focal point that sounds [m/s]
 constexpr double kFloatMargin = 0.999;   // keeps steps in bounds when positions become floats
 constexpr double kLongestLap = 1.0;      // that a new plan waits for [s]
-constexpr double kMaxSlew = 1.0 / 40.0;  // of intensity, per sample
 constexpr double kSounding = 0.01;       // intensity above which a focal point must not jump
 constexpr double kMaxCoordinate = 10.0;  // of anything that is felt over an array [m]
-
-/// Largest change of intensity per sample for a fade over the full range.
-double slew(double fade_time, double sample_rate) {
-  return std::min(kMaxSlew, 1.0 / (fade_time * sample_rate));
-}
 
 bool usable(const LiftedPath& path) {
   const auto in_bounds = [](double x) { return std::isfinite(x) && std::abs(x) <= kMaxCoordinate; };
@@ -112,12 +105,12 @@ struct PathEmitter::Impl {
 PathEmitter::Impl::Impl(const EmitSettings& s, double sample_rate)
     : settings(s),
       at_once(s.switch_at == "now"),
-      fade_slew(slew(s.fade_time, sample_rate)),
-      stall_slew(slew(s.stall_fade_time, sample_rate)),
+      fade_slew(largest_slew(s.fade_time, sample_rate)),
+      stall_slew(largest_slew(s.stall_fade_time, sample_rate)),
       stall_samples(static_cast<std::int64_t>(std::ceil(s.stall_time * sample_rate))),
       longest_lap(static_cast<std::int64_t>(kLongestLap * sample_rate)) {
   for (Focus& f : focus) {
-    f.motion.configure(sample_rate, kMaxSpeed / sample_rate * kFloatMargin);
+    f.motion.configure(sample_rate, kMaxFocusSpeed / sample_rate * kFloatMargin);
     f.last.p_D = f.motion.position().cast<float>();
   }
 }

@@ -11,6 +11,9 @@
 
 namespace prostm {
 
+/// Of a focal point that sounds [m/s]; where a path asks for more its laps take longer.
+inline constexpr double kMaxFocusSpeed = 8.0;
+
 struct EmitSettings {
   int foci = 4;                      ///< focal points, 1..8
   double full_scale_pressure = 0.0;  ///< that maps to intensity 1 [unit of the target]; > 0

@@ -1,0 +1,119 @@
+#include "emit/loop_samples.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/random.hpp"
+#include "emit/paths.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kRate = 40e3;  // [Hz]
+
+EmitSettings settings() {
+  EmitSettings s;
+  s.full_scale_pressure = 1.0;
+  return s;
+}
+
+/// Rings of these lengths, whose pressure goes from 0.4 to 1.
+LiftedPlan rings(const std::vector<double>& lengths) {
+  LiftedPlan plan;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    plan.paths.push_back(
+        test::ring(Vec3(0.05 * static_cast<double>(i), 0.0, 0.2), lengths[i], 40, 1.0));
+    LiftedPath& path = plan.paths.back();
+    for (std::size_t j = 0; j < path.pressure.size(); ++j) {
+      path.pressure[j] = 0.7 + 0.3 * std::cos(2.0 * kPi * static_cast<double>(j) / 40.0);
+    }
+  }
+  return plan;
+}
+
+// 140 mm at 7 m/s are 800 samples: then nothing is adjusted, and the emitter gives the same.
+TEST(LoopSamples, IsWhatTheEmitterGivesOnceItRuns) {
+  const LiftedPlan plan = rings({0.140, 0.070});
+  const LoopSamples loop = loop_samples(plan, settings(), kRate);
+  ASSERT_EQ(loop.samples, 800);
+  EXPECT_EQ(loop.laps, (std::vector<int>{1, 2}));
+  EXPECT_LT(loop.largest_stretch(), 1e-9);
+  EmitSettings emit = settings();
+  emit.foci = 2;
+  PathEmitter emitter(emit, kRate);
+  emitter.draft() = plan;
+  emitter.submit();
+  std::vector<FocusSample> block(2 * 2400);
+  emitter.fill(0, block);
+  // both start at the sample after the silent one of the jump
+  std::size_t offset = 0;
+  double nearest = 1.0;
+  for (std::size_t shift = 0; shift < 800; ++shift) {
+    const double d = static_cast<double>((block[2 * (1600 + shift)].p_D - loop.sample[0].p_D).norm());
+    if (d < nearest) {
+      nearest = d;
+      offset = shift;
+    }
+  }
+  for (std::size_t k = 0; k < 800; ++k) {
+    for (std::size_t f = 0; f < 2; ++f) {
+      const FocusSample& ours = loop.sample[2 * k + f];
+      const FocusSample& theirs = block[2 * (800 + (offset + k) % 800) + f];
+      EXPECT_LT((ours.p_D - theirs.p_D).norm(), 1e-6F);
+      EXPECT_NEAR(ours.intensity, theirs.intensity, 1e-6F);
+    }
+  }
+}
+
+TEST(LoopSamples, EveryPathClosesAndLittleIsAdjusted) {
+  Random random(5);
+  double worst = 0.0;
+  for (int round = 0; round < 100; ++round) {
+    std::vector<double> lengths;
+    for (int i = 0; i < 4; ++i) lengths.push_back(random.uniform(0.035, 0.140));
+    const LiftedPlan plan = rings(lengths);
+    const LoopSamples loop = loop_samples(plan, settings(), kRate);
+    EXPECT_EQ(loop.samples % kLoopUnit, 0);
+    worst = std::max(worst, loop.largest_stretch());
+    for (std::size_t f = 0; f < 4; ++f) {
+      const double lap = lengths[f] / 7.0 * kRate;
+      EXPECT_NEAR(loop.samples / (loop.laps[f] * lap) - 1.0, loop.stretch[f], 1e-9);
+      // the step over the seam is one like the others
+      const std::size_t last = 4 * static_cast<std::size_t>(loop.samples - 1);
+      const float seam = (loop.sample[f].p_D - loop.sample[last + f].p_D).norm();
+      EXPECT_NEAR(seam, lengths[f] * loop.laps[f] / loop.samples, 1e-5);
+      EXPECT_LE(std::abs(loop.sample[f].intensity - loop.sample[last + f].intensity),
+                1.0F / 40.0F + 1e-6F);
+    }
+  }
+  EXPECT_LT(worst, 0.05);
+}
+
+TEST(LoopSamples, ThePowerLimitAndRestingPathsAreKept) {
+  LiftedPlan plan = rings({0.100});
+  plan.paths.push_back(test::point(Vec3(0.0, 0.05, 0.2), 1.0));
+  EmitSettings s = settings();
+  s.power_limit = 0.5;
+  const LoopSamples loop = loop_samples(plan, s, kRate);
+  EXPECT_EQ(loop.laps[1], 0);
+  for (int k = 0; k < loop.samples; ++k) {
+    const FocusSample* at = &loop.sample[2 * static_cast<std::size_t>(k)];
+    EXPECT_LE(at[0].intensity * at[0].intensity + at[1].intensity * at[1].intensity, 0.5F + 1e-6F);
+    EXPECT_EQ(at[1].p_D, Eigen::Vector3f(0.0F, 0.05F, 0.2F));
+  }
+}
+
+TEST(LoopSamples, RefusesWhatIsNoLoop) {
+  EXPECT_THROW(loop_samples({}, settings(), kRate), std::invalid_argument);
+  EXPECT_THROW(loop_samples(rings({0.1, 0.1, 0.1, 0.1, 0.1}), settings(), kRate),
+               std::invalid_argument);
+  LiftedPlan slow = rings({0.140});
+  slow.paths[0].speed = 0.1;
+  EXPECT_THROW(loop_samples(slow, settings(), kRate), std::invalid_argument);
+  EXPECT_THROW(loop_samples(rings({0.1}), EmitSettings(), kRate), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace prostm
