@@ -87,8 +87,9 @@ LoopDrives gallery_drives(fields::Pattern pattern) {
     }
   }
   LoopDriveResult result;
-  loop_drives(usx_array(), Medium(), loop_samples(lifted, emit, 40e3), LoopDriveSettings(),
-              [](int, int) { return true; }, result);
+  loop_drives(
+      usx_array(), Medium(), loop_samples(lifted, emit, 40e3), LoopDriveSettings(),
+      [](int, int) { return true; }, result);
   LoopDrives drives(result.output.rows(), kSamples);
   for (Eigen::Index k = 0; k < kSamples; ++k) {
     drives.col(k) = result.output.col(k % result.output.cols());
@@ -119,9 +120,9 @@ class DirectProduct {
     for (std::size_t m = 0; m < at.p_D.size(); ++m) {
       for (std::size_t n = 0; n < packed.transducers(); ++n) {
         const Vec3 way = (at.p_D[m] - packed.array.position[n]).normalized();
-        g_[m * packed.transducers() + n] = static_cast<std::complex<T>>(
-            std::max(-way.dot(at.normal[m]), 0.0) *
-            propagate(packed.array, packed.wave, n, at.p_D[m]));
+        g_[m * packed.transducers() + n] =
+            static_cast<std::complex<T>>(std::max(-way.dot(at.normal[m]), 0.0) *
+                                         propagate(packed.array, packed.wave, n, at.p_D[m]));
       }
     }
     for (int n = 0; n < n_; ++n) {
@@ -136,8 +137,8 @@ class DirectProduct {
     for (int first = 0; first < points_; first += kBlock) {
       multiply(first);
       for (int m = 0; m < kBlock; ++m) {
-        const T* row = reinterpret_cast<const T*>(z_.data()) +
-                       static_cast<std::size_t>(m) * 2 * kSamples;
+        const T* row =
+            reinterpret_cast<const T*>(z_.data()) + static_cast<std::size_t>(m) * 2 * kSamples;
         out[static_cast<std::size_t>(first + m)] =
             static_cast<float>(unit / kSamples * square(row));
       }
@@ -225,8 +226,8 @@ void add_loop_rows(const std::vector<LoopDrives>& loops, int threads, std::vecto
     rank.add(static_cast<double>(covariance_factor(drives, pool, 1e-6).cols()));
   }
   const std::string with = ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
-  rows.push_back({"mean over the loop" + with, "ms", mean.summary(), "cgemm, G given",
-                  direct.summary().p50});
+  rows.push_back(
+      {"mean over the loop" + with, "ms", mean.summary(), "cgemm, G given", direct.summary().p50});
   rows.push_back({"envelope and mean" + with, "ms", envelope.summary(), "cgemm, G given",
                   direct_envelope.summary().p50});
   if (threads > 1) return;

@@ -18,7 +18,7 @@ using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr Index kChunk = 256;   // samples that are added up in single precision
+constexpr Index kChunk = 256;    // samples that are added up in single precision
 constexpr Index kRowBlock = 48;  // rows of C that are a task
 
 void check(const LoopDrives& drives) {
@@ -38,9 +38,13 @@ void check(const LoopDrives& drives) {
   }
 }
 
+/// Row by row, as its blocks are added up.
+using Covariance =
+    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Adds Σ a aᴴ over some samples to the upper triangle of `sum`.
 void add_covariance(const LoopDrives& drives, Index first, Index count, WorkerPool& pool,
-                    MatrixXcd& sum) {
+                    Covariance& sum) {
   const Index n = drives.rows();
   const auto samples = static_cast<std::size_t>(count);
   std::vector<float> re(static_cast<std::size_t>(n) * samples), im(re.size());
@@ -75,8 +79,8 @@ void add_covariance(const LoopDrives& drives, Index first, Index count, WorkerPo
 }
 
 /// C, both triangles.
-MatrixXcd covariance(const LoopDrives& drives, WorkerPool& pool) {
-  MatrixXcd c = MatrixXcd::Zero(drives.rows(), drives.rows());
+Covariance covariance(const LoopDrives& drives, WorkerPool& pool) {
+  Covariance c = Covariance::Zero(drives.rows(), drives.rows());
   for (Index first = 0; first < drives.cols(); first += kChunk) {
     add_covariance(drives, first, std::min(kChunk, drives.cols() - first), pool, c);
   }

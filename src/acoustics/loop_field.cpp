@@ -14,7 +14,7 @@ namespace prostm {
 namespace {
 
 constexpr double kTolerance = 1e-6;  // of the drives' power
-constexpr std::size_t kBlock = 48;  // points whose rows stay in the cache together
+constexpr std::size_t kBlock = 48;   // points whose rows stay in the cache together
 
 [[noreturn]] void refuse(const std::string& what) {
   throw std::invalid_argument(what);
@@ -135,8 +135,8 @@ std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medi
              [&](std::size_t first, std::size_t count, const Scratch& s, std::size_t) {
                for (std::size_t m = 0; m < count; ++m) {
                  const std::size_t at = m * right.cols();
-                 mean[first + m] = unit * sum_of_squares(s.z_re.data() + at, s.z_im.data() + at,
-                                                         right.cols());
+                 mean[first + m] =
+                     unit * sum_of_squares(s.z_re.data() + at, s.z_im.data() + at, right.cols());
                }
              });
   return mean;

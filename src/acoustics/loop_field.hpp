@@ -27,9 +27,10 @@ Eigen::VectorXcf acoustic_pressure(const PackedArray& packed, std::span<const Ve
                                    const Eigen::VectorXcf& drives);
 
 /// Mean radiation pressure [Pa] over the loop at each point, (A20) with (A21): Σ |(G L)_m|² instead
-/// of the mean of |(G a_k)_m|²; within 1e-5 of the largest for drives of focal points. The same for any number of threads.
-/// @throws as validate() and covariance_factor() do, and std::invalid_argument when the drives are not
-/// those of the array.
+/// of the mean of |(G a_k)_m|²; within 1e-5 of the largest for drives of focal points. The same for
+/// any number of threads.
+/// @throws as validate() and covariance_factor() do, and std::invalid_argument when the drives are
+/// not those of the array.
 std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medium& medium,
                                            const LoopDrives& drives, const SurfacePoints& surface,
                                            WorkerPool& pool);
@@ -42,9 +43,9 @@ struct LoopPressure {
   std::vector<float> frame;     ///< mean over each part: points × frames
 };
 
-/// Every sample through the same basis, a_k ≈ Q Qᴴ a_k; within 2e-4 of the largest. @param frames 0, or a divisor of the number
-/// of samples. @throws as mean_radiation_pressure() does, and std::invalid_argument for frames that
-/// are neither.
+/// Every sample through the same basis, a_k ≈ Q Qᴴ a_k; within 2e-4 of the largest. @param frames
+/// 0, or a divisor of the number of samples. @throws as mean_radiation_pressure() does, and
+/// std::invalid_argument for frames that are neither.
 LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium,
                            const LoopDrives& drives, const SurfacePoints& surface, int frames,
                            WorkerPool& pool);

@@ -12,9 +12,9 @@ namespace prostm {
 namespace {
 
 constexpr double kSmallStretch = 0.01;
-constexpr int kLongestLaps = 8;       // of the longest lap, that a loop may have
-constexpr double kLongestLap = 1.0;   // [s]
-constexpr double kSlowest = 1e-6;     // below this speed a focal point is at rest [m/s]
+constexpr int kLongestLaps = 8;      // of the longest lap, that a loop may have
+constexpr double kLongestLap = 1.0;  // [s]
+constexpr double kSlowest = 1e-6;    // below this speed a focal point is at rest [m/s]
 
 /// Samples of a lap as the plan says; 0 for a focal point at rest.
 double lap_of(const LiftedPath& path, double sample_rate) {
@@ -32,7 +32,8 @@ double stretch_in(int samples, double lap) {
 
 int loop_length(const std::vector<double>& laps) {
   const double longest = *std::max_element(laps.begin(), laps.end());
-  const int least = std::max(1, static_cast<int>(std::ceil(longest / kLoopUnit - 1e-6))) * kLoopUnit;
+  const int least =
+      std::max(1, static_cast<int>(std::ceil(longest / kLoopUnit - 1e-6))) * kLoopUnit;
   int best = least;
   double least_stretch = 1.0;
   for (int samples = least; samples <= kLongestLaps * least; samples += kLoopUnit) {
@@ -68,8 +69,7 @@ void advance(const LiftedPlan& plan, const EmitSettings& settings, LoopSamples& 
   bool saturated = false;
   for (std::size_t f = 0; f < drives.size(); ++f) {
     const LiftedPath& path = plan.paths[f];
-    FocusSample& out =
-        loop.sample[static_cast<std::size_t>(k) * drives.size() + f];
+    FocusSample& out = loop.sample[static_cast<std::size_t>(k) * drives.size() + f];
     if (path.p_D.empty()) continue;
     const double share = static_cast<double>(k) * loop.laps[f] / loop.samples;
     const PathPoint point = point_at(path, path.length * (share - std::floor(share)));

@@ -15,7 +15,7 @@ struct LoopSamples {
   int samples = 0;  ///< of the loop
   double sample_rate = 0.0;
   std::vector<FocusSample> sample;  ///< sample-major: [k·foci + f]
-  std::vector<int> laps;  ///< that each focal point plays in the loop; 0 at rest
+  std::vector<int> laps;            ///< that each focal point plays in the loop; 0 at rest
   /// How much longer each lap is than the plan says, as a share of it: below 0, shorter.
   std::vector<double> stretch;
 

@@ -105,8 +105,7 @@ bool solve_all(const TransducerArray& array, const Medium& medium, const LoopSam
     drives.col(k) = solution.drive;
     reached[static_cast<std::size_t>(k)] = solution.level * kAboveAll;
     out.merged += s.merged;
-    out.worst_focus_error =
-        std::max(out.worst_focus_error, solver.errors().cwiseAbs().maxCoeff());
+    out.worst_focus_error = std::max(out.worst_focus_error, solver.errors().cwiseAbs().maxCoeff());
   }
   return true;
 }
@@ -129,8 +128,7 @@ void measure_power(const Eigen::MatrixXcd& drives, LoopDriveResult& out) {
   const Eigen::ArrayXXd size = drives.cwiseAbs().array();
   out.largest_drive = size.maxCoeff();
   out.mean_power = size.square().sum() / static_cast<double>(drives.cols());
-  out.full_share =
-      static_cast<double>((size > kFull).count()) / static_cast<double>(drives.size());
+  out.full_share = static_cast<double>((size > kFull).count()) / static_cast<double>(drives.size());
 }
 
 /// Twice round, so that the second time starts with what it ends with.

@@ -1,5 +1,6 @@
 #pragma once
-/// What an array does to play a loop of focal points: drives, and what the transducers make of them.
+/// What an array does to play a loop of focal points: drives, and what the transducers make of
+/// them.
 
 #include <functional>
 
@@ -20,14 +21,14 @@ struct LoopDriveSettings {
 };
 
 struct LoopDriveResult {
-  LoopDrives output;  ///< what the transducers put out, in the place of drives in (A1)
-  double full_scale_pa = 0.0;  ///< acoustic pressure of intensity 1 [Pa, rms]
-  int short_samples = 0;       ///< that did not reach it
-  double largest_drive = 0.0;  ///< |q|, 0..1
-  double mean_power = 0.0;     ///< Σ_n |q_n|², mean over the loop
-  double full_share = 0.0;     ///< of all transducers and samples, those with |q| > 0.99
+  LoopDrives output;               ///< what the transducers put out, in the place of drives in (A1)
+  double full_scale_pa = 0.0;      ///< acoustic pressure of intensity 1 [Pa, rms]
+  int short_samples = 0;           ///< that did not reach it
+  double largest_drive = 0.0;      ///< |q|, 0..1
+  double mean_power = 0.0;         ///< Σ_n |q_n|², mean over the loop
+  double full_share = 0.0;         ///< of all transducers and samples, those with |q| > 0.99
   double worst_focus_error = 0.0;  ///< largest error of a focal point's share of its sample
-  int merged = 0;  ///< focal points left out since one stronger was within 0.1 mm
+  int merged = 0;                  ///< focal points left out since one stronger was within 0.1 mm
 };
 
 /// Drives for each sample by `solve_foci`, from the phases of the sample before, at one common

@@ -96,8 +96,7 @@ TEST(ComplexProduct, KernelsAreThePlainSums) {
       PackedMatrix y(inner, cols);
       for (std::size_t k = 0; k < inner; ++k) {
         for (std::size_t c = 0; c < cols; ++c) {
-          y.set(k, c,
-                {static_cast<float>(random.normal()), static_cast<float>(random.normal())});
+          y.set(k, c, {static_cast<float>(random.normal()), static_cast<float>(random.normal())});
         }
       }
       const std::size_t first = y.cols() > 16 ? 1 : 0;
@@ -230,12 +229,11 @@ TEST(LoopField, APlaneWavePressesByTheSquaredCosine) {
   const PackedArray packed(array, Medium());
   WorkerPool pool(1);
   const Vec3 p(0.0, 0.0, 0.4);
-  const double facing =
-      radiation_pressure(std::abs(propagate(array, Medium(), 0, p)), Medium());
+  const double facing = radiation_pressure(std::abs(propagate(array, Medium(), 0, p)), Medium());
   for (const double tilt : {0.0, 0.3, 0.7, 1.2, 1.5, 2.0, 3.0}) {
     const SurfacePoints surface{{p}, {Eigen::AngleAxisd(tilt, Vec3::UnitY()) * -Vec3::UnitZ()}};
-    const float got = mean_radiation_pressure(packed, Medium(), LoopDrives::Ones(1, 2), surface,
-                                              pool)[0];
+    const float got =
+        mean_radiation_pressure(packed, Medium(), LoopDrives::Ones(1, 2), surface, pool)[0];
     const double cosine = std::max(std::cos(tilt), 0.0);
     EXPECT_NEAR(got, facing * cosine * cosine, 1e-6 * facing) << tilt;
   }
@@ -250,8 +248,7 @@ TEST(LoopField, AFocusPressesLessOnATiltedSurface) {
   const double facing = radiation_pressure(
       static_cast<double>(std::abs(acoustic_pressure(packed, std::vector{focus}, q)[0])), Medium());
   const auto share = [&](double tilt) {
-    const SurfacePoints surface{{focus},
-                                {Eigen::AngleAxisd(tilt, Vec3::UnitX()) * -Vec3::UnitZ()}};
+    const SurfacePoints surface{{focus}, {Eigen::AngleAxisd(tilt, Vec3::UnitX()) * -Vec3::UnitZ()}};
     return static_cast<double>(mean_radiation_pressure(packed, Medium(), q, surface, pool)[0]) /
            facing;
   };

@@ -51,7 +51,8 @@ TEST(LoopSamples, IsWhatTheEmitterGivesOnceItRuns) {
   std::size_t offset = 0;
   double nearest = 1.0;
   for (std::size_t shift = 0; shift < 800; ++shift) {
-    const double d = static_cast<double>((block[2 * (1600 + shift)].p_D - loop.sample[0].p_D).norm());
+    const double d =
+        static_cast<double>((block[2 * (1600 + shift)].p_D - loop.sample[0].p_D).norm());
     if (d < nearest) {
       nearest = d;
       offset = shift;
