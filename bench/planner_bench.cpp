@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "figure/figures.hpp"
+#include "planner/am.hpp"
 #include "planner/bending.hpp"
 #include "planner/budgets.hpp"
 #include "planner/contenders.hpp"
@@ -114,6 +115,7 @@ std::vector<Row> measure_all(const Options& options) {
   print_summary(outcomes);
   std::vector<Row> rows;
   append_rows(outcomes, rows);
+  measure_am(sequences, options.quality.frames, rows);
   if (!options.files.empty()) return rows;
   measure_budgets(rows);
   measure_steadiness(contenders, rows);

@@ -8,7 +8,7 @@
 
 #include "bindings.hpp"
 #include "core/require.hpp"
-#include "emit/path_emitter.hpp"
+#include "emit/emitter.hpp"
 #include "settings.hpp"
 
 namespace prostm::python {
@@ -17,11 +17,14 @@ namespace {
 constexpr int kMostSamples = 100'000'000;  // of one call: 16 bytes for each and every focal point
 
 void check_patches(const Plan& plan, std::size_t patches) {
-  for (const FocalPath& path : plan.paths) {
-    if (static_cast<std::size_t>(path.patch) < patches) continue;
-    throw std::invalid_argument("a path lies on patch " + std::to_string(path.patch) +
-                                "; the target has " + std::to_string(patches));
-  }
+  const auto check = [patches](const char* what, int patch) {
+    if (static_cast<std::size_t>(patch) < patches) return;
+    throw std::invalid_argument(std::string("a ") + what + " lies on patch " +
+                                std::to_string(patch) + "; the target has " +
+                                std::to_string(patches));
+  };
+  for (const FocalPath& path : plan.paths) check("path", path.patch);
+  for (const FocalPoint& focus : plan.foci) check("focus", focus.patch);
 }
 
 std::unique_ptr<LiftedPlan> lift_on_frame(const Plan& plan, const TargetFrame& frame) {
@@ -67,6 +70,16 @@ void bind_lifted(py::module_& m) {
       .def_readonly("length", &LiftedPath::length, "On the skin [m].")
       .def_readonly("speed", &LiftedPath::speed, "Of the focal point [m/s].");
 
+  py::class_<LiftedFocus>(m, "LiftedFocus", "A focal point that stands still on the skin.")
+      .def_property_readonly(
+          "p_D",
+          [](const py::object& self) {
+            return view({3}, self.cast<const LiftedFocus&>().p_D.data(), self);
+          },
+          "(3,) in the device's frame [m]; a view.")
+      .def_readonly("pressure", &LiftedFocus::pressure,
+                    "Rendered at the peak of the modulation, in the target's unit.");
+
   py::class_<LiftedPlan>(m, "LiftedPlan", "A plan on the skin, ready to be emitted; see lift().")
       .def_property_readonly(
           "paths",
@@ -78,6 +91,16 @@ void bind_lifted(py::module_& m) {
             return paths;
           },
           "The LiftedPaths, as a new list.")
+      .def_property_readonly(
+          "foci",
+          [](const py::object& self) {
+            py::list foci;
+            for (const LiftedFocus& focus : self.cast<const LiftedPlan&>().foci) {
+              foci.append(py::cast(&focus, py::return_value_policy::reference_internal, self));
+            }
+            return foci;
+          },
+          "The LiftedFoci, as a new list.")
       .def_readwrite("id", &LiftedPlan::id, "Number of the plan, as TakeOver repeats it.")
       .def_readonly("hand_time", &LiftedPlan::hand_time,
                     "Of the hand frame that it was planned from [s].");
@@ -93,26 +116,38 @@ void bind_lifted(py::module_& m) {
 
 /// An emitter and a lock for each of its two sides, so that any Python threads may call it.
 struct SharedEmitter {
-  SharedEmitter(const EmitSettings& s, double rate)
-      : emitter(s, rate), settings(s), sample_rate(rate) {}
-  PathEmitter emitter;
+  SharedEmitter(Method method, const EmitSettings& s, double rate)
+      : emitter(make_emitter(method, s, rate)), settings(s), sample_rate(rate) {}
+  std::unique_ptr<Emitter> emitter;
   EmitSettings settings;
   double sample_rate;
   std::mutex planners_side, devices_side;
 };
 
-std::unique_ptr<SharedEmitter> make_emitter(const EmitSettings* settings, double sample_rate,
-                                            const py::kwargs& values) {
-  EmitSettings own = settings != nullptr ? *settings : EmitSettings{};
-  set_settings(visit_of(own), "EmitSettings", values);
-  return std::make_unique<SharedEmitter>(own, sample_rate);
+/// The emitter of a method, a class of its own in Python.
+template <Method kMethod>
+struct SharedEmitterOf : SharedEmitter {
+  SharedEmitterOf(const EmitSettings& s, double rate) : SharedEmitter(kMethod, s, rate) {}
+};
+
+template <Method kMethod>
+void bind_emitter_of(py::module_& m, const char* name, const char* doc) {
+  py::class_<SharedEmitterOf<kMethod>, SharedEmitter>(m, name, doc)
+      .def(py::init([](const EmitSettings* settings, double sample_rate, const py::kwargs& values) {
+             EmitSettings own = settings != nullptr ? *settings : EmitSettings{};
+             set_settings(visit_of(own), "EmitSettings", values);
+             return std::make_unique<SharedEmitterOf<kMethod>>(own, sample_rate);
+           }),
+           "settings: EmitSettings, copied; None: the defaults. sample_rate: of the device [Hz].\n"
+           "Further keywords are settings. Raises ValueError that names the setting and its bound.",
+           py::arg("settings") = py::none(), py::arg("sample_rate") = 40e3);
 }
 
 void submit(SharedEmitter& self, const LiftedPlan& plan) {
   const py::gil_scoped_release unlocked;
   const std::lock_guard lock(self.planners_side);
-  self.emitter.draft() = plan;
-  self.emitter.submit();
+  self.emitter->draft() = plan;
+  self.emitter->submit();
 }
 
 /// Fills an array in place: a FocusSample is four floats, of which two arrays are views.
@@ -123,7 +158,7 @@ py::tuple fill(SharedEmitter& self, std::int64_t first, int samples) {
   if (first < 0) {
     throw std::invalid_argument("first = " + std::to_string(first) + " must be at least 0");
   }
-  const py::ssize_t foci = self.emitter.foci(), n = samples;
+  const py::ssize_t foci = self.emitter->foci(), n = samples;
   py::array_t<float> all({n, foci, py::ssize_t{4}});
   float* data = all.mutable_data();
   {
@@ -132,7 +167,7 @@ py::tuple fill(SharedEmitter& self, std::int64_t first, int samples) {
     const auto count = static_cast<std::size_t>(n * foci);
     auto* out = reinterpret_cast<FocusSample*>(data);
     std::uninitialized_default_construct_n(out, count);
-    self.emitter.fill(first, {out, count});
+    self.emitter->fill(first, {out, count});
   }
   const py::ssize_t number = sizeof(float), sample = 4 * number;
   const std::vector<py::ssize_t> strides{foci * sample, sample, number};
@@ -171,15 +206,11 @@ void bind_emitter(py::module_& m) {
       .done();
 
   py::class_<SharedEmitter>(
-      m, "PathEmitter",
-      "Turns plans into samples of focal points: speed, transitions, drive law, fade-out.\n\n"
+      m, "Emitter",
+      "Turns plans into samples of focal points: a PathEmitter or a FocusEmitter.\n\n"
       "While its intensity is above 1 % a focal point moves at most 8 m/s, intensities change by\n"
       "at most 1/40 per sample and the sum of their squares stays within power_limit. A plan that\n"
-      "no other follows fades out after stall_time. docs/design.md, section 7.")
-      .def(py::init(&make_emitter),
-           "settings: EmitSettings, copied; None: the defaults. sample_rate: of the device [Hz].\n"
-           "Further keywords are settings. Raises ValueError that names the setting and its bound.",
-           py::arg("settings") = py::none(), py::arg("sample_rate") = 40e3)
+      "no other follows fades out after stall_time.")
       .def("submit", &submit,
            "Hands a LiftedPlan over, which is copied; one that no fill() fetched yet is replaced.",
            py::arg("plan"))
@@ -188,7 +219,7 @@ void bind_emitter(py::module_& m) {
           [](SharedEmitter& self) {
             const py::gil_scoped_release unlocked;
             const std::lock_guard lock(self.planners_side);
-            self.emitter.lose();
+            self.emitter->lose();
           },
           "The hand is gone: fades out within 50 ms, until the next plan.")
       .def(
@@ -200,7 +231,7 @@ void bind_emitter(py::module_& m) {
           "views of one array of (x, y, z, intensity).",
           py::arg("first"), py::arg("samples"))
       .def_property_readonly(
-          "foci", [](const SharedEmitter& self) { return self.emitter.foci(); },
+          "foci", [](const SharedEmitter& self) { return self.emitter->foci(); },
           "Focal points per sample.")
       .def_readonly("sample_rate", &SharedEmitter::sample_rate, "[Hz].")
       .def_property_readonly(
@@ -212,7 +243,7 @@ void bind_emitter(py::module_& m) {
             const py::gil_scoped_release unlocked;
             const std::lock_guard lock(self.planners_side);
             TakeOver out;
-            if (!self.emitter.next_take_over(out)) return std::nullopt;
+            if (!self.emitter->next_take_over(out)) return std::nullopt;
             return out;
           },
           "The oldest TakeOver that was not read, or None.")
@@ -221,9 +252,17 @@ void bind_emitter(py::module_& m) {
           [](SharedEmitter& self) {
             const py::gil_scoped_release unlocked;
             const std::lock_guard lock(self.planners_side);
-            return self.emitter.stats();
+            return self.emitter->stats();
           },
           "EmitStats as of the last fill().");
+  bind_emitter_of<Method::ProStm>(m, "PathEmitter",
+                                  "Plans of paths as samples: speed, transitions, drive law, "
+                                  "fade-out; docs/design.md, section\n"
+                                  "7.");
+  bind_emitter_of<Method::Am>(
+      m, "FocusEmitter",
+      "Plans of foci as samples: amplitude modulation of focal points that stand still and move\n"
+      "between two silent samples; docs/design.md, AM baseline (B).");
 }
 
 /// The drive law over an array of any shape.

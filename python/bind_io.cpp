@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 
 #include "bindings.hpp"
 #include "core/file.hpp"
 #include "io/field_file.hpp"
 #include "io/plan_file.hpp"
+#include "plan_result.hpp"
 
 namespace prostm::python {
 namespace {
@@ -23,24 +25,28 @@ TargetField read_field_file(const Path& path, std::optional<double> cell_mm, int
   return read_field(path.string(), options);
 }
 
-std::string plan_text(const Plan& plan, const TargetField& target, const PlanSettings& settings,
+std::string plan_text(const Plan& plan, const TargetField& target, const AnySettings& settings,
                       const PlanStats* stats, const Metrics* metrics,
-                      const std::optional<std::vector<Control>>& controls,
-                      const std::string& method) {
+                      const std::optional<std::vector<Control>>& controls) {
+  const SettingsInFile in_file(settings);
+  if (in_file.method == Method::Am ? !plan.paths.empty() : !plan.foci.empty()) {
+    throw std::invalid_argument(
+        "a plan of paths goes with PlanSettings, a plan of foci with AmSettings");
+  }
   PlanFileExtras extras;
-  extras.method = method;
+  extras.method = in_file.method;
+  extras.preset = in_file.preset;
   extras.stats = stats;
   extras.metrics = metrics;
   extras.controls = controls ? &*controls : nullptr;
-  return plan_to_json(plan, target, settings, extras, "");
+  return plan_to_json(plan, target, extras, in_file.json);
 }
 
 void write_plan_file(const Path& path, const Plan& plan, const TargetField& target,
-                     const PlanSettings& settings, const PlanStats* stats, const Metrics* metrics,
-                     const std::optional<std::vector<Control>>& controls,
-                     const std::string& method) {
+                     const AnySettings& settings, const PlanStats* stats, const Metrics* metrics,
+                     const std::optional<std::vector<Control>>& controls) {
   const py::gil_scoped_release unlocked;
-  write_file(path.string(), plan_text(plan, target, settings, stats, metrics, controls, method));
+  write_file(path.string(), plan_text(plan, target, settings, stats, metrics, controls));
 }
 
 void bind_fields(py::module_& m) {
@@ -81,14 +87,14 @@ void bind_plans(py::module_& m) {
   m.def(
       "write_plan", &write_plan_file,
       "Writes a plan file (prostm-plan/1). target: the TargetField that was planned, whose plane\n"
-      "and heights are repeated in the file. What is None is left out.",
+      "and heights are repeated in the file. settings: PlanSettings for paths, AmSettings for\n"
+      "foci. What is None is left out.",
       py::arg("path"), py::arg("plan"), py::arg("target"), py::arg("settings"),
       py::arg("stats") = py::none(), py::arg("metrics") = py::none(),
-      py::arg("controls") = py::none(), py::arg("method") = "pro-stm");
+      py::arg("controls") = py::none());
   m.def("plan_to_json", &plan_text, "What write_plan() writes, as a text.", py::arg("plan"),
         py::arg("target"), py::arg("settings"), py::arg("stats") = py::none(),
-        py::arg("metrics") = py::none(), py::arg("controls") = py::none(),
-        py::arg("method") = "pro-stm");
+        py::arg("metrics") = py::none(), py::arg("controls") = py::none());
 }
 
 }  // namespace

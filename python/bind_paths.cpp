@@ -44,12 +44,35 @@ FocalPath make_path(const py::object& points, const py::object& pressure, double
   return path;
 }
 
-Plan make_plan(const std::vector<const FocalPath*>& paths) {
-  if (paths.size() > static_cast<std::size_t>(kMaxPaths)) {
-    throw std::invalid_argument("a plan has " + std::to_string(paths.size()) +
-                                " paths; it must have at most " + std::to_string(kMaxPaths));
+FocalPoint make_focus(const py::object& position, double pressure, int patch) {
+  const Numbers x = numbers(position, "position", std::vector<py::ssize_t>{2});
+  const FocalPoint focus{patch, Vec2(x.data()[0], x.data()[1]), pressure};
+  for (const double coordinate : focus.position) {
+    require_between("a coordinate of position", coordinate, -kLargestCoordinate, kLargestCoordinate,
+                    "m");
   }
+  require_between("pressure", pressure, 0.0, kLargestPressure);
+  require_between("patch", patch, 0, kMaxPatches - 1);
+  return focus;
+}
+
+void check_count(std::size_t count, const char* what) {
+  if (count <= static_cast<std::size_t>(kMaxPaths)) return;
+  throw std::invalid_argument("a plan has " + std::to_string(count) + " " + what +
+                              "; it must have at most " + std::to_string(kMaxPaths));
+}
+
+Plan make_plan(const std::vector<const FocalPath*>& paths,
+               const std::vector<const FocalPoint*>& foci) {
+  check_count(paths.size(), "paths");
+  check_count(foci.size(), "foci");
+  if (!paths.empty() && !foci.empty())
+    throw std::invalid_argument("a plan has paths or foci, not both");
   Plan plan;
+  for (const FocalPoint* focus : foci) {
+    if (focus == nullptr) throw py::type_error("a focus must be a FocalPoint, not None");
+    plan.foci.push_back(*focus);
+  }
   for (const FocalPath* path : paths) {
     if (path == nullptr) throw py::type_error("a path must be a FocalPath, not None");
     plan.paths.push_back(*path);
@@ -80,6 +103,43 @@ py::list paths_of(const py::object& self) {
     paths.append(py::cast(&path, py::return_value_policy::reference_internal, self));
   }
   return paths;
+}
+
+py::list foci_of(const py::object& self) {
+  py::list foci;
+  for (const FocalPoint& focus : self.cast<const Plan&>().foci) {
+    foci.append(py::cast(&focus, py::return_value_policy::reference_internal, self));
+  }
+  return foci;
+}
+
+py::array position_of(const py::object& self) {
+  return view({2}, self.cast<const FocalPoint&>().position.data(), self);
+}
+
+void bind_focus(py::module_& m) {
+  py::class_<FocalPoint>(m, "FocalPoint",
+                         "A focal point that stands still in a target's plane, modulated (AM).")
+      .def(py::init(&make_focus),
+           "position: (2,) in the plane [m]. pressure: rendered at the peak of the modulation,\n"
+           ">= 0. patch: index of the target patch (hand). Raises ValueError, TypeError.",
+           py::arg("position"), py::arg("pressure"), py::arg("patch") = 0)
+      .def_property_readonly("position", &position_of, "(2,) in the plane [m]; a view.")
+      .def_readonly("pressure", &FocalPoint::pressure,
+                    "Rendered at the peak of the modulation, in the target's unit.")
+      .def_readonly("patch", &FocalPoint::patch, "Index of the target patch (hand).")
+      .def("__repr__",
+           [](const py::object& self) {
+             return "FocalPoint(" + std::string(py::repr(self.attr("position").attr("tolist")())) +
+                    ", pressure=" + std::string(py::repr(self.attr("pressure"))) + ")";
+           })
+      .def(py::pickle(
+          [](const py::object& self) {
+            return py::make_tuple(position_of(self), self.attr("pressure"), self.attr("patch"));
+          },
+          [](const py::tuple& t) {
+            return make_focus(t[0], t[1].cast<double>(), t[2].cast<int>());
+          }));
 }
 
 void bind_classes(py::module_& m) {
@@ -116,18 +176,25 @@ void bind_classes(py::module_& m) {
             return path;
           }));
 
-  py::class_<Plan>(m, "Plan", "What the focal points are to do: at most 8 closed paths.")
-      .def(py::init(&make_plan), "paths: FocalPaths, which are copied.", py::arg("paths"))
+  py::class_<Plan>(m, "Plan",
+                   "What the focal points are to do: at most 8 closed paths, or 8 foci (AM).")
+      .def(py::init(&make_plan), "paths: FocalPaths, or foci: FocalPoints, which are copied.",
+           py::arg("paths") = py::list(), py::arg("foci") = py::list())
       .def_property_readonly("paths", &paths_of, "The FocalPaths, as a new list.")
-      .def("__len__", [](const Plan& plan) { return plan.paths.size(); })
+      .def_property_readonly("foci", &foci_of, "The FocalPoints, as a new list.")
+      .def("__len__", [](const Plan& plan) { return plan.paths.size() + plan.foci.size(); })
       .def("__repr__",
            [](const py::object& self) {
-             return "Plan(" + std::string(py::repr(paths_of(self))) + ")";
+             const bool has_foci = !self.cast<const Plan&>().foci.empty();
+             return (has_foci ? "Plan(foci=" : "Plan(") +
+                    std::string(py::repr(has_foci ? foci_of(self) : paths_of(self))) + ")";
            })
-      .def(py::pickle([](const py::object& self) { return py::make_tuple(paths_of(self)); },
-                      [](const py::tuple& t) {
-                        return make_plan(t[0].cast<std::vector<const FocalPath*>>());
-                      }));
+      .def(py::pickle(
+          [](const py::object& self) { return py::make_tuple(paths_of(self), foci_of(self)); },
+          [](const py::tuple& t) {
+            return make_plan(t[0].cast<std::vector<const FocalPath*>>(),
+                             t[1].cast<std::vector<const FocalPoint*>>());
+          }));
 }
 
 }  // namespace
@@ -155,6 +222,7 @@ py::array quasi_static_array(const Plan& plan, const TargetField& raster, double
 void bind_paths(py::module_& m) {
   m.attr("kMaxPaths") = kMaxPaths;
   m.attr("kMaxPathPoints") = kMaxPathPoints;
+  bind_focus(m);
   bind_classes(m);
   m.def("closed_length", &closed_length, "Length of the closed polygon [m].", py::arg("path"));
   m.def(
@@ -164,7 +232,8 @@ void bind_paths(py::module_& m) {
         return quasi_static_array(plan, raster, sigma, {gain, gain_exponent, draw_rate}, patch);
       },
       "The paper's Eq. (1): p(x) = p_i / gain * exp(-|x - x_i|^2 / (2 sigma^2)), with x_i the\n"
-      "closest point to x over all paths of the patch. Returns (rows, cols) in the target's\n"
+      "closest point to x over all paths of the patch, or the nearest focus, for which gain is 1\n"
+      "(B2). Returns (rows, cols) in the target's\n"
       "unit, for every cell of the raster, skin or not.\n\n"
       "sigma: fall-off of a focal point [m]. gain: rendered over effective pressure, of a path\n"
       "with the period T times (T * draw_rate)**gain_exponent.",

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "am/am_planner.hpp"
 #include "bindings.hpp"
 #include "plan/planner.hpp"
 #include "plan_result.hpp"
@@ -15,26 +16,30 @@ namespace {
 constexpr std::size_t kDefaultCells = 128 * 128;
 
 /// A planner and the lock that lets several Python threads share it, one after the other.
+template <class P>
 struct SharedPlanner {
-  SharedPlanner(const PlanSettings& settings, std::size_t cells)
+  template <class S>
+  SharedPlanner(const S& settings, std::size_t cells)
       : planner(settings, cells), max_cells(cells) {}
-  Planner planner;
+  P planner;
   std::size_t max_cells;
   std::mutex mutex;
 };
 
-std::unique_ptr<SharedPlanner> make_planner(const PlanSettings* settings, long long max_cells,
-                                            const py::kwargs& values) {
+template <class P, class S>
+std::unique_ptr<SharedPlanner<P>> make_planner(const S* settings, const char* type,
+                                               long long max_cells, const py::kwargs& values) {
   if (max_cells < 1 || max_cells > static_cast<long long>(kMaxFieldCells)) {
     throw std::invalid_argument("max_cells = " + std::to_string(max_cells) +
                                 " must be between 1 and " + std::to_string(kMaxFieldCells));
   }
-  PlanSettings own = settings != nullptr ? *settings : PlanSettings{};
-  set_settings(visit_of(own), "PlanSettings", values);
-  return std::make_unique<SharedPlanner>(own, static_cast<std::size_t>(max_cells));
+  S own = settings != nullptr ? *settings : S{};
+  set_settings(visit_of(own), type, values);
+  return std::make_unique<SharedPlanner<P>>(own, static_cast<std::size_t>(max_cells));
 }
 
-void check_cells(const TargetField& target, const SharedPlanner& planner) {
+template <class P>
+void check_cells(const TargetField& target, const SharedPlanner<P>& planner) {
   if (target.size() <= planner.max_cells) return;
   throw std::invalid_argument(
       "a raster of " + std::to_string(target.rows) + " x " + std::to_string(target.cols) +
@@ -48,32 +53,52 @@ void check_status(PlanStatus status) {
       "the field cannot be planned: pressures must be at most 1e300 and cells 1e-6 to 1 m wide");
 }
 
-std::unique_ptr<PlanResult> plan_field(SharedPlanner& self, const py::object& target, bool trace) {
-  const auto& field = target.cast<const TargetField&>();
-  check_cells(field, self);
+/// Plans a TargetField or a TargetFrame. @param call plans one of the two, without the
+/// interpreter's lock.
+template <class P, class Call>
+std::unique_ptr<PlanResult> plan_with(SharedPlanner<P>& self, const py::object& target,
+                                      const Call& call) {
+  const auto* field =
+      py::isinstance<TargetField>(target) ? target.cast<const TargetField*>() : nullptr;
+  const auto* frame =
+      py::isinstance<TargetFrame>(target) ? target.cast<const TargetFrame*>() : nullptr;
+  if (field == nullptr && frame == nullptr) {
+    throw py::type_error("target must be a TargetField or a TargetFrame, not " +
+                         std::string(py::repr(py::type::of(target))));
+  }
+  if (field != nullptr) {
+    check_cells(*field, self);
+  } else {
+    for (const TargetField& patch : frame->patches) check_cells(patch, self);
+  }
   auto result = std::make_unique<PlanResult>(target, self.planner.settings());
-  if (trace) result->trace.emplace();
   {
     const py::gil_scoped_release unlocked;
     const std::lock_guard lock(self.mutex);
-    result->status =
-        self.planner.plan(field, result->plan, result->stats, trace ? &*result->trace : nullptr);
+    result->status = call(field, frame, *result);
   }
   check_status(result->status);
   return result;
 }
 
-std::unique_ptr<PlanResult> plan_frame(SharedPlanner& self, const py::object& target) {
-  const auto& frame = target.cast<const TargetFrame&>();
-  for (const TargetField& patch : frame.patches) check_cells(patch, self);
-  auto result = std::make_unique<PlanResult>(target, self.planner.settings());
-  {
-    const py::gil_scoped_release unlocked;
-    const std::lock_guard lock(self.mutex);
-    result->status = self.planner.plan(frame, result->plan, result->stats);
-  }
-  check_status(result->status);
-  return result;
+std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::object& target,
+                                       bool trace) {
+  if (trace && py::isinstance<TargetFrame>(target))
+    throw std::invalid_argument("a trace is kept of a TargetField only");
+  return plan_with(self, target,
+                   [&](const TargetField* field, const TargetFrame* frame, PlanResult& r) {
+                     if (frame != nullptr) return self.planner.plan(*frame, r.plan, r.stats);
+                     if (trace) r.trace.emplace();
+                     return self.planner.plan(*field, r.plan, r.stats, trace ? &*r.trace : nullptr);
+                   });
+}
+
+std::unique_ptr<PlanResult> plan_foci(SharedPlanner<AmPlanner>& self, const py::object& target) {
+  return plan_with(self, target,
+                   [&](const TargetField* field, const TargetFrame* frame, PlanResult& r) {
+                     return frame != nullptr ? self.planner.plan(*frame, r.plan, r.stats)
+                                             : self.planner.plan(*field, r.plan, r.stats);
+                   });
 }
 
 void bind_planner(py::module_& m) {
@@ -84,49 +109,68 @@ void bind_planner(py::module_& m) {
       .value("InvalidTarget", PlanStatus::InvalidTarget,
              "raised as ValueError in Python, never returned");
 
-  py::class_<SharedPlanner>(
+  py::class_<SharedPlanner<Planner>>(
       m, "Planner",
       "PRO-STM: from a target pressure field to a few closed focal-point paths.\n\n"
       "Keeps its buffers between calls, so make one and use it for many fields. Deterministic: "
       "the\n"
       "same settings and target give the same plan to the bit. The interpreter's lock is released\n"
       "while it plans; threads that share a planner wait for each other.")
-      .def(py::init(&make_planner),
-           "settings: PlanSettings, copied; None: the defaults.\n"
-           "max_cells: the largest raster, rows * cols, that plan() will be given.\n"
-           "Further keywords are settings, e.g. Planner(preset=\"paper\", paths=2).\n\n"
-           "Raises ValueError that names the setting, its value and its bound.",
-           py::arg("settings") = py::none(), py::arg("max_cells") = kDefaultCells)
+      .def(
+          py::init([](const PlanSettings* settings, long long max_cells, const py::kwargs& values) {
+            return make_planner<Planner>(settings, "PlanSettings", max_cells, values);
+          }),
+          "settings: PlanSettings, copied; None: the defaults.\n"
+          "max_cells: the largest raster, rows * cols, that plan() will be given.\n"
+          "Further keywords are settings, e.g. Planner(preset=\"paper\", paths=2).\n\n"
+          "Raises ValueError that names the setting, its value and its bound.",
+          py::arg("settings") = py::none(), py::arg("max_cells") = kDefaultCells)
       .def_property_readonly(
           "settings",
-          [](const SharedPlanner& self) { return PlanSettings(self.planner.settings()); },
+          [](const SharedPlanner<Planner>& self) { return PlanSettings(self.planner.settings()); },
           "A copy of the settings.")
-      .def_readonly("max_cells", &SharedPlanner::max_cells, "The largest raster.")
+      .def_readonly("max_cells", &SharedPlanner<Planner>::max_cells, "The largest raster.")
       .def(
           "reset",
-          [](SharedPlanner& self) {
+          [](SharedPlanner<Planner>& self) {
             const py::gil_scoped_release unlocked;
             const std::lock_guard lock(self.mutex);
             self.planner.reset();
           },
           "Forgets the plan before, which the presets best and fast continue from.")
+      .def("plan", &plan_paths,
+           "Plans a TargetField, or a TargetFrame (the paths are shared out between its patches,\n"
+           "and no path spans two). trace=True keeps the intermediate results of a field.\n\n"
+           "Returns a PlanResult. A field without pressure gives a plan without paths. Raises\n"
+           "ValueError for more than max_cells cells, a pressure above 1e300, a cell that is not\n"
+           "1e-6 to 1 m wide.",
+           py::arg("target"), py::arg("trace") = false);
+}
+
+void bind_am_planner(py::module_& m) {
+  py::class_<SharedPlanner<AmPlanner>>(
+      m, "AmPlanner",
+      "Amplitude modulation, the baseline: from a target pressure field to a few focal points\n"
+      "that stand still. Each plan is made from scratch. Threads may share a planner.")
+      .def(py::init([](const AmSettings* settings, long long max_cells, const py::kwargs& values) {
+             return make_planner<AmPlanner>(settings, "AmSettings", max_cells, values);
+           }),
+           "settings: AmSettings, copied; None: the defaults.\n"
+           "max_cells: the largest raster, rows * cols, that plan() will be given.\n"
+           "Further keywords are settings, e.g. AmPlanner(foci=2).\n\n"
+           "Raises ValueError that names the setting, its value and its bound.",
+           py::arg("settings") = py::none(), py::arg("max_cells") = kDefaultCells)
+      .def_property_readonly(
+          "settings",
+          [](const SharedPlanner<AmPlanner>& self) { return AmSettings(self.planner.settings()); },
+          "A copy of the settings.")
+      .def_readonly("max_cells", &SharedPlanner<AmPlanner>::max_cells, "The largest raster.")
       .def(
-          "plan",
-          [](SharedPlanner& self, const py::object& target, bool trace) {
-            if (py::isinstance<TargetField>(target)) return plan_field(self, target, trace);
-            if (!py::isinstance<TargetFrame>(target)) {
-              throw py::type_error("target must be a TargetField or a TargetFrame, not " +
-                                   std::string(py::repr(py::type::of(target))));
-            }
-            if (trace) throw std::invalid_argument("a trace is kept of a TargetField only");
-            return plan_frame(self, target);
-          },
-          "Plans a TargetField, or a TargetFrame (the paths are shared out between its patches,\n"
-          "and no path spans two). trace=True keeps the intermediate results of a field.\n\n"
-          "Returns a PlanResult. A field without pressure gives a plan without paths. Raises\n"
-          "ValueError for more than max_cells cells, a pressure above 1e300, a cell that is not\n"
-          "1e-6 to 1 m wide.",
-          py::arg("target"), py::arg("trace") = false);
+          "plan", &plan_foci,
+          "Plans a TargetField, or a TargetFrame (the foci are shared out between its patches).\n\n"
+          "Returns a PlanResult. A field without pressure gives a plan without foci. Raises\n"
+          "ValueError as Planner.plan() does.",
+          py::arg("target"));
 }
 
 // ---- what came out
@@ -194,8 +238,12 @@ void bind_plan(py::module_& m) {
       m, "PlanSettings",
       "Settings of the planner, in SI units; the defaults are the paper's where it gives one.\n"
       "src/plan/planner.hpp says what each of them does.");
+  bind_settings<AmSettings>(
+      m, "AmSettings",
+      "Settings of amplitude modulation, in SI units. src/am/am_planner.hpp says what each does.");
   bind_stats(m);
   bind_planner(m);
+  bind_am_planner(m);
 }
 
 }  // namespace prostm::python

@@ -8,6 +8,7 @@
 #include "core/file.hpp"
 #include "core/require.hpp"
 #include "io/plan_file.hpp"
+#include "io/settings_file.hpp"
 #include "plan_result.hpp"
 #include "score/score.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 Metrics metrics_of(const PlanResult& result, int patch) {
   const TargetField& field = result.patch(patch);
   const py::gil_scoped_release unlocked;
-  return score_plan(field, result.plan, patch, result.settings.sigma, result.settings.gain_law());
+  return score_plan(field, result.plan, patch, result.sigma(), result.gain_law());
 }
 
 void write(const PlanResult& result, const std::filesystem::path& path) {
@@ -26,15 +27,38 @@ void write(const PlanResult& result, const std::filesystem::path& path) {
   }
   const TargetField& field = result.patch(0);
   const py::gil_scoped_release unlocked;
-  const Metrics metrics =
-      score_plan(field, result.plan, 0, result.settings.sigma, result.settings.gain_law());
+  const Metrics metrics = score_plan(field, result.plan, 0, result.sigma(), result.gain_law());
+  const SettingsInFile settings(result.settings);
   PlanFileExtras extras;
+  extras.method = settings.method;
+  extras.preset = settings.preset;
   extras.stats = &result.stats;
   extras.metrics = &metrics;
-  write_file(path.string(), plan_to_json(result.plan, field, result.settings, extras, ""));
+  write_file(path.string(), plan_to_json(result.plan, field, extras, settings.json));
 }
 
 }  // namespace
+
+SettingsInFile::SettingsInFile(AnySettings settings) {
+  if (auto* am = std::get_if<AmSettings>(&settings)) {
+    method = Method::Am;
+    json = settings_to_json({{"am", [am](SettingsVisitor& v) { am->visit(v); }}});
+  } else {
+    auto& plan = std::get<PlanSettings>(settings);
+    method = Method::ProStm;
+    preset = plan.preset;
+    json = settings_to_json({{"plan", [&plan](SettingsVisitor& v) { plan.visit(v); }}});
+  }
+}
+
+double PlanResult::sigma() const {
+  return std::visit([](const auto& s) { return s.sigma; }, settings);
+}
+
+GainLaw PlanResult::gain_law() const {
+  const auto* plan = std::get_if<PlanSettings>(&settings);
+  return plan != nullptr ? plan->gain_law() : GainLaw{};  // foci have no γ
+}
 
 const TargetField& PlanResult::patch(int index) const {
   if (py::isinstance<TargetField>(target)) {
@@ -54,20 +78,23 @@ void bind_result(py::module_& m) {
           "paths",
           [](const py::object& self) -> py::object { return self.attr("plan").attr("paths"); },
           "The plan's FocalPaths, as a new list.")
+      .def_property_readonly(
+          "foci",
+          [](const py::object& self) -> py::object { return self.attr("plan").attr("foci"); },
+          "The plan's FocalPoints, as a new list.")
       .def_readonly("stats", &PlanResult::stats, "PlanStats: counts, and times [s].")
       .def_readonly("trace", &PlanResult::trace,
                     "PlanTrace of the intermediate results, or None when none was asked for.")
       .def_readonly("target", &PlanResult::target, "The TargetField or TargetFrame.")
       .def_property_readonly(
-          "settings", [](const PlanResult& r) { return PlanSettings(r.settings); },
-          "A copy of the PlanSettings.")
+          "settings", [](const PlanResult& r) { return AnySettings(r.settings); },
+          "A copy of the PlanSettings or AmSettings.")
       .def("metrics", &metrics_of, "score_plan() with the planner's sigma and gain.",
            py::arg("patch") = 0)
       .def(
           "quasi_static_field",
           [](const PlanResult& r, int patch) {
-            return quasi_static_array(r.plan, r.patch(patch), r.settings.sigma,
-                                      r.settings.gain_law(), patch);
+            return quasi_static_array(r.plan, r.patch(patch), r.sigma(), r.gain_law(), patch);
           },
           "Eq. (1) on the target's raster with the planner's sigma and gain: (rows, cols).",
           py::arg("patch") = 0)

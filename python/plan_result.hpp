@@ -2,20 +2,40 @@
 /// What one call of the planner gave, with what it was given.
 
 #include <optional>
+#include <string>
+#include <variant>
 
+#include "am/am_planner.hpp"
 #include "bindings.hpp"
+#include "plan/method.hpp"
 #include "plan/planner.hpp"
 
 namespace prostm::python {
 
+/// The settings of a planner, which say the method too.
+using AnySettings = std::variant<PlanSettings, AmSettings>;
+
+/// What a plan file says of them. @param settings are listed as {"plan": …} or {"am": …}.
+struct SettingsInFile {
+  explicit SettingsInFile(AnySettings settings);
+  Method method;
+  std::string preset;  ///< empty for AM
+  std::string json;
+};
+
 struct PlanResult {
-  PlanResult(py::object planned, const PlanSettings& s) : target(std::move(planned)), settings(s) {}
+  PlanResult(py::object planned, AnySettings s)
+      : target(std::move(planned)), settings(std::move(s)) {}
+
+  /// What fields are rendered and scored with.
+  double sigma() const;
+  GainLaw gain_law() const;
 
   /// @throws std::invalid_argument for a patch that the target does not have.
   const TargetField& patch(int index) const;
 
   py::object target;  ///< the TargetField or TargetFrame
-  PlanSettings settings;
+  AnySettings settings;
   PlanStatus status = PlanStatus::EmptyTarget;
   Plan plan;
   PlanStats stats;

@@ -10,7 +10,8 @@ cd "$work"
 for scene in one-plume four-plumes; do
   "$prostm" run --scene $scene --seconds 6 --as-fast-as-possible --figure-at 4.5 --figure "$root/docs/pictures/$scene.png"
 done
-"$prostm" capture --scene four-plumes --frames 120 --out four-plumes.h5
+for scene in one-plume four-plumes; do "$prostm" capture --scene $scene --frames 120 --out $scene.h5; done
 "$prostm" plan four-plumes.h5 --frame 100 --preset paper --figure "$root/docs/pictures/plan.png"
 "$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png" \
   --bending-figure "$root/docs/pictures/bending.png"
+"$root/build/release/am_bench" --frames 2 --figure "$root/docs/pictures/am.png" one-plume.h5 four-plumes.h5

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "am/am_planner.hpp"
 #include "common.hpp"
 #include "core/input_error.hpp"
 #include "io/recorder.hpp"
@@ -28,6 +29,9 @@ struct PaperTable {
 constexpr PaperTable kPaper[] = {
     {"one-plume", {285, 1548, 2550, 744, 12, 17896, 24303}, {106, 386, 646, 235, 4, 1664, 2256}},
     {"four-plumes", {142, 948, 1224, 324, 10, 11120, 14640}, {59, 338, 554, 179, 4, 3344, 4281}}};
+
+/// The paper on AM: "update rates of roughly 250 Hz on both test scenarios".
+constexpr double kPaperAmRate = 250.0;
 
 StageTimes times_of(const PlanStats& s) {
   return {s.init, s.kmeans, s.tour, s.split, s.resample, s.refine, s.total};
@@ -86,54 +90,129 @@ void print_paper(std::FILE* out, const std::string& scene) {
   }
 }
 
-void append_rows(nlohmann::ordered_json& rows, const std::string& file, const std::string& scene,
-                 const Column& ours, const Column& textbook) {
-  for (std::size_t i = 0; i < kStages; ++i) {
-    const Summary a = ours.stage[i].summary(), b = textbook.stage[i].summary();
-    rows.push_back({{"name", fmt::format("{}: {} {}", file, ours.name, kStageNames[i])},
-                    {"scene", scene},
-                    {"unit", "us"},
-                    {"n", a.n},
-                    {"mean", a.mean * 1e6},
-                    {"deviation", a.deviation * 1e6},
-                    {"p50", a.p50 * 1e6},
-                    {"p99", a.p99 * 1e6},
-                    {"max", a.max * 1e6},
-                    {"baseline", textbook.name},
-                    {"baseline_p50", b.p50 * 1e6},
-                    {"baseline_mean", b.mean * 1e6},
-                    {"ratio", a.p50 > 0.0 ? b.p50 / a.p50 : std::nan("")}});
-  }
+/// The row of the paper's Table I that AM would have, as updates a second.
+void print_am(std::FILE* out, const Column& am) {
+  const Summary t = am.stage[kStages - 1].summary();
+  if (t.n == 0) return;
+  fmt::print(out,
+             "  am: {:.0f} updates a second at the median time, {:.0f} at the 99th percentile; the "
+             "paper, on its own machine: about {:.0f}\n"
+             "    mean RMSE {:.3f}, correlation {:.3f}, coverage {:.3f}, not to be compared with "
+             "those of paths: how the fields are felt differs (docs/am.md)\n",
+             1.0 / t.p50, 1.0 / t.p99, kPaperAmRate, am.rmse.summary().mean,
+             am.correlation.summary().mean, am.coverage.summary().mean);
 }
 
-/// Plans every field of a recording with both planners, in turn, on this one thread. False when
-/// interrupted.
-bool measure(const RecordingReader& recording, const PlanSettings& settings, int repeats,
-             const Interrupt& interrupt, Progress& progress, Column& ours, Column& baseline) {
-  Planner planner(settings, kMaxFieldCells);
+/// What a stage is compared with.
+struct Reference {
+  std::string name;
+  double p50 = 0.0, mean = 0.0;  // [s]
+};
+
+nlohmann::ordered_json stage_row(const std::string& file, const std::string& scene,
+                                 const Column& ours, std::size_t stage,
+                                 const Reference& reference) {
+  const Summary a = ours.stage[stage].summary();
+  return {{"name", fmt::format("{}: {} {}", file, ours.name, kStageNames[stage])},
+          {"scene", scene},
+          {"unit", "us"},
+          {"n", a.n},
+          {"mean", a.mean * 1e6},
+          {"deviation", a.deviation * 1e6},
+          {"p50", a.p50 * 1e6},
+          {"p99", a.p99 * 1e6},
+          {"max", a.max * 1e6},
+          {"baseline", reference.name},
+          {"baseline_p50", reference.p50 * 1e6},
+          {"baseline_mean", reference.mean * 1e6},
+          {"ratio", a.p50 > 0.0 ? reference.p50 / a.p50 : std::nan("")}};
+}
+
+/// The planners of one recording. With --method am the last alone is measured.
+struct Columns {
+  Column baseline, ours, am{"am"};
+};
+
+void append_rows(nlohmann::ordered_json& rows, const std::string& file, const std::string& scene,
+                 const Columns& columns) {
+  for (std::size_t i = 0; i < kStages; ++i) {
+    const Summary slow = columns.baseline.stage[i].summary();
+    if (columns.ours.stage[i].summary().n == 0) continue;
+    rows.push_back(
+        stage_row(file, scene, columns.ours, i, {columns.baseline.name, slow.p50, slow.mean}));
+  }
+  if (columns.am.stage[kStages - 1].summary().n == 0) return;
+  rows.push_back(stage_row(file, scene, columns.am, kStages - 1,
+                           {"the paper's AM", 1.0 / kPaperAmRate, 1.0 / kPaperAmRate}));
+}
+
+/// Times and scores the planners on one field, in turn: the median of the repeats counts. A field
+/// that one of them finds nothing on is left out for all.
+class FieldBench {
+ public:
+  FieldBench(const PipelineSettings& settings, int repeats)
+      : settings_(settings),
+        am_alone_(method_from_name(settings.method) == Method::Am),
+        repeats_(repeats),
+        planner_(settings.plan, kMaxFieldCells),
+        am_(settings.am, kMaxFieldCells) {}
+
+  void measure(const TargetField& target, Columns& columns) {
+    Plan slow, ours, foci;
+    std::vector<StageTimes> slow_times, times, foci_times;
+    for (int r = 0; r < repeats_; ++r) {
+      PlanStats stats;
+      if (!am_alone_) {
+        if (textbook::plan(target, settings_.plan, slow, stats) != PlanStatus::Planned) return;
+        slow_times.push_back(times_of(stats));
+        if (planner_.plan(target, ours, stats) != PlanStatus::Planned) return;
+        times.push_back(times_of(stats));
+      }
+      if (am_.plan(target, foci, stats) != PlanStatus::Planned) return;
+      foci_times.push_back(times_of(stats));
+    }
+    columns.am.add(median(foci_times), score(target, foci, settings_.am.sigma));
+    if (am_alone_) return;
+    columns.baseline.add(median(slow_times), score(target, slow, settings_.plan.sigma));
+    columns.ours.add(median(times), score(target, ours, settings_.plan.sigma));
+  }
+
+ private:
+  Metrics score(const TargetField& target, const Plan& plan, double sigma) const {
+    return score_plan(target, plan, 0, sigma, settings_.plan.gain_law());
+  }
+
+  const PipelineSettings& settings_;
+  bool am_alone_;
+  int repeats_;
+  Planner planner_;
+  AmPlanner am_;
+};
+
+/// Every field of a recording, on this one thread. False when interrupted.
+bool measure(const RecordingReader& recording, FieldBench& bench, const Interrupt& interrupt,
+             Progress& progress, Columns& columns) {
   for (int f = 0; f < recording.frames(); ++f) {
     const TargetFrame frame = recording.frame(f);
-    for (const TargetField& target : frame.patches) {
-      Plan plan, other;
-      std::vector<StageTimes> times, other_times;
-      bool planned = true;
-      for (int r = 0; r < repeats && planned; ++r) {
-        PlanStats stats, other_stats;
-        planned = textbook::plan(target, settings, other, other_stats) == PlanStatus::Planned &&
-                  planner.plan(target, plan, stats) == PlanStatus::Planned;
-        times.push_back(times_of(stats));
-        other_times.push_back(times_of(other_stats));
-      }
-      if (planned) {
-        ours.add(median(times), score_plan(target, plan, 0, settings.sigma, settings.gain_law()));
-        baseline.add(median(other_times),
-                     score_plan(target, other, 0, settings.sigma, settings.gain_law()));
-      }
-    }
+    for (const TargetField& target : frame.patches) bench.measure(target, columns);
     progress.show(f + 1, recording.frames(), "fields");
     if (interrupt.requested()) return false;
   }
   return true;
+}
+
+void print_columns(std::FILE* out, const std::string& scene, const Columns& columns) {
+  const Summary total = columns.ours.stage[kStages - 1].summary(),
+                slow = columns.baseline.stage[kStages - 1].summary();
+  if (total.n > 0) {
+    print_paper(out, scene);
+    print_column(out, columns.baseline);
+    print_column(out, columns.ours);
+    fmt::print(out, "  textbook / prostm, of the p50 totals: {:.2f}\n", slow.p50 / total.p50);
+  } else if (columns.am.stage[0].summary().n > 0) {
+    print_column(out, columns.am);
+  }
+  print_am(out, columns.am);
 }
 
 }  // namespace
@@ -149,26 +228,21 @@ int bench_command(const BenchOptionsGiven& given) {
   const Interrupt interrupt;
   for (const std::string& file : given.files) {
     const RecordingReader recording(file);
-    Column ours("prostm " + settings.plan.preset), baseline("textbook");
+    Columns columns{Column("textbook"), Column("prostm " + settings.plan.preset)};
+    FieldBench bench(settings, given.repeats);
     bool complete = false;
     {
       Progress progress("planning " + file);
-      complete =
-          measure(recording, settings.plan, given.repeats, interrupt, progress, ours, baseline);
+      complete = measure(recording, bench, interrupt, progress, columns);
     }
-    const Summary total = ours.stage[kStages - 1].summary(),
-                  slow = baseline.stage[kStages - 1].summary();
-    if (complete && total.n == 0)
+    const auto fields = columns.am.stage[kStages - 1].summary().n;
+    if (complete && fields == 0)
       throw InputError(file + ": none of its fields has pressure to plan for");
     fmt::print(out, "{} ({}): {} fields, median of {} runs each, one thread, interleaved\n", file,
-               recording.scene().empty() ? "no scene named" : recording.scene(), total.n,
+               recording.scene().empty() ? "no scene named" : recording.scene(), fields,
                given.repeats);
-    print_paper(out, recording.scene());
-    print_column(out, baseline);
-    print_column(out, ours);
-    if (total.p50 > 0.0)
-      fmt::print(out, "  textbook / prostm, of the p50 totals: {:.2f}\n", slow.p50 / total.p50);
-    append_rows(rows, file, recording.scene(), ours, baseline);
+    print_columns(out, recording.scene(), columns);
+    append_rows(rows, file, recording.scene(), columns);
     if (!complete) break;
   }
   write_json(given.common.json, rows);

@@ -52,8 +52,7 @@ int capture_command(const CaptureOptionsGiven& given) {
   // a hand is away for part of its time; one that never meets the smoke must not capture for ever
   RunOptions options;
   options.mode = RunMode::AsFastAsPossible;
-  options.seconds =
-      120.0 + 10.0 * given.frames * settings.fluid_steps_per_plan / settings.fluid_rate;
+  options.seconds = 120.0 + 10.0 * given.frames * settings.steps_per_plan() / settings.fluid_rate;
   Capture capture(recorder, given.frames);
   run(pipeline, settings, options, capture);
   recorder.close();

@@ -36,10 +36,14 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (!options.settings_file.empty()) read_settings(options.settings_file, groups_of(settings));
   if (scene) settings.scene = *scene;
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
+  if (options.method) settings.method = *options.method;
   if (options.preset) settings.plan.preset = *options.preset;
-  if (options.paths) settings.plan.paths = settings.emit.foci = *options.paths;
+  if (options.paths) settings.plan.paths = settings.am.foci = settings.emit.foci = *options.paths;
   if (options.budget_ms) settings.plan.budget = 1e-3 * *options.budget_ms;
   if (options.grid) settings.fluid.cells = *options.grid;
+  if (method_from_name(settings.method) == Method::Am && (options.preset || options.budget_ms)) {
+    throw InputError("--preset and --budget-ms belong to --method pro-stm; am has neither");
+  }
   return settings;
 }
 

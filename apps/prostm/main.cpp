@@ -40,7 +40,9 @@ void add_common(CLI::App& command, CommonOptions& o) {
   command.add_option("--paths", o.paths, "focal points, 1 to 8");
   command.add_option("--budget-ms", o.budget_ms,
                      "time for a plan of preset best; 0: a fixed amount of work");
-  only(command, "--method", "pro-stm", "am", "how the field is rendered");
+  command.add_option(
+      "--method", o.method,
+      "pro-stm (default): paths, or am: foci that stand still, modulated (docs/am.md)");
 }
 
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
@@ -83,16 +85,17 @@ void add_run(CLI::App& app, int& status) {
 }
 
 void add_plan(CLI::App& app, int& status) {
-  auto* command = app.add_subcommand("plan", "the paths for one target field");
+  auto* command = app.add_subcommand("plan", "the paths, or foci, for one target field");
   auto o = std::make_shared<PlanOptionsGiven>();
   add_common(*command, o->common);
   command->add_option("field", o->field, "target field: .json, .npy, .png or .h5 (docs/files.md)")
       ->required();
   command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
   command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
-  command->add_option("--figure", o->common.figure,
-                      "target, paths and field; the six panels of the paper's Fig. 2 for its "
-                      "presets (.png or .svg)");
+  command->add_option(
+      "--figure", o->common.figure,
+      "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
+      "presets (.png or .svg)");
   command->add_option("--beside", o->beside, "draw these digitised panels beside ours (JSON)");
   command->footer(
       "Example:\n  prostm plan palm.npy --cell-mm 5 --preset paper --figure palm.png --json "

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "am/am_planner.hpp"
 #include "common.hpp"
 #include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "core/random.hpp"
-#include "emit/path_emitter.hpp"
+#include "emit/emitter.hpp"
 #include "figure/figures.hpp"
 #include "io/digitised_figure.hpp"
 #include "io/field_file.hpp"
@@ -19,8 +20,21 @@
 namespace prostm::app {
 namespace {
 
-void print_plan(std::FILE* out, const Plan& plan, const PlanStats& stats, const Metrics& metrics,
-                const std::vector<Control>& controls) {
+bool is_am(const PipelineSettings& settings) {
+  return method_from_name(settings.method) == Method::Am;
+}
+
+void print_foci(std::FILE* out, const Plan& plan, const PlanStats& stats, double maximum) {
+  fmt::print(out, "{} foci, {} iterations of k-means; {:.3f} ms\n", plan.foci.size(),
+             stats.lloyd_iterations, 1e3 * stats.total);
+  for (std::size_t i = 0; i < plan.foci.size(); ++i) {
+    const FocalPoint& focus = plan.foci[i];
+    fmt::print(out, "  focus {}: at ({:.1f}, {:.1f}) mm, {:.3f} of the target's maximum\n", i + 1,
+               focus.position.x() * 1e3, focus.position.y() * 1e3, focus.pressure / maximum);
+  }
+}
+
+void print_paths(std::FILE* out, const Plan& plan, const PlanStats& stats) {
   const std::string work = stats.clusters > 0
                                ? fmt::format("{} clusters, {} leaves", stats.clusters, stats.leaves)
                                : fmt::format("{} evaluations of the field", stats.cost_evaluations);
@@ -31,6 +45,9 @@ void print_plan(std::FILE* out, const Plan& plan, const PlanStats& stats, const 
     fmt::print(out, "  path {}: {:.1f} mm, {:.1f} ms, {:.1f} Hz, {} points\n", i + 1,
                path.length * 1e3, path.period * 1e3, 1.0 / path.period, path.points.size());
   }
+}
+
+void print_metrics(std::FILE* out, const Metrics& metrics, const std::vector<Control>& controls) {
   const auto row = [&](const std::string& name, const Metrics& m) {
     fmt::print(out, "  {:<44} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n",
                name, m.rmse, m.correlation, m.coverage, m.skill_0, m.skill_8, m.overlap, m.spill);
@@ -68,25 +85,28 @@ TargetField another_target(const TargetField& target, std::uint64_t seed) {
 }
 
 PlanFigure as_figure(const TargetField& target, const Plan& plan, const PlanTrace& trace,
-                     const PlanSettings& s) {
+                     const PipelineSettings& settings) {
   PlanFigure figure;
   figure.target = &target;
   figure.plan = &plan;
   figure.trace = &trace;
   figure.reconstruction.resize(target.size());
-  quasi_static_field(plan, 0, target, s.sigma, s.gain_law(), figure.reconstruction);
+  quasi_static_field(plan, 0, target, settings.sigma(), settings.plan.gain_law(),
+                     figure.reconstruction);
   return figure;
 }
 
 /// The six panels, and under them those of `--beside`.
-void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given, const PlanSettings& s) {
+void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given,
+                 const PipelineSettings& settings) {
   if (given.beside.empty()) {
     draw_plan(figure, given.common.figure);
     return;
   }
+  const PlanSettings& s = settings.plan;
   const DigitisedFigure other = digitised_figure_from_json(read_file(given.beside), given.beside,
                                                            *figure.target, s.gain_law(), s.speed);
-  PlanFigure beside = as_figure(*figure.target, other.plan, other.trace, s);
+  PlanFigure beside = as_figure(*figure.target, other.plan, other.trace, settings);
   beside.reconstruction = other.reconstruction;
   beside.metrics = score_plan(*figure.target, other.plan, 0, s.sigma, s.gain_law());
   beside.title = given.beside;
@@ -103,7 +123,8 @@ struct Result {
   std::vector<Control> controls;
 };
 
-Result plan_and_score(const TargetField& target, const PlanSettings& s, bool traced) {
+/// @param other gets the plan of another target.
+Result plan_paths(const TargetField& target, const PlanSettings& s, bool traced, Plan& other) {
   Planner planner(s, target.size());
   Result r;
   // with a budget, a first plan tells how much work it pays for
@@ -111,48 +132,78 @@ Result plan_and_score(const TargetField& target, const PlanSettings& s, bool tra
   planner.reset();
   r.status = planner.plan(target, r.plan, r.stats);
   // a second time with the intermediate results, so that collecting them is not in the times
-  if (traced && r.stats.clusters > 0) {
-    PlanStats stats;
-    planner.plan(target, r.plan, stats, &r.trace);
-  }
-  r.metrics = score_plan(target, r.plan, 0, s.sigma, s.gain_law());
+  PlanStats unused;
+  if (traced && r.stats.clusters > 0) planner.plan(target, r.plan, unused, &r.trace);
   if (r.status != PlanStatus::Planned) return r;
-  const auto seed = static_cast<std::uint64_t>(s.seed);
-  Plan other;
-  PlanStats other_stats;
   planner.reset();
-  planner.plan(another_target(target, seed), other, other_stats);
-  r.controls = controls(target, s.sigma, s.gain_law(), s.max_length(), &other, seed);
+  planner.plan(another_target(target, static_cast<std::uint64_t>(s.seed)), other, unused);
   return r;
 }
 
+Result plan_foci(const TargetField& target, const PipelineSettings& settings, Plan& other) {
+  AmPlanner planner(settings.am, target.size());
+  Result r;
+  r.status = planner.plan(target, r.plan, r.stats);
+  PlanStats unused;
+  if (r.status != PlanStatus::Planned) return r;
+  const auto seed = static_cast<std::uint64_t>(settings.plan.seed);
+  planner.plan(another_target(target, seed), other, unused);
+  return r;
+}
+
+Result plan_and_score(const TargetField& target, const PipelineSettings& settings, bool traced) {
+  const PlanSettings& s = settings.plan;
+  Plan other;
+  Result r =
+      is_am(settings) ? plan_foci(target, settings, other) : plan_paths(target, s, traced, other);
+  r.metrics = score_plan(target, r.plan, 0, settings.sigma(), s.gain_law());
+  if (r.status != PlanStatus::Planned) return r;
+  r.controls = controls(target, settings.sigma(), s.gain_law(), s.max_length(), &other,
+                        static_cast<std::uint64_t>(s.seed));
+  return r;
+}
+
+int focal_points(const Plan& plan) {
+  return static_cast<int>(plan.paths.size() + plan.foci.size());
+}
+
 PowerShare power_share(const Plan& plan, double limit) {
-  const int paths = static_cast<int>(plan.paths.size());
-  return {1.0 / paths, even_share(paths, limit), limit};
+  const int foci = focal_points(plan);
+  return {1.0 / foci, even_share(foci, limit), limit};
 }
 
 void print_power(std::FILE* out, const Plan& plan, double limit) {
   const PowerShare share = power_share(plan, limit);
-  const std::size_t paths = plan.paths.size();
+  const int foci = focal_points(plan);
   fmt::print(out,
              "  power: {} focal point{} at once, each with {:.1f} % of the array's; while all want "
              "the same, the power limit of {:g} leaves each at most {:.1f} % of full scale's "
              "pressure\n",
-             paths, paths == 1 ? "" : "s", 100.0 * share.array, limit, 100.0 * share.pressure);
+             foci, foci == 1 ? "" : "s", 100.0 * share.array, limit, 100.0 * share.pressure);
+}
+
+/// Why there is no plan.
+void print_nothing(std::FILE* out, const std::string& field, bool pressed, bool am) {
+  const char* reason = !pressed ? "no pressure anywhere"
+                       : am     ? "no focus would reach its skin"
+                                : "no pressure where its weight is above 0";
+  fmt::print(out, "{}: {}, so no {}\n", field, reason, am ? "focus" : "path");
 }
 
 void write_plan(const Result& r, const TargetField& target, const PipelineSettings& settings,
                 const std::string& json) {
   PlanFileExtras extras;
   PowerShare power;
-  if (!r.plan.paths.empty()) {
+  if (!r.plan.empty()) {
     power = power_share(r.plan, settings.emit.power_limit);
     extras.power = &power;
   }
+  extras.method = method_from_name(settings.method);
+  if (extras.method == Method::ProStm) extras.preset = settings.plan.preset;
   extras.stats = &r.stats;
   extras.metrics = &r.metrics;
   extras.controls = &r.controls;
-  write_file(json, plan_to_json(r.plan, target, settings.plan, extras, settings_json(settings)));
+  write_file(json, plan_to_json(r.plan, target, extras, settings_json(settings)));
 }
 
 }  // namespace
@@ -163,12 +214,14 @@ int plan_command(const PlanOptionsGiven& given) {
   const PlanSettings& s = settings.plan;
   if (!given.beside.empty() && given.common.figure.empty())
     throw InputError("--beside needs --figure to draw in");
+  if (!given.beside.empty() && is_am(settings))
+    throw InputError("--beside shows the steps of --method pro-stm; leave it out with am");
   FieldFileOptions file_options;
   file_options.cell_mm = given.cell_mm;
   file_options.frame = given.frame;
   const TargetField target = read_field(given.field, file_options);
 
-  const Result r = plan_and_score(target, s, !given.common.figure.empty());
+  const Result r = plan_and_score(target, settings, !given.common.figure.empty());
   if (r.status == PlanStatus::InvalidTarget) {
     throw InputError(
         given.field +
@@ -176,22 +229,25 @@ int plan_command(const PlanOptionsGiven& given) {
   }
   if (!given.common.json.empty()) write_plan(r, target, settings, given.common.json);
   if (!given.common.figure.empty()) {
-    PlanFigure figure = as_figure(target, r.plan, r.trace, s);
+    PlanFigure figure = as_figure(target, r.plan, r.trace, settings);
     figure.metrics = r.metrics;
     figure.controls = r.controls;
-    figure.title = given.field + ", preset " + s.preset;
-    draw_figure(figure, given, s);
+    figure.title = given.field + (is_am(settings) ? ", method am" : ", preset " + s.preset);
+    draw_figure(figure, given, settings);
   }
   std::FILE* out = prose(given.common.json);
   if (r.status == PlanStatus::EmptyTarget) {
-    const bool pressed = max_pressure(target) > 0.0;
-    fmt::print(out, "{}: no pressure {}, so no path\n", given.field,
-               pressed ? "where its weight is above 0" : "anywhere");
+    print_nothing(out, given.field, max_pressure(target) > 0.0, is_am(settings));
   } else {
-    print_plan(out, r.plan, r.stats, r.metrics, r.controls);
+    if (is_am(settings)) {
+      print_foci(out, r.plan, r.stats, max_pressure(target));
+    } else {
+      print_paths(out, r.plan, r.stats);
+    }
+    print_metrics(out, r.metrics, r.controls);
     if (!target.weight.empty()) {
       fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights",
-                 weighted_rmse(target, r.plan, 0, s.sigma, s.gain_law()));
+                 weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law()));
     }
     print_power(out, r.plan, settings.emit.power_limit);
   }

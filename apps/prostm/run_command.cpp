@@ -81,10 +81,11 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   for (const LiftedPath& lifted_path : lifted.paths) {
     figure.foci.insert(figure.foci.end(), lifted_path.p_D.begin(), lifted_path.p_D.end());
   }
+  for (const LiftedFocus& focus : lifted.foci) figure.foci.push_back(focus.p_D);
   for (std::size_t patch = 0; patch < contact.target.patches.size(); ++patch) {
     const TargetField& target = contact.target.patches[patch];
     std::vector<double> field(target.size());
-    quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, settings.plan.sigma,
+    quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, settings.sigma(),
                        settings.plan.gain_law(), field);
     figure.targets.push_back(target);
     figure.reconstructions.push_back(std::move(field));
@@ -99,6 +100,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
   const double laps = std::max<double>(1.0, static_cast<double>(s.emit.laps_started));
   return {{"format", "prostm-run/1"},
           {"scene", settings.scene},
+          {"method", settings.method},
           {"seconds", s.seconds},
           {"stopped", s.stopped},
           {"fluid_steps", s.fluid_steps},
@@ -140,6 +142,14 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
             {"lift", to_json(s.lift, 1e3)}}}};
 }
 
+void print_paths(std::FILE* out, const RunSummary& s) {
+  fmt::print(out,
+             "paths: longest {:.1f} mm in the plane, {:.1f} mm on the skin; {} too long, {} "
+             "crossings; largest focus step {:.3f} mm\n",
+             s.max_path_length * 1e3, s.max_skin_length * 1e3, s.long_paths, s.crossings,
+             s.emit.max_focus_step * 1e3);
+}
+
 void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
   const auto stage = [&](const char* name, const Summary& t) {
     fmt::print(out, "  {:<10} {:>8.3f} {:>8.3f} {:>8.3f}\n", name, t.p50 * 1e3, t.p99 * 1e3,
@@ -152,11 +162,15 @@ void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& 
              s.empty_updates, s.skipped_updates);
   fmt::print(out, "device: {} blocks, {} late, {} missed, queue of {} blocks\n", s.device.blocks,
              s.device.late_blocks, s.device.missed_blocks, s.device.queue_blocks);
-  fmt::print(out,
-             "paths: longest {:.1f} mm in the plane, {:.1f} mm on the skin; {} too long, {} "
-             "crossings; largest focus step {:.3f} mm\n",
-             s.max_path_length * 1e3, s.max_skin_length * 1e3, s.long_paths, s.crossings,
-             s.emit.max_focus_step * 1e3);
+  if (method_from_name(settings.method) == Method::Am) {
+    fmt::print(out,
+               "foci: at most {}, {} at {:g} Hz; largest step of one that sounds {:.3f} mm, {} "
+               "beyond the focal points\n",
+               settings.am.foci, settings.emit.am_waveform, settings.emit.am_frequency,
+               s.emit.max_focus_step * 1e3, s.emit.dropped_paths);
+  } else {
+    print_paths(out, s);
+  }
   fmt::print(out, "drive: full scale {:.3f} Pa, {} of {} samples saturated, {} power-limited\n",
              s.full_scale_pressure, s.emit.saturated, s.emit.samples, s.emit.limited);
   fmt::print(out, "fluid: {:.2g} of the divergence left on the mean\n", s.mean_divergence);
@@ -189,8 +203,8 @@ int run_command(const RunOptionsGiven& given) {
                                              : RunMode::RealTime;
   settings.simulated_array.realtime = options.mode == RunMode::RealTime;
   // a clock is running: the planner gets a share of an update, not a number of tries
-  if (options.mode == RunMode::RealTime && settings.plan.preset == "best" &&
-      settings.plan.budget == 0.0 && !given.common.budget_ms) {
+  if (options.mode == RunMode::RealTime && method_from_name(settings.method) == Method::ProStm &&
+      settings.plan.preset == "best" && settings.plan.budget == 0.0 && !given.common.budget_ms) {
     settings.plan.budget = kLiveBudget;
   }
   settings.side_view = !given.common.figure.empty();

@@ -48,7 +48,7 @@ void draw_gallery_picture(const std::string& path) {
     }
     list.push_back(std::move(field));
   }
-  draw_gallery("Nine targets and what is planned for them", list, path);
+  draw_gallery({"Nine targets and what is planned for them"}, list, path);
 }
 
 }  // namespace prostm::bench

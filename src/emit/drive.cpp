@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emit/path_emitter.hpp"
+#include "emit/emitter.hpp"
 
 namespace prostm {
 namespace {

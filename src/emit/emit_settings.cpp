@@ -1,7 +1,8 @@
 #include <stdexcept>
 
 #include "core/require.hpp"
-#include "emit/path_emitter.hpp"
+#include "emit/emitter.hpp"
+#include "emit/envelope.hpp"
 
 namespace prostm {
 
@@ -14,6 +15,8 @@ void EmitSettings::visit(SettingsVisitor& v) {
   v.field("fade_time", fade_time);
   v.field("stall_time", stall_time);
   v.field("stall_fade_time", stall_fade_time);
+  v.field("am_frequency", am_frequency);
+  v.field("am_waveform", am_waveform);
 }
 
 void validate(const EmitSettings& settings, double sample_rate) {
@@ -32,6 +35,7 @@ void validate(const EmitSettings& settings, double sample_rate) {
     throw std::invalid_argument("switch_at = \"" + settings.switch_at +
                                 "\" must be \"lap\" or \"now\"");
   }
+  waveform_from_name(settings.am_waveform);
 }
 
 }  // namespace prostm

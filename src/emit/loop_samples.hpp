@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "emit/emitter.hpp"
 #include "emit/focus_sample.hpp"
-#include "emit/path_emitter.hpp"
 #include "plan/lifted_plan.hpp"
 
 namespace prostm {

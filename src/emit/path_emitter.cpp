@@ -6,38 +6,17 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/latest.hpp"
 #include "emit/drive.hpp"
+#include "emit/exchange.hpp"
 #include "emit/focus_motion.hpp"
 #include "emit/matching.hpp"
 #include "emit/start_place.hpp"
-#include "emit/take_over_log.hpp"
 
 namespace prostm {
 namespace {
 
-constexpr double kFloatMargin = 0.999;   // keeps steps in bounds when positions become floats
-constexpr double kLongestLap = 1.0;      // that a new plan waits for [s]
-constexpr double kSounding = 0.01;       // intensity above which a focal point must not jump
-constexpr double kMaxCoordinate = 10.0;  // of anything that is felt over an array [m]
-
-bool usable(const LiftedPath& path) {
-  const auto in_bounds = [](double x) { return std::isfinite(x) && std::abs(x) <= kMaxCoordinate; };
-  if (path.pressure.size() != path.p_D.size() || !std::isfinite(path.speed)) return false;
-  return std::all_of(path.p_D.begin(), path.p_D.end(),
-                     [&](const Vec3& p) {
-                       return in_bounds(p.x()) && in_bounds(p.y()) && in_bounds(p.z());
-                     }) &&
-         std::all_of(path.pressure.begin(), path.pressure.end(),
-                     [](double p) { return std::isfinite(p) && std::abs(p) <= 1e300; });
-}
-
-/// What is handed to the device's thread.
-struct Message {
-  LiftedPlan plan;
-  bool lost = false;
-  bool refused = false;
-};
+constexpr double kFloatMargin = 0.999;  // keeps steps in bounds when positions become floats
+constexpr double kLongestLap = 1.0;     // that a new plan waits for [s]
 
 enum class State : std::uint8_t {
   Resting,    // silent, on no path
@@ -60,29 +39,26 @@ struct Focus {
 }  // namespace
 
 struct PathEmitter::Impl {
-  Impl(const EmitSettings& s, double sample_rate);
+  Impl(Exchange& e, double sample_rate);
+
+  Exchange& exchange;
 
   // constant
-  const EmitSettings settings;
+  const EmitSettings& settings;
   const bool at_once;  // switch_at = "now"
   const double fade_slew, stall_slew;
   const std::int64_t stall_samples, longest_lap;
 
-  // between the threads
-  Latest<Message> inbox;
-  Latest<EmitStats> published;
-
   // device's thread
-  TakeOverLog log;
   std::array<Focus, kMaxPaths> focus;
   std::array<Drive, kMaxPaths> drive;
   EmitStats stats;
-  double max_step_squared = 0.0;
+  LongestStep longest_step;
   bool fed = false;             // a plan came and was not lost since
   std::int64_t since_plan = 0;  // samples
 
   std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
-  const LiftedPlan& plan() const { return inbox.value().plan; }
+  const LiftedPlan& plan() const { return exchange.inbox.value().plan; }
 
   /// Goes over at the end of its lap, not before.
   bool waits(const Focus& f) const { return !at_once && f.motion.lap_samples() <= longest_lap; }
@@ -102,12 +78,13 @@ struct PathEmitter::Impl {
   void count(Focus& f, const Drive& d, std::int64_t sample);
 };
 
-PathEmitter::Impl::Impl(const EmitSettings& s, double sample_rate)
-    : settings(s),
-      at_once(s.switch_at == "now"),
-      fade_slew(largest_slew(s.fade_time, sample_rate)),
-      stall_slew(largest_slew(s.stall_fade_time, sample_rate)),
-      stall_samples(static_cast<std::int64_t>(std::ceil(s.stall_time * sample_rate))),
+PathEmitter::Impl::Impl(Exchange& e, double sample_rate)
+    : exchange(e),
+      settings(e.settings),
+      at_once(settings.switch_at == "now"),
+      fade_slew(largest_slew(settings.fade_time, sample_rate)),
+      stall_slew(largest_slew(settings.stall_fade_time, sample_rate)),
+      stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * sample_rate))),
       longest_lap(static_cast<std::int64_t>(kLongestLap * sample_rate)) {
   for (Focus& f : focus) {
     f.motion.configure(sample_rate, kMaxFocusSpeed / sample_rate * kFloatMargin);
@@ -117,8 +94,8 @@ PathEmitter::Impl::Impl(const EmitSettings& s, double sample_rate)
 
 /// Takes the newest message, if one came.
 void PathEmitter::Impl::receive(std::int64_t sample) {
-  if (!inbox.refresh()) return;
-  const Message& message = inbox.value();
+  if (!exchange.inbox.refresh()) return;
+  const Message& message = exchange.inbox.value();
   if (message.lost) {
     stats.refused_plans += message.refused ? 1 : 0;
     fed = false;
@@ -169,7 +146,7 @@ void PathEmitter::Impl::assign() {
     focus[i].has_next = true;
     focus[i].next = match[i];
   }
-  log.arrive(plan().id, total_length);
+  exchange.log.arrive(plan().id, total_length);
 }
 
 /// Lets every focal point fade out and rest.
@@ -220,7 +197,7 @@ PathPlace PathEmitter::Impl::start_place(const Focus& f, const LiftedPath& path)
 void PathEmitter::Impl::jump(Focus& f, std::int64_t sample) {
   f.has_next = false;
   if (f.next == kNoPath) {
-    log.leave(f.entry);
+    exchange.log.leave(f.entry);
     f.entry = TakeOverLog::kNone;
     f.state = State::Resting;
     f.in_fade = false;
@@ -233,8 +210,8 @@ void PathEmitter::Impl::jump(Focus& f, std::int64_t sample) {
 }
 
 void PathEmitter::Impl::adopt(Focus& f, std::int64_t sample) {
-  log.leave(f.entry);
-  f.entry = log.follow(sample);
+  exchange.log.leave(f.entry);
+  f.entry = exchange.log.follow(sample);
   f.has_next = false;
   f.state = State::Following;
   f.to_draw = f.motion.lap_samples();
@@ -286,17 +263,15 @@ void PathEmitter::Impl::count(Focus& f, const Drive& d, std::int64_t sample) {
   // what has been drawn of the path, once round
   if (f.state == State::Following && !f.in_fade && f.motion.on_path() && f.to_draw > 0) {
     --f.to_draw;
-    log.draw(f.entry, f.motion.length() / static_cast<double>(f.motion.lap_samples()), sample);
+    exchange.log.draw(f.entry, f.motion.length() / static_cast<double>(f.motion.lap_samples()),
+                      sample);
   }
 
   // the largest step while it sounds
   FocusSample now;
   now.p_D = f.motion.position().cast<float>();
   now.intensity = static_cast<float>(d.intensity);
-  if (std::max(now.intensity, f.last.intensity) > static_cast<float>(kSounding)) {
-    const double step = (now.p_D.cast<double>() - f.last.p_D.cast<double>()).squaredNorm();
-    max_step_squared = std::max(max_step_squared, step);
-  }
+  longest_step.look(f.last, now);
   f.last = now;
 }
 
@@ -323,40 +298,11 @@ void PathEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
   }
 }
 
-PathEmitter::PathEmitter(const EmitSettings& settings, double sample_rate) {
-  validate(settings, sample_rate);
-  impl_ = std::make_unique<Impl>(settings, sample_rate);
-}
+PathEmitter::PathEmitter(const EmitSettings& settings, double sample_rate)
+    : Emitter(settings, sample_rate, Method::ProStm),
+      impl_(std::make_unique<Impl>(exchange(), sample_rate)) {}
 
 PathEmitter::~PathEmitter() = default;
-
-LiftedPlan& PathEmitter::draft() {
-  return impl_->inbox.draft().plan;
-}
-
-void PathEmitter::submit() noexcept {
-  Message& message = impl_->inbox.draft();
-  auto& paths = message.plan.paths;
-  message.refused = !std::all_of(paths.begin(), paths.end(), usable);
-  message.lost = message.refused;
-  if (!message.refused) {
-    const auto empty = [](const LiftedPath& path) { return path.p_D.empty(); };
-    paths.erase(std::remove_if(paths.begin(), paths.end(), empty), paths.end());
-    for (LiftedPath& path : paths) measure(path);
-  }
-  impl_->inbox.publish();
-}
-
-void PathEmitter::lose() noexcept {
-  Message& message = impl_->inbox.draft();
-  message.lost = true;
-  message.refused = false;
-  impl_->inbox.publish();
-}
-
-int PathEmitter::foci() const {
-  return impl_->settings.foci;
-}
 
 void PathEmitter::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
   Impl& impl = *impl_;
@@ -369,18 +315,9 @@ void PathEmitter::fill(std::int64_t first, std::span<FocusSample> out) noexcept 
 
   // counters for stats()
   impl.stats.samples += static_cast<std::int64_t>(samples * foci);
-  impl.stats.max_focus_step = std::sqrt(impl.max_step_squared);
-  impl.published.draft() = impl.stats;
-  impl.published.publish();
-}
-
-bool PathEmitter::next_take_over(TakeOver& out) {
-  return impl_->log.next(out);
-}
-
-EmitStats PathEmitter::stats() const {
-  impl_->published.refresh();
-  return impl_->published.value();
+  impl.stats.max_focus_step = impl.longest_step.length();
+  exchange().published.draft() = impl.stats;
+  exchange().published.publish();
 }
 
 }  // namespace prostm

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/spsc_ring.hpp"
-#include "emit/path_emitter.hpp"
+#include "emit/emitter.hpp"
 
 namespace prostm {
 

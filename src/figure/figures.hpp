@@ -27,9 +27,10 @@ struct PlanFigure {
 };
 /// (a) target, (b) clusters, (c) initial tour, (d) split tours, (e) refined paths, (f)
 /// reconstruction; where the trace is empty, since the preset has no such steps, only target, paths
-/// and reconstruction. With axes in mm, one colour bar for the fields, a length for each path, and
-/// the table. The panels of `beside`, a plan for the same target, stand under them and its metrics
-/// in the table. @throws InputError when the file cannot be written.
+/// and reconstruction; foci take the place of paths. With axes in mm, one colour bar for the
+/// fields, a length for each path, and the table. The panels of `beside`, a plan for the same
+/// target, stand under them and its metrics in the table. @throws InputError when the file cannot
+/// be written.
 void draw_plan(const PlanFigure& figure, const std::string& path,
                const PlanFigure* beside = nullptr);
 
@@ -46,11 +47,20 @@ struct GalleryField {
   TargetField target;
   std::vector<GalleryPlan> plans;  ///< the same planners in the same order for every field
 };
-/// For each field its target and beside it every plan's field with the paths, all coloured by
-/// pressure over the target's maximum; RMSE and S_8.5 under each plan, those of the better RMSE in
-/// bold. @throws std::invalid_argument: no field, plans that differ in number, or sizes that
-/// disagree. @throws InputError when the file cannot be written.
-void draw_gallery(const std::string& title, const std::vector<GalleryField>& fields,
+/// What stands beside the RMSE under each plan.
+enum class GalleryCaption : std::uint8_t { Skill, Correlation };
+struct GalleryPage {
+  std::string title;
+  std::string note = {};  ///< a line under the one that explains the picture
+  GalleryCaption caption = GalleryCaption::Skill;
+  std::size_t fields_in_row = 3;  ///< ≥ 1
+};
+/// For each field its target and beside it every plan's field with the paths or foci, all coloured
+/// by pressure over the target's maximum; RMSE and S_8.5 under each plan, those of the better RMSE
+/// in bold, or RMSE and correlation, none in bold. @throws std::invalid_argument: no field, plans
+/// that differ in number, or sizes that disagree. @throws InputError when the file cannot be
+/// written.
+void draw_gallery(const GalleryPage& page, const std::vector<GalleryField>& fields,
                   const std::string& path);
 
 /// One line of a chart; x ascends.

@@ -112,9 +112,18 @@ void Panel::closed_line(std::span<const Vec2> points, const Colour& colour, doub
   canvas_.unclip();
 }
 
-void Panel::closed_line_on_field(std::span<const Vec2> points) {
-  closed_line(points, kInk, 3.0);
-  closed_line(points, kPaper, 1.6);
+void Panel::plan_on_field(const Plan& plan, int patch) {
+  for (const FocalPath& path : plan.paths) {
+    if (path.patch != patch) continue;
+    const std::span<const Vec2> points(path.points.data(), path.points.size());
+    closed_line(points, kInk, 3.0);
+    closed_line(points, kPaper, 1.6);
+  }
+  for (const FocalPoint& focus : plan.foci) {
+    if (focus.patch != patch) continue;
+    disc(focus.position, 4.4, kInk);
+    disc(focus.position, 3.2, kPaper);
+  }
 }
 
 void Panel::disc(const Vec2& centre, double radius_points, const Colour& colour) {

@@ -60,14 +60,14 @@ void draw_tour(Panel& panel, const PlanTrace& trace, const std::vector<int>& tou
   for (const Vec2& x : points) panel.disc(x, 2.4, colour);
 }
 
-/// The lengths of the paths in their colours, under the panel that shows them.
-void write_lengths(Canvas& canvas, const Panel& panel, const Plan& plan) {
+/// A number for each path or focus in its colour, under the panel that shows them.
+void write_values(Canvas& canvas, const Panel& panel, const std::vector<std::string>& values,
+                  const std::string& unit) {
   const figure::TextStyle plain{.size = 11.0, .bold = true};
   std::vector<std::string> texts;
   double width = 0.0;
-  for (std::size_t i = 0; i < plan.paths.size(); ++i) {
-    texts.push_back(fmt::format("{:.1f}", 1e3 * plan.paths[i].length) +
-                    (i + 1 < plan.paths.size() ? " · " : " mm"));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    texts.push_back(values[i] + (i + 1 < values.size() ? " · " : unit));
     width += canvas.text_width(texts.back(), plain);
   }
   const Box& box = panel.box();
@@ -102,8 +102,9 @@ void draw_field_panels(Canvas& canvas, const PlanFigure& f, double top) {
   target.axes({.title = "(a) target pressure"});
   Panel reconstruction = panel_at(canvas, *f.target, has_steps(f) ? 5 : 2, top);
   reconstruction.heat_map(*f.target, f.reconstruction, full);
-  reconstruction.axes(
-      {.title = has_steps(f) ? "(f) reconstruction, Eq. (1)" : "(c) reconstruction, Eq. (1)"});
+  reconstruction.axes({.title = has_steps(f)           ? "(f) reconstruction, Eq. (1)"
+                                : f.plan->foci.empty() ? "(c) reconstruction, Eq. (1)"
+                                                       : "(c) reconstruction, nearest focus"});
   for (const Panel* panel : {&target, &reconstruction}) {
     const Box& box = panel->box();
     figure::colour_bar(canvas, {box.x + box.width + 9.0, box.y, 11.0, box.height}, "p / max p*");
@@ -119,7 +120,26 @@ void draw_paths_panel(Canvas& canvas, const PlanFigure& f, double top) {
     panel.closed_line({points.data(), points.size()}, figure::path_colour(i), 2.4);
   }
   panel.axes({.title = has_steps(f) ? "(e) refined paths" : "(b) paths"});
-  write_lengths(canvas, panel, *f.plan);
+  std::vector<std::string> lengths;
+  for (const FocalPath& path : f.plan->paths)
+    lengths.push_back(fmt::format("{:.1f}", 1e3 * path.length));
+  write_values(canvas, panel, lengths, " mm");
+}
+
+/// The foci, their areas as their pressures, with those.
+void draw_foci_panel(Canvas& canvas, const PlanFigure& f, double top) {
+  Panel panel = panel_at(canvas, *f.target, 1, top);
+  panel.silhouette(*f.target);
+  const double full = max_pressure(*f.target);
+  std::vector<std::string> pressures;
+  for (std::size_t i = 0; i < f.plan->foci.size(); ++i) {
+    const FocalPoint& focus = f.plan->foci[i];
+    const double share = focus.pressure / full;
+    panel.disc(focus.position, 9.0 * std::sqrt(std::min(share, 4.0)), figure::path_colour(i));
+    pressures.push_back(fmt::format("{:.2f}", share));
+  }
+  panel.axes({.title = "(b) foci"});
+  write_values(canvas, panel, pressures, " max p*");
 }
 
 /// The panels that show how the paths come about: (b) to (d).
@@ -223,7 +243,11 @@ void draw_plan(const PlanFigure& f, const std::string& path, const PlanFigure* b
   for (const PlanFigure* block : blocks) {
     canvas.text(Vec2(kLeft - 30.0, top - 46.0), block->title, {.size = 19.0, .bold = true});
     draw_field_panels(canvas, *block, top);
-    draw_paths_panel(canvas, *block, top);
+    if (block->plan->foci.empty()) {
+      draw_paths_panel(canvas, *block, top);
+    } else {
+      draw_foci_panel(canvas, *block, top);
+    }
     if (has_steps(*block)) draw_step_panels(canvas, *block, top);
     top += height_of(*block) + kBetween;
   }

@@ -135,13 +135,6 @@ void draw_side(Canvas& canvas, const SceneFigure& f) {
   draw_legend(canvas, panel.box());
 }
 
-void draw_paths(Panel& panel, const Plan& plan, std::size_t patch) {
-  for (const FocalPath& path : plan.paths) {
-    if (static_cast<std::size_t>(path.patch) != patch) continue;
-    panel.closed_line_on_field({path.points.data(), path.points.size()});
-  }
-}
-
 /// Where the target of patch `i` may stand; the reconstruction stands a column to the right.
 Box field_space(const SceneFigure& f, std::size_t i) {
   const double count = static_cast<double>(f.targets.size());
@@ -168,8 +161,10 @@ void draw_fields(Canvas& canvas, const SceneFigure& f) {
     space.x += kFieldColumn;
     Panel drawn(canvas, space, extent);
     drawn.heat_map(f.targets[i], f.reconstructions[i], full);
-    draw_paths(drawn, f.plan, i);
-    drawn.axes({.title = "reconstruction and paths" + hand});
+    drawn.plan_on_field(f.plan, static_cast<int>(i));
+    drawn.axes(
+        {.title = (f.plan.foci.empty() ? "reconstruction and paths" : "reconstruction and foci") +
+                  hand});
     const Box& box = drawn.box();
     figure::colour_bar(canvas, {box.x + box.width + 9.0, box.y, 11.0, box.height}, "p / max p*");
   }

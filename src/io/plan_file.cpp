@@ -7,7 +7,6 @@
 
 #include "core/input_error.hpp"
 #include "io/raster_json.hpp"
-#include "io/settings_file.hpp"
 
 namespace prostm {
 namespace {
@@ -24,6 +23,12 @@ Json path_json(const FocalPath& path) {
           {"length_mm", to_milli(path.length)},
           {"speed_m_s", path.speed},
           {"period_ms", to_milli(path.period)}};
+}
+
+Json focus_json(const FocalPoint& focus) {
+  return {{"patch", focus.patch},
+          {"position_mm", milli_json(focus.position)},
+          {"pressure", focus.pressure}};
 }
 
 Json stage_json(const PlanStats& s) {
@@ -94,14 +99,34 @@ FocalPath read_path(const JsonNode& node) {
   return path;
 }
 
+FocalPoint read_focus(const JsonNode& node) {
+  FocalPoint focus;
+  if (node.has("patch")) focus.patch = node.at("patch", "").integer(0, kMaxPatches - 1);
+  const Vec2 mm =
+      node.at("position_mm", "a point [x, y]").vec2(-kMaxCoordinateMm, kMaxCoordinateMm);
+  focus.position = Vec2(from_milli(mm.x()), from_milli(mm.y()));
+  focus.pressure = node.at("pressure", "a number").number(0.0, kMaxFilePressure);
+  return focus;
+}
+
+template <class Read, class List>
+void read_list(const JsonNode& node, const char* what, const Read& read, List& out) {
+  if (node.array_size() > out.capacity()) {
+    node.fail(
+        fmt::format("has {} {}; it must have at most {}", node.array_size(), what, out.capacity()));
+  }
+  for (std::size_t i = 0; i < node.array_size(); ++i) out.push_back(read(node.at(i)));
+}
+
 }  // namespace
 
-std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanSettings& settings,
-                         const PlanFileExtras& extras, const std::string& settings_json) {
-  Json document = {
-      {"format", "prostm-plan/1"}, {"method", extras.method}, {"preset", settings.preset}};
-  document["paths"] = Json::array();
-  for (const FocalPath& path : plan.paths) document["paths"].push_back(path_json(path));
+std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanFileExtras& extras,
+                         const std::string& settings_json) {
+  Json document = {{"format", "prostm-plan/1"}, {"method", to_string(extras.method)}};
+  if (!extras.preset.empty()) document["preset"] = extras.preset;
+  Json& list = document[extras.method == Method::Am ? "foci" : "paths"] = Json::array();
+  for (const FocalPath& path : plan.paths) list.push_back(path_json(path));
+  for (const FocalPoint& focus : plan.foci) list.push_back(focus_json(focus));
 
   if (extras.power != nullptr) {
     document["power"] = {{"share_of_array", extras.power->array},
@@ -131,12 +156,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
   write_raster(target, raster);
   raster["height_mm"] = heights_json(target);
   document["raster"] = std::move(raster);
-  PlanSettings copy = settings;
-  const std::string own_settings =
-      settings_json.empty()
-          ? settings_to_json({{"plan", [&](SettingsVisitor& v) { copy.visit(v); }}})
-          : settings_json;
-  document["settings"] = Json::parse(own_settings);
+  if (!settings_json.empty()) document["settings"] = Json::parse(settings_json);
   return to_text(document);
 }
 
@@ -145,12 +165,12 @@ PlanFile plan_from_json(std::string_view text, const std::string& name) {
   const JsonNode root(document, name);
   require_format(root, "prostm-plan/1");
   PlanFile file;
-  const JsonNode paths = root.at("paths", "an array of paths");
-  if (paths.array_size() > static_cast<std::size_t>(kMaxPaths)) {
-    paths.fail(fmt::format("has {} paths; it must have at most {}", paths.array_size(), kMaxPaths));
-  }
-  for (std::size_t i = 0; i < paths.array_size(); ++i) {
-    file.plan.paths.push_back(read_path(paths.at(i)));
+  file.method = root.has("foci") ? Method::Am : Method::ProStm;
+  if (file.method == Method::Am) {
+    if (root.has("paths")) root.fail("has both foci and paths; a plan has one of the two");
+    read_list(root.at("foci", "an array of foci"), "foci", read_focus, file.plan.foci);
+  } else {
+    read_list(root.at("paths", "an array of paths, or foci"), "paths", read_path, file.plan.paths);
   }
 
   // the raster's skin is where it has a height

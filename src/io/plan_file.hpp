@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "plan/method.hpp"
 #include "plan/planner.hpp"
 #include "score/score.hpp"
 
@@ -16,9 +17,10 @@ struct PowerShare {
   double limit = 0.0;     ///< largest Σ intensity² that the emission allows
 };
 
-/// What a plan file says besides the paths.
+/// What a plan file says besides the paths or foci.
 struct PlanFileExtras {
-  std::string method = "pro-stm";
+  Method method = Method::ProStm;    ///< am: the plan holds foci, and they are written
+  std::string preset;                ///< writes "preset", when given
   const PlanStats* stats = nullptr;  ///< writes "stage_us" and the counts, when given
   const Metrics* metrics = nullptr;  ///< writes "metrics", when given
   const std::vector<Control>* controls = nullptr;
@@ -26,11 +28,12 @@ struct PlanFileExtras {
 };
 
 /// @param target the field that was planned: its plane and heights are repeated in the file.
-/// @param settings_json the settings of every stage, an object as text, or empty.
-std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanSettings& settings,
-                         const PlanFileExtras& extras, const std::string& settings_json);
+/// @param settings_json the settings, an object as text; empty: none are written.
+std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanFileExtras& extras,
+                         const std::string& settings_json);
 
 struct PlanFile {
+  Method method = Method::ProStm;  ///< am where the file has foci
   Plan plan;
   TargetField raster;  ///< plane and heights (pressure 0 where the file repeats none)
 };

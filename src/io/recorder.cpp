@@ -108,6 +108,7 @@ struct Recorder::Impl {
   void append_weights(const TargetField& field);
   void append_hands(const HandFrame& hands);
   void append_plan(const Plan* p, const PlanStats* stats);
+  void append_foci(const Plan* p);
   bool ok() const { return error == 0 && frame.ok() && target.ok() && hand.ok() && plan.ok(); }
   bool close_all();
   [[noreturn]] void give_up();
@@ -221,6 +222,7 @@ void Recorder::Impl::append_plan(const Plan* p, const PlanStats* stats) {
   plan.append("length", length, 1);
   plan.append("speed", speed, 1);
   plan.append("period", period, 1);
+  append_foci(p);
 
   const PlanStats s = stats == nullptr ? PlanStats{} : *stats;
   std::vector<double> stage{s.init, s.kmeans, s.tour, s.split, s.resample, s.refine, s.total};
@@ -231,6 +233,23 @@ void Recorder::Impl::append_plan(const Plan* p, const PlanStats* stats) {
                                         s.cost_evaluations, s.leaves, s.long_paths, s.crossings},
               1);
   plan.append("cost", stats == nullptr ? kNan : s.cost);
+}
+
+void Recorder::Impl::append_foci(const Plan* p) {
+  const std::size_t foci = p == nullptr ? 0 : p->foci.size();
+  std::vector<std::int32_t> patch(kMaxPaths, -1);
+  std::vector<double> pressure(kMaxPaths, kNan), position(2 * pressure.size(), kNan);
+  for (std::size_t i = 0; i < foci; ++i) {
+    const FocalPoint& focus = p->foci[i];
+    patch[i] = focus.patch;
+    position[2 * i] = focus.position.x();
+    position[2 * i + 1] = focus.position.y();
+    pressure[i] = focus.pressure;
+  }
+  plan.append<std::int32_t>("foci", p == nullptr ? -1 : static_cast<std::int32_t>(foci));
+  plan.append("focus_patch", patch, 1);
+  plan.append("focus_position", position, 1);
+  plan.append("focus_pressure", pressure, 1);
 }
 
 bool Recorder::Impl::close_all() {

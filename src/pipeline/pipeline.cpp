@@ -19,7 +19,7 @@ Pose tracker_pose(const std::string& name) {
 
 const PipelineSettings& checked(const PipelineSettings& settings) {
   require_between("fluid_rate", settings.fluid_rate, 10.0, 1000.0, "Hz");
-  require_between("fluid_steps_per_plan", settings.fluid_steps_per_plan, 1, 100);
+  require_between("fluid_steps_per_plan", settings.fluid_steps_per_plan, 0, 100);
   return settings;
 }
 
@@ -30,6 +30,13 @@ EmitSettings with_full_scale(const PipelineSettings& settings, double scene_full
   if (emit.full_scale_pressure == 0.0)
     emit.full_scale_pressure = settings.plan.gain * scene_full_scale;
   return emit;
+}
+
+/// The planner of the method.
+std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
+                                              std::size_t max_cells) {
+  if (method_from_name(settings.method) == Method::Am) return AmPlanner(settings.am, max_cells);
+  return Planner(settings.plan, max_cells);
 }
 
 }  // namespace
@@ -43,7 +50,7 @@ SmokeStage::SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSou
       fluid_(settings.fluid, scene_, pool_),
       rasteriser_(fluid_.grid()),
       contact_(settings.contact, fluid_.grid()),
-      steps_per_plan_(settings.fluid_steps_per_plan),
+      steps_per_plan_(settings.steps_per_plan()),
       side_view_(settings.side_view) {}
 
 void SmokeStage::run(std::int64_t step, double time, double dt, ContactFrame& out) {
@@ -90,25 +97,27 @@ void SmokeStage::view_from_side(SideView& out) const {
 }
 
 PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale)
-    : planner_(settings.plan, max_cells),
+    : planner_(make_planner(settings, max_cells)),
       emit_settings_(with_full_scale(settings, full_scale)),
-      emitter_(emit_settings_, settings.simulated_array.sample_rate) {}
+      emitter_(make_emitter(method_from_name(settings.method), emit_settings_,
+                            settings.simulated_array.sample_rate)) {}
 
 void PlanStage::run(const ContactFrame& contact, PlanFrame& out) noexcept {
   out.id = ++updates_;
   out.max_skin_length = 0.0;
-  out.status = planner_.plan(contact.target, out.plan, out.stats);
+  out.status = std::visit(
+      [&](auto& planner) { return planner.plan(contact.target, out.plan, out.stats); }, planner_);
   StageTimer timer;
   if (out.status != PlanStatus::Planned) {
-    emitter_.lose();
+    emitter_->lose();
   } else {
-    LiftedPlan& lifted = emitter_.draft();
+    LiftedPlan& lifted = emitter_->draft();
     lift(out.plan, contact.target, lifted);
     lifted.id = out.id;
     lifted.hand_time = contact.arrival;
     for (const LiftedPath& path : lifted.paths)
       out.max_skin_length = std::max(out.max_skin_length, path.length);
-    emitter_.submit();
+    emitter_->submit();
   }
   out.lift_time = timer.seconds();
 }

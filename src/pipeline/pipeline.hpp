@@ -3,12 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <variant>
 #include <vector>
 
 #include "contact/skin_contact.hpp"
 #include "core/worker_pool.hpp"
 #include "device/simulated_array.hpp"
-#include "emit/path_emitter.hpp"
+#include "emit/emitter.hpp"
 #include "fluid/fluid.hpp"
 #include "hand/hand_raster.hpp"
 #include "pipeline/settings.hpp"
@@ -43,7 +44,7 @@ class SmokeStage {
   SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands);
 
   /// Fluid step `step` (from 1) with the hands at run time `time` [s], dt after the last one; makes
-  /// targets on every `fluid_steps_per_plan`th. Writes `arrival` = time.
+  /// targets on every `steps_per_plan`th. Writes `arrival` = time.
   void run(std::int64_t step, double time, double dt, ContactFrame& out);
 
   const Fluid& fluid() const { return fluid_; }
@@ -75,7 +76,7 @@ struct PlanFrame {
   double max_skin_length = 0.0;  ///< longest path on the skin [m]
 };
 
-/// Paths from targets: the stages that run at the planner's rate.
+/// Paths or foci from targets: the stages that run at the planner's rate.
 class PlanStage {
  public:
   /// @param max_cells of a target raster.  @param full_scale of the scene, where the settings give
@@ -86,15 +87,15 @@ class PlanStage {
   /// Plans a target and hands the result to the emitter; without a plan the output fades.
   void run(const ContactFrame& contact, PlanFrame& out) noexcept;
 
-  PathEmitter& emitter() { return emitter_; }
+  Emitter& emitter() { return *emitter_; }
   double full_scale_pressure() const {
     return emit_settings_.full_scale_pressure;
   }  ///< rendered, at intensity 1 [Pa]
 
  private:
-  Planner planner_;
+  std::variant<Planner, AmPlanner> planner_;
   EmitSettings emit_settings_;
-  PathEmitter emitter_;
+  std::unique_ptr<Emitter> emitter_;
   std::int64_t updates_ = 0;
 };
 

@@ -75,7 +75,7 @@ struct PlanLog {
 
   /// From a hand's arrival to the first sample planned from it, and to when 90 % of the new field
   /// was drawn.
-  void follow(PathEmitter& emitter, const SimulatedArray& device, bool realtime) {
+  void follow(Emitter& emitter, const SimulatedArray& device, bool realtime) {
     const auto leaves = [&](std::int64_t sample) {
       return realtime ? device.play_time(sample)
                       : static_cast<double>(sample) / device.info().sample_rate;
@@ -173,7 +173,7 @@ class Run {
     plan_ended_.store(true, std::memory_order_release);
   }
 
-  // ---- as fast as possible: plan k uses fluid step k · fluid_steps_per_plan, nothing is dropped
+  // ---- as fast as possible: plan k uses fluid step k · steps_per_plan, nothing is dropped
   // ----
 
   void smoke_without_clock() {

@@ -4,11 +4,21 @@ namespace prostm {
 
 void PipelineSettings::visit(SettingsVisitor& v) {
   v.field("scene", scene);
+  v.field("method", method);
   v.field("tracker", tracker);
   v.field("fluid_rate", fluid_rate);
   v.field("fluid_steps_per_plan", fluid_steps_per_plan);
   v.field("side_view", side_view);
   v.field("threads", threads);
+}
+
+int PipelineSettings::steps_per_plan() const {
+  if (fluid_steps_per_plan > 0) return fluid_steps_per_plan;
+  return method_from_name(method) == Method::Am ? 1 : 2;
+}
+
+double PipelineSettings::sigma() const {
+  return method_from_name(method) == Method::Am ? am.sigma : plan.sigma;
 }
 
 std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(
@@ -20,6 +30,7 @@ std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> setti
           {"fluid", group(settings.fluid)},
           {"contact", group(settings.contact)},
           {"plan", group(settings.plan)},
+          {"am", group(settings.am)},
           {"emit", group(settings.emit)},
           {"simulated_array", group(settings.simulated_array)}};
 }

@@ -6,10 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "am/am_planner.hpp"
 #include "contact/skin_contact.hpp"
 #include "core/settings.hpp"
 #include "device/simulated_array.hpp"
-#include "emit/path_emitter.hpp"
+#include "emit/emitter.hpp"
 #include "fluid/fluid.hpp"
 #include "plan/planner.hpp"
 #include "track/hand_source.hpp"
@@ -18,9 +19,11 @@ namespace prostm {
 
 struct PipelineSettings {
   std::string scene = "one-plume";  ///< see scene_from_name
+  std::string method = "pro-stm";   ///< see method_from_name
   std::string tracker = "centre";   ///< pose of the tracker: "centre", or "ultraleap-kit"
   double fluid_rate = 50.0;         ///< fluid steps a second [Hz]
-  int fluid_steps_per_plan = 2;     ///< a plan every so many fluid steps: 25 Hz
+  int fluid_steps_per_plan = 0;     ///< a plan every so many fluid steps; 0: as the method asks, 2
+                                    ///< (25 Hz) of pro-stm, 1 (50 Hz) of am
   bool side_view = false;  ///< keep a picture of the box from the side with every plan update
   int threads = 2;         ///< of the fluid, the stepping thread included
 
@@ -29,8 +32,16 @@ struct PipelineSettings {
   FluidSettings fluid;
   ContactSettings contact;
   PlanSettings plan;
+  AmSettings am;
   EmitSettings emit;
   SimulatedArraySettings simulated_array;
+
+  /// fluid_steps_per_plan, where 0 stands for what the method asks. @throws std::invalid_argument
+  /// for a method that is unknown.
+  int steps_per_plan() const;
+
+  /// The fall-off of a focal point that the method counts on [m].
+  double sigma() const;
 
   /// The fields of this struct that belong to no stage.
   void visit(SettingsVisitor& v);

@@ -9,18 +9,25 @@ PathSegments::PathSegments(const Plan& plan, int patch) {
     if (path.patch != patch) continue;
     const std::size_t n = path.points.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec2 &a = path.points[i], &b = path.points[(i + 1) % n];
-      const Vec2 edge = b - a;
-      const double length2 = edge.squaredNorm();
-      segments_[count_] = {a, edge, length2 > 0.0 ? 1.0 / length2 : 0.0, path.pressure[i],
-                           path.pressure[(i + 1) % n] - path.pressure[i]};
-      Box& box = boxes_[count_ / kRun];
-      if (count_ % kRun == 0) box = {a, a};
-      box.low = box.low.cwiseMin(a).cwiseMin(b);
-      box.high = box.high.cwiseMax(a).cwiseMax(b);
-      ++count_;
+      const std::size_t next = (i + 1) % n;
+      add(path.points[i], path.points[next], path.pressure[i], path.pressure[next]);
     }
   }
+  for (const FocalPoint& focus : plan.foci) {
+    if (focus.patch == patch) add(focus.position, focus.position, focus.pressure, focus.pressure);
+  }
+}
+
+void PathSegments::add(const Vec2& a, const Vec2& b, double pressure_a, double pressure_b) {
+  const Vec2 edge = b - a;
+  const double length2 = edge.squaredNorm();
+  segments_[count_] = {a, edge, length2 > 0.0 ? 1.0 / length2 : 0.0, pressure_a,
+                       pressure_b - pressure_a};
+  Box& box = boxes_[count_ / kRun];
+  if (count_ % kRun == 0) box = {a, a};
+  box.low = box.low.cwiseMin(a).cwiseMin(b);
+  box.high = box.high.cwiseMax(a).cwiseMax(b);
+  ++count_;
 }
 
 double PathSegments::project(std::size_t s, const Vec2& x, double& along) const {

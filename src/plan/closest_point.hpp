@@ -1,5 +1,5 @@
 #pragma once
-/// The closest point of a plan's paths, the search behind Eq. (1) and coverage.
+/// The closest point of a plan's paths or foci, the search behind Eq. (1) and coverage.
 
 #include <array>
 #include <cstddef>
@@ -10,13 +10,13 @@ namespace prostm {
 
 struct ClosestPoint {
   double distance2 = 0.0;   ///< squared [m²]
-  std::size_t segment = 0;  ///< in the order of paths and points
+  std::size_t segment = 0;  ///< in the order of paths and points, or of foci
   double along = 0.0;       ///< 0 at the segment's first point, 1 at its second
   double pressure = 0.0;    ///< rendered p_i there, linear between the samples
 };
 
-/// All segments of the paths of one patch, in short runs with their bounding boxes. Allocates
-/// nothing.
+/// All segments of the paths of one patch, in short runs with their bounding boxes; a focus is a
+/// segment without length. Allocates nothing.
 class PathSegments {
  public:
   static constexpr std::size_t kCapacity = static_cast<std::size_t>(kMaxPaths) * kMaxPathPoints;
@@ -41,6 +41,7 @@ class PathSegments {
   struct Box {
     Vec2 low, high;
   };
+  void add(const Vec2& a, const Vec2& b, double pressure_a, double pressure_b);
   double project(std::size_t s, const Vec2& x, double& along) const;
 
   std::array<Segment, kCapacity> segments_;

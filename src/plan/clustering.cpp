@@ -26,6 +26,23 @@ void WeightedKMeans::add(const Vec2& point, double weight) {
 int WeightedKMeans::run(int k, int max_iterations, std::uint64_t seed, Clusters& clusters) {
   k_ = static_cast<int>(std::min(static_cast<std::size_t>(k), size()));
   seed_centres(seed);
+  return iterate(max_iterations, clusters);
+}
+
+int WeightedKMeans::run_from(std::span<const Vec2> seeds, int max_iterations, Clusters& clusters) {
+  k_ = static_cast<int>(seeds.size());
+  distance2_.assign(size(), 0.0);
+  label_.assign(size(), 0);
+  for (std::size_t c = 0; c < seeds.size(); ++c) place_seed(c, seeds[c].x(), seeds[c].y());
+  return iterate(max_iterations, clusters);
+}
+
+/// Lloyd's iteration from the labels of the seeds.
+int WeightedKMeans::iterate(int max_iterations, Clusters& clusters) {
+  const auto k = static_cast<std::size_t>(k_);
+  for (std::size_t c = 0; c < k; ++c) {
+    for (std::size_t m = 0; m < k; ++m) neighbour_[c][m] = static_cast<std::uint8_t>(m);
+  }
   int iterations = 0;
   do {
     move_centres();
@@ -37,7 +54,7 @@ int WeightedKMeans::run(int k, int max_iterations, std::uint64_t seed, Clusters&
   // a centre may have lost all its points on the way: it is left out
   clusters.centre.clear();
   clusters.mass.clear();
-  for (std::size_t c = 0; c < static_cast<std::size_t>(k_); ++c) {
+  for (std::size_t c = 0; c < k; ++c) {
     if (!(mass_[c] > 0.0)) continue;
     clusters.centre.push_back(Vec2(cx_[c], cy_[c]));
     clusters.mass.push_back(mass_[c]);
@@ -65,21 +82,19 @@ void WeightedKMeans::seed_centres(std::uint64_t seed) {
       remaining -= share;
       if (remaining < 0.0) break;
     }
-    cx_[c] = x_[chosen];
-    cy_[c] = y_[chosen];
-
-    // the points that are nearer to it than to any before
-    for (std::size_t i = 0; i < n; ++i) {
-      const double dx = x_[i] - cx_[c], dy = y_[i] - cy_[c], d2 = dx * dx + dy * dy;
-      if (c > 0 && d2 >= distance2_[i]) continue;
-      distance2_[i] = d2;
-      label_[i] = static_cast<std::uint8_t>(c);
-    }
+    place_seed(c, x_[chosen], y_[chosen]);
   }
-  for (std::size_t c = 0; c < static_cast<std::size_t>(k_); ++c) {
-    for (std::size_t m = 0; m < static_cast<std::size_t>(k_); ++m) {
-      neighbour_[c][m] = static_cast<std::uint8_t>(m);
-    }
+}
+
+/// Makes (x, y) seed c of the points that are nearer to it than to any before.
+void WeightedKMeans::place_seed(std::size_t c, double x, double y) {
+  cx_[c] = x;
+  cy_[c] = y;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const double dx = x_[i] - x, dy = y_[i] - y, d2 = dx * dx + dy * dy;
+    if (c > 0 && d2 >= distance2_[i]) continue;
+    distance2_[i] = d2;
+    label_[i] = static_cast<std::uint8_t>(c);
   }
 }
 

@@ -101,6 +101,7 @@ void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out)
 
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept {
   out.paths.clear();
+  out.foci.clear();
   out.hand_time = frame.time;
   for (const FocalPath& path : plan.paths) {
     if (path.points.empty()) continue;
@@ -108,6 +109,13 @@ void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept 
     assert(patch < frame.patches.size() && path.pressure.size() == path.points.size());
     out.paths.emplace_back();
     lift_path(path, frame.patches[patch], out.paths.back());
+  }
+  for (const FocalPoint& focus : plan.foci) {
+    const auto patch = static_cast<std::size_t>(focus.patch);
+    assert(patch < frame.patches.size());
+    const TargetField& field = frame.patches[patch];
+    const Vec3 p(focus.position.x(), focus.position.y(), height_at(field, focus.position));
+    out.foci.push_back({field.X_DP * p, focus.pressure});
   }
 }
 

@@ -24,8 +24,16 @@ struct LiftedPath {
   double speed = 0.0;                                           ///< [m/s]
 };
 
+/// A focal point that stands still.
+struct LiftedFocus {
+  Vec3 p_D = Vec3::Zero();  ///< [m]
+  double pressure = 0.0;    ///< rendered at the peak of the modulation, unit of the target
+};
+
+/// Paths, or foci: one of the two is empty.
 struct LiftedPlan {
   boost::container::static_vector<LiftedPath, kMaxPaths> paths;
+  boost::container::static_vector<LiftedFocus, kMaxPaths> foci;
   std::int64_t id = 0;     ///< counts plans from 1
   double hand_time = 0.0;  ///< of the hand frame that it was planned from [s]
 };
@@ -34,8 +42,9 @@ struct LiftedPlan {
 /// point gets the height of the skin there (height_at), and the focal point is to move at the
 /// path's speed along the 3-D curve. The heights are smoothed along the path over two cells, (E1),
 /// since the stairs of a raster would make the curve longer than the skin is. A path of fewer than
-/// two distinct points is a point at rest; a path without points is left out. Sets `paths` and
-/// `hand_time`, leaves `id`. @pre every `patch` is an index into frame.patches.
+/// two distinct points is a point at rest; a path without points is left out. A focus gets the
+/// height of the skin there. Sets `paths`, `foci` and `hand_time`, leaves `id`. @pre every `patch`
+/// is an index into frame.patches.
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
 
 /// Length on the skin of one path over `field`, as lift() makes it [m].

@@ -9,4 +9,11 @@ double closed_length(const FocalPath& path) {
   return length;
 }
 
+void translate(Plan& plan, const Vec2& shift) {
+  for (FocalPath& path : plan.paths) {
+    for (Vec2& x : path.points) x += shift;
+  }
+  for (FocalPoint& focus : plan.foci) focus.position += shift;
+}
+
 }  // namespace prostm

@@ -26,11 +26,31 @@ struct FocalPath {
   double period = 0.0;
 };
 
+/// A focal point that stands still in a target's plane, its intensity modulated (AM).
+struct FocalPoint {
+  int patch = 0;                 ///< index of the target patch (hand)
+  Vec2 position = Vec2::Zero();  ///< in P [m]
+  double pressure = 0.0;         ///< rendered at the peak of the modulation, unit of the target
+};
+
+using FocalPoints = boost::container::static_vector<FocalPoint, kMaxPaths>;
+
+/// Closed paths, or foci: one of the two is empty.
 struct Plan {
   boost::container::static_vector<FocalPath, kMaxPaths> paths;
+  FocalPoints foci;
+
+  bool empty() const { return paths.empty() && foci.empty(); }
+  void clear() {
+    paths.clear();
+    foci.clear();
+  }
 };
 
 /// Length of the closed polygon [m].
 double closed_length(const FocalPath& path);
+
+/// Moves every path and focus by `shift` in the plane [m].
+void translate(Plan& plan, const Vec2& shift);
 
 }  // namespace prostm

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/stage_timer.hpp"
 #include "plan/cell_weights.hpp"
 #include "plan/clustering.hpp"
 #include "plan/fit_planner.hpp"
-#include "plan/raster_rows.hpp"
+#include "plan/patches.hpp"
 #include "plan/refine.hpp"
 #include "plan/settings_check.hpp"
 #include "plan/tours.hpp"
@@ -22,65 +21,10 @@ using namespace planning;
 namespace {
 
 constexpr double kLengthTolerance = 0.5e-3;  // [m], of "longer than L" in the statistics
-constexpr double kSmallestCell = 1e-6, kLargestCell = 1.0;  // [m]
-constexpr double kLargestPressure = 1e300;                  // sums and γ p* stay finite
-
-/// Whether the weights, if there are any, are as validate() asks.
-bool has_good_weights(const TargetField& target) {
-  if (target.weight.empty()) return true;
-  if (target.weight.size() != target.size()) return false;
-  const double largest =
-      planning::checked_maximum(target.weight, target.skin, std::numeric_limits<double>::max());
-  return largest > 0.0 ||
-         (largest == 0.0 && std::count(target.skin.begin(), target.skin.end(), 0) ==
-                                static_cast<std::ptrdiff_t>(target.size()));
-}
-
-/// Largest pressure on skin, or −1 when the target cannot be planned.
-double highest_pressure(const TargetField& target, std::size_t max_cells) {
-  const std::size_t n = target.pressure.size();
-  if (target.rows < 1 || target.cols < 1 || n > max_cells || target.skin.size() != n ||
-      static_cast<std::size_t>(target.rows) * static_cast<std::size_t>(target.cols) != n) {
-    return -1.0;
-  }
-  if (!std::isfinite(target.cell) || target.cell < kSmallestCell || target.cell > kLargestCell ||
-      !std::isfinite(target.origin.x()) || !std::isfinite(target.origin.y())) {
-    return -1.0;
-  }
-  if (!has_good_weights(target)) return -1.0;
-  return planning::checked_maximum(target.pressure, target.skin, kLargestPressure);
-}
 
 /// Whether there is pressure that a fit counts. @param maximum of highest_pressure.
 bool has_counted_pressure(const TargetField& target, double maximum) {
   return maximum > 0.0 && (target.weight.empty() || CellWeights(target, maximum).any_pressure());
-}
-
-double total_pressure(const TargetField& target) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < target.size(); ++i)
-    sum += target.skin[i] != 0 ? target.pressure[i] : 0.0;
-  return sum;
-}
-
-using PatchPressures = std::array<double, kMaxPatches>;
-
-/// Shares out paths one by one: first one to each patch that has pressure, the strongest first,
-/// then to the patch with the highest pressure per path if it got one more (d'Hondt's rule).
-std::array<int, kMaxPatches> share_paths(const PatchPressures& pressure, int paths) {
-  std::array<int, kMaxPatches> share{};
-  const auto need = [&](std::size_t i) {
-    return std::pair(share[i] == 0, pressure[i] / (share[i] + 1));
-  };
-  for (int path = 0; path < paths; ++path) {
-    std::size_t neediest = kMaxPatches;
-    for (std::size_t i = 0; i < pressure.size(); ++i) {
-      if (pressure[i] > 0.0 && (neediest == kMaxPatches || need(i) > need(neediest))) neediest = i;
-    }
-    if (neediest == kMaxPatches) break;
-    ++share[neediest];
-  }
-  return share;
 }
 
 }  // namespace
@@ -260,7 +204,7 @@ const PlanSettings& Planner::settings() const {
 PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats,
                          PlanTrace* trace) noexcept {
   StageTimer timer;
-  plan.paths.clear();
+  plan.clear();
   stats = {};
   const PlanStatus status = scratch_->plan_patch(target, 0, scratch_->settings.paths,
                                                  scratch_->settings.budget, plan, stats, trace);
@@ -270,7 +214,7 @@ PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats
 
 PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept {
   StageTimer timer;
-  plan.paths.clear();
+  plan.clear();
   stats = {};
   // what each patch has to show
   PatchPressures pressure{};
@@ -281,7 +225,7 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
     if (scratch_->has_pressure(frame.patches[i], maximum))
       pressure[i] = total_pressure(frame.patches[i]);
   }
-  const std::array<int, kMaxPatches> share = share_paths(pressure, scratch_->settings.paths);
+  const std::array<int, kMaxPatches> share = share_out(pressure, scratch_->settings.paths);
   const auto planned = std::count_if(share.begin(), share.end(), [](int n) { return n > 0; });
   const double budget =
       scratch_->settings.budget / static_cast<double>(std::max<std::ptrdiff_t>(planned, 1));

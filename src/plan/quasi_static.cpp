@@ -15,11 +15,12 @@ void quasi_static_field(const Plan& plan, int patch, const TargetField& raster, 
     std::fill(out.begin(), out.end(), 0.0);
     return;
   }
-  // γ of each segment's path
+  // γ of each segment's path, 1 of a focus
   boost::container::static_vector<double, PathSegments::kCapacity> gains;
   for (const FocalPath& path : plan.paths) {
     if (path.patch == patch) gains.resize(gains.size() + path.points.size(), gain.of(path.period));
   }
+  gains.resize(segments.count(), 1.0);
   const double exponent = -0.5 / (sigma * sigma);
   for (int row = 0; row < raster.rows; ++row) {
     for (int col = 0; col < raster.cols; ++col) {

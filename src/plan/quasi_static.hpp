@@ -1,5 +1,6 @@
 #pragma once
-/// The paper's Eq. (1), (P10) of docs/design.md: the quasi-static pressure field of a plan.
+/// The paper's Eq. (1), (P10) of docs/design.md: the quasi-static pressure field of a plan; of foci
+/// (B2).
 
 #include <span>
 
@@ -12,7 +13,8 @@ namespace prostm {
 /// p(x) = p_i/γ · exp(−‖x − x_i‖² / 2σ²), γ that of the path, with x_i the closest point to x over
 /// all segments of all paths of `patch`, and p_i linear between the samples of its segment. Written
 /// to `out` (rows·cols of `raster`) for every cell, skin or not; all zeros when the patch has no
-/// path. Of two equally near points the one of the lower path and segment index counts.
+/// path. Of two equally near points the one of the lower path and segment index counts. For foci
+/// x_i is the nearest focus and γ = 1.
 /// @param sigma fall-off of a focal point [m], > 0.  @param gain γ of each path.  @pre out.size()
 /// == raster.size().
 void quasi_static_field(const Plan& plan, int patch, const TargetField& raster, double sigma,

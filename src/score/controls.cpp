@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "am/am_pressures.hpp"
 #include "core/random.hpp"
 #include "plan/closest_point.hpp"
 #include "plan/clustering.hpp"
@@ -138,26 +139,48 @@ Vec2 centre_of_mass(const TargetField& target, double maximum) {
   return sum / mass;
 }
 
-/// The plan moved so that its mean sample lies at `centre`, its highest effective pressure set to
-/// `maximum`.
+/// The plan moved so that its mean sample or focus lies at `centre`, its highest effective pressure
+/// set to `maximum`.
 Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw& gain) {
-  Plan plan = other;
   Vec2 mean = Vec2::Zero();
   double samples = 0.0, highest = 0.0;
-  // what pressures of a path come to at the γ of the longest
-  const auto weight = [&](const FocalPath& path) { return gain.gain / gain.of(path.period); };
+  const auto count = [&](const Vec2& x, double effective) {
+    mean += x;
+    samples += 1.0;
+    highest = std::max(highest, effective);
+  };
   for (const FocalPath& path : other.paths) {
-    for (std::size_t i = 0; i < path.points.size(); ++i) {
-      mean += path.points[i];
-      samples += 1.0;
-      highest = std::max(highest, path.pressure[i] * weight(path));
-    }
+    // what pressures of a path come to at the γ of the longest
+    const double weight = gain.gain / gain.of(path.period);
+    for (std::size_t i = 0; i < path.points.size(); ++i)
+      count(path.points[i], path.pressure[i] * weight);
   }
+  for (const FocalPoint& focus : other.foci) count(focus.position, focus.pressure);
+
+  Plan plan = other;
+  translate(plan, centre - mean / samples);
   for (FocalPath& path : plan.paths) {
     path.patch = 0;
-    for (Vec2& x : path.points) x += centre - mean / samples;
     for (double& p : path.pressure) p = highest > 0.0 ? p / highest * gain.gain * maximum : 0.0;
   }
+  for (FocalPoint& focus : plan.foci) {
+    focus.patch = 0;
+    focus.pressure = highest > 0.0 ? focus.pressure / highest * maximum : 0.0;
+  }
+  return plan;
+}
+
+/// Foci at random skin cells with the pressures that AM gives them there.
+Plan random_foci(const TargetField& target, std::size_t count, double sigma, double maximum,
+                 Random& random) {
+  std::vector<Vec2> skin;
+  for_skin(target, maximum, [&](const Vec2& x, double) { skin.push_back(x); });
+  Plan plan;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec2& x = skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
+    plan.foci.push_back({0, x, 0.0});
+  }
+  set_pressures(target, sigma, plan.foci);
   return plan;
 }
 
@@ -196,10 +219,19 @@ std::vector<Control> controls(const TargetField& target, double sigma, const Gai
   }
   table.push_back({"random circles, solved pressures", median(draws)});
 
-  if (other != nullptr && !other->paths.empty()) {
-    const Plan plan = moved(*other, centre_of_mass(target, maximum), maximum, gain);
-    table.push_back({"paths of another target", score_plan(target, plan, 0, sigma, gain)});
+  if (other == nullptr || other->empty()) return table;
+  const bool stands_still = !other->foci.empty();
+  if (stands_still) {
+    draws.clear();
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const Plan plan = random_foci(target, other->foci.size(), sigma, maximum, random);
+      draws.push_back(score_plan(target, plan, 0, sigma, gain));
+    }
+    table.push_back({"random foci, solved pressures", median(draws)});
   }
+  const Plan plan = moved(*other, centre_of_mass(target, maximum), maximum, gain);
+  table.push_back({stands_still ? "foci of another target" : "paths of another target",
+                   score_plan(target, plan, 0, sigma, gain)});
   return table;
 }
 

@@ -26,9 +26,7 @@ std::vector<Disturbance> disturbances(double sigma) {
 Metrics score_shifted(const TargetField& target, const Plan& plan, int patch, double sigma,
                       const GainLaw& gain, const Vec2& shift) {
   Plan moved = plan;
-  for (FocalPath& path : moved.paths) {
-    for (Vec2& x : path.points) x += shift;
-  }
+  translate(moved, shift);
   return score_plan(target, moved, patch, sigma, gain);
 }
 

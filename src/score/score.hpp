@@ -53,8 +53,10 @@ struct Control {
 /// - "random circles, solved pressures": up to four circles `length` long about random skin cells
 /// that do not cross, with the
 ///   non-negative least-squares p_i; the median of each metric over 20 draws;
-/// - "paths of another target", when `other` is given and not empty: its paths with their mean
-/// sample moved to this target's centre of
+/// - "random foci, solved pressures", when `other` holds foci: as many at random skin cells, with
+/// the pressures of (B3); the median of each metric over 20 draws;
+/// - "paths of another target", or foci, when `other` is given and not empty: its paths with their
+/// mean sample moved to this target's centre of
 ///   mass, their highest p_i/γ set to max p*.
 /// @param sigma fall-off of a focal point [m].  @param gain γ of each path; circles take a lap of
 /// 1/draw_rate.  @param length of a circle, e.g. L

@@ -37,6 +37,11 @@ struct TargetField {
            static_cast<std::size_t>(col);
   }
   Vec2 position(int row, int col) const { return origin + cell * Vec2(col, row); }
+  /// Of a cell by its index. @pre index < size().
+  Vec2 position(std::size_t index) const {
+    const auto width = static_cast<std::size_t>(cols);
+    return position(static_cast<int>(index / width), static_cast<int>(index % width));
+  }
 
   /// Sets the shape and clears every cell to no skin, pressure 0, height 0, without weights.
   /// Allocates only when it grows.

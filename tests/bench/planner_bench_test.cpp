@@ -9,6 +9,7 @@
 #include "core/file.hpp"
 #include "core/units.hpp"
 #include "io/field_file.hpp"
+#include "planner/am.hpp"
 #include "planner/bending.hpp"
 #include "planner/contenders.hpp"
 #include "planner/power.hpp"
@@ -47,6 +48,32 @@ Violations violations_of(const Plan& plan) {
   Violations v;
   v.add(plan, kSigma, kMaxLength);
   return v;
+}
+
+TEST(Am, TheErrorFallsWithTheNumberOfFociAndForFewWithTheFallOff) {
+  std::vector<Row> rows;
+  const std::vector<Sequence> sequences = gallery();
+  measure_am_table(sequences, 2, rows);
+  ASSERT_EQ(rows.size(), sequences.size() * 3 * 4);
+  // [N][σ], summed over the sequences
+  double rmse[3][4] = {};
+  for (std::size_t i = 0; i < rows.size(); ++i) rmse[i / 4 % 3][i % 4] += rows[i].ours.p50;
+  for (const int sigma : {0, 1, 2, 3}) {
+    EXPECT_LT(rmse[1][sigma], rmse[0][sigma]);
+    EXPECT_LT(rmse[2][sigma], rmse[1][sigma]);
+  }
+  for (const int foci : {0, 1}) EXPECT_LT(rmse[foci][1], rmse[foci][0]);
+  EXPECT_EQ(rows[0].baseline_p50, 0.335);  // of [B-1], no emitter
+}
+
+TEST(Am, IsTimedBesideThePapersRate) {
+  std::vector<Row> rows;
+  measure_am({gallery().front()}, 2, rows);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].unit, "us");
+  EXPECT_EQ(rows[0].ours.n, 10u);
+  EXPECT_EQ(rows[0].baseline_p50, 4000.0);
+  EXPECT_GT(rows[0].ours.p50, 1.0);
 }
 
 TEST(Motion, ARigidlyMovedPlanMovesByItsDisplacement) {

@@ -281,3 +281,81 @@ def test_solve(prostm, tmp_path, array, solver):
     if solver == "lm":
         assert result["reached_pa"] == pytest.approx([800, 400], rel=1e-3)
     assert prostm("solve", "foci.json", "--array", array, "--solver", solver, "--json", "-").stdout == out
+
+
+def test_am_plans_foci(prostm, field, tmp_path):
+    figure = tmp_path / "am.svg"
+    plan = plan_of(prostm, field, "--method", "am", "--figure", figure)
+    assert plan["format"] == "prostm-plan/1" and plan["method"] == "am"
+    assert "paths" not in plan and "preset" not in plan
+    assert len(plan["foci"]) == 4
+    for focus in plan["foci"]:
+        assert set(focus) == {"patch", "position_mm", "pressure"} and focus["pressure"] > 0
+    assert figure.read_text().startswith("<?xml")
+    # the model: p φ of the nearest focus
+    pressure = np.array(blob_field()["pressure"])
+    y, x = np.mgrid[0:24, 0:30] * 5.0
+    at = np.array([focus["position_mm"] for focus in plan["foci"]])
+    square = (x[..., None] - at[:, 0]) ** 2 + (y[..., None] - at[:, 1]) ** 2
+    nearest = square.argmin(axis=-1)
+    phi = np.exp(-square.min(axis=-1) / (2 * 8.6**2))
+    for k, focus in enumerate(plan["foci"]):
+        own = nearest == k
+        expected = (pressure[own] * phi[own]).sum() / (phi[own] ** 2).sum()
+        assert focus["pressure"] == pytest.approx(expected, rel=1e-9)
+    rendered = np.array([focus["pressure"] for focus in plan["foci"]])[nearest] * phi
+    rmse = np.sqrt(((rendered - pressure) ** 2).mean()) / pressure.max()
+    assert plan["metrics"]["rmse"] == pytest.approx(rmse, rel=1e-9)
+    names = [control["name"] for control in plan["controls"]]
+    assert "random foci, solved pressures" in names and "foci of another target" in names
+
+    settings = tmp_path / "am.toml"
+    settings.write_text('[pipeline]\nmethod = "am"\n[am]\nfoci = 2\nsigma = 0.016\n')
+    wide = plan_of(prostm, field, "--settings", settings)
+    assert len(wide["foci"]) == 2 and wide["settings"]["am"]["sigma"] == 0.016
+    assert "focus 1: at" in prostm("plan", field, "--method", "am", "--paths", "3").stdout
+
+
+def test_am_finds_nothing_where_there_is_nothing(prostm, tmp_path):
+    empty = blob_field()
+    empty["pressure"] = (0 * np.array(empty["pressure"])).tolist()
+    path = tmp_path / "empty.json"
+    path.write_text(json.dumps(empty))
+    assert "no pressure anywhere, so no focus" in prostm("plan", path, "--method", "am").stdout
+
+
+def test_am_runs_and_records_foci(prostm, tmp_path):
+    files = [tmp_path / "threaded.h5", tmp_path / "stepped.h5"]
+    figure = tmp_path / "am.png"
+    summary = run_summary(prostm, "--method", "am", "--as-fast-as-possible", "--record", files[0], "--figure", figure)
+    assert summary["method"] == "am" and finite_or_null(summary)
+    assert summary["plans"] + summary["empty_updates"] == 400  # an update each fluid step: 50 Hz
+    assert summary["plans"] > 100 and summary["max_focus_step_mm"] == 0 and summary["stage_ms"]["plan"]["p50"] < 4
+    # the frame's own step, the zero of the envelope, and the device
+    assert summary["latency_ms"]["p99"] < 40
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    run_summary(prostm, "--method", "am", "--stepped", "--record", files[1])
+    with h5py.File(files[0]) as a, h5py.File(files[1]) as b:
+        for name in ["foci", "focus_patch", "focus_position", "focus_pressure", "paths"]:
+            np.testing.assert_array_equal(a["plan"][name][()], b["plan"][name][()], err_msg=name)
+        foci = a["plan/foci"][()]
+        assert foci.max() == 4 and foci.min() == -1
+        i = foci.argmax()
+        assert np.isfinite(a["plan/focus_position"][i, :4]).all() and np.isnan(a["plan/focus_position"][i, 4:]).all()
+        assert (a["plan/focus_pressure"][i, :4] > 0).all() and a["plan/paths"][i] == 0
+
+
+@pytest.mark.realtime
+def test_am_keeps_real_time(prostm):
+    summary = run_summary(prostm, "--method", "am", "--realtime")
+    assert summary["plans"] > 10 and summary["max_focus_step_mm"] == 0
+
+
+def test_bench_has_the_row_of_am(prostm, tmp_path):
+    recording = tmp_path / "fields.h5"
+    prostm("capture", "--grid", "32", "--frames", "5", "--out", recording)
+    rows = json.loads(prostm("bench", recording, "--repeats", "1", "--json", "-").stdout)
+    row = rows[-1]
+    assert row["name"].endswith("am total") and row["baseline_p50"] == 4000 and row["ratio"] > 1
+    done = prostm("bench", recording, "--repeats", "1", "--method", "am")
+    assert "updates a second" in done.stdout and "textbook" not in done.stdout

@@ -10,6 +10,7 @@
 
 #include "core/random.hpp"
 #include "core/units.hpp"
+#include "emit/focus_emitter.hpp"
 #include "emit/path_emitter.hpp"
 #include "support/heap_guard.hpp"
 
@@ -290,6 +291,35 @@ TEST(SimulatedArray, HalfTheTargetGivesHalfTheRadiationPressure) {
   EXPECT_NEAR(reached(5.0) / reached(10.0), 0.5, 1e-6);
   EXPECT_NEAR(reached(2.5) / reached(10.0), 0.25, 1e-6);
   EXPECT_NEAR(reached(0.2) / reached(10.0), 0.02, 1e-6);
+}
+
+TEST(SimulatedArray, HalfTheFocusGivesHalfTheRadiationPressureThroughTheModulation) {
+  EmitSettings settings;
+  settings.foci = 1;
+  settings.full_scale_pressure = 10.0;
+  // the mean and the largest over a period
+  const auto reached = [&](double pressure) {
+    const SimulatedArray array = make(by_hand());
+    FocusEmitter emitter(settings, array.info().sample_rate);
+    const Vec3 p_D(0.01, -0.02, 0.18);
+    emitter.draft().foci.push_back({p_D, pressure});
+    emitter.submit();
+    std::vector<FocusSample> samples(static_cast<std::size_t>(emitter.period()));
+    emitter.fill(0, samples);
+    double sum = 0.0, largest = 0.0;
+    for (const FocusSample& sample : samples) {
+      std::vector<std::complex<double>> drives;
+      array.drives(std::vector<FocusSample>{sample}, drives);
+      const double p = radiation_pressure(array.field(drives, std::vector<Vec3>{p_D})[0], Medium{});
+      sum += p;
+      largest = std::max(largest, p);
+    }
+    return std::pair(sum / static_cast<double>(samples.size()), largest);
+  };
+  const auto full = reached(10.0), half = reached(5.0);
+  EXPECT_NEAR(half.first / full.first, 0.5, 1e-6);
+  EXPECT_NEAR(half.second / full.second, 0.5, 1e-6);
+  EXPECT_NEAR(full.first / full.second, 0.5, 1e-6);  // of sine-magnitude
 }
 
 TEST(SimulatedArray, OneFocusAtFullDriveUsesEveryTransducerFully) {

@@ -50,6 +50,23 @@ FocalPath circle(int points = 20, double length = 0.140) {
   return path;
 }
 
+TEST(Lift, AFocusGetsTheHeightOfTheSkinThere) {
+  TargetFrame frame = frame_with_height([](const Vec2& x) { return 0.3 * x.x() - 0.1 * x.y(); });
+  frame.patches[0].X_DP = Eigen::Translation3d(0.01, 0.02, 0.2) *
+                          Eigen::AngleAxisd(0.4, Vec3(1.0, 2.0, 0.5).normalized());
+  Plan plan;
+  plan.foci.push_back({0, Vec2(0.0123, -0.0345), 2.5});
+  LiftedPlan lifted;
+  lifted.paths.push_back(ring(Vec3::Zero(), 0.1, 20, 1.0));  // of a plan before
+  lift(plan, frame, lifted);
+  EXPECT_TRUE(lifted.paths.empty());
+  EXPECT_EQ(lifted.hand_time, 1.25);
+  ASSERT_EQ(lifted.foci.size(), 1u);
+  EXPECT_EQ(lifted.foci[0].pressure, 2.5);
+  const Vec3 expected(0.0123, -0.0345, 0.3 * 0.0123 + 0.1 * 0.0345);
+  EXPECT_LT((lifted.foci[0].p_D - frame.patches[0].X_DP * expected).norm(), 1e-12);
+}
+
 TEST(Lift, FlatSkinKeepsLengthAndPressure) {
   const TargetFrame frame = frame_with_height([](const Vec2&) { return 0.0; });
   Plan plan;

@@ -31,7 +31,7 @@ Chart chart() {
 TEST(DrawGallery, ShowsEveryPartOfWhatItIsGiven) {
   const test::TemporaryFolder folder;
   const auto bytes_of = [&](const std::vector<GalleryField>& fields) {
-    draw_gallery("All", fields, folder.file("a.png"));
+    draw_gallery({"All"}, fields, folder.file("a.png"));
     return read_file(folder.file("a.png"));
   };
   const std::vector<GalleryField> fields = gallery_of(4, 2);
@@ -52,18 +52,34 @@ TEST(DrawGallery, ShowsEveryPartOfWhatItIsGiven) {
   EXPECT_FALSE(bytes_of(changed) == whole);
 }
 
+TEST(DrawGallery, ShowsFociNotesAndTheCaptionThatIsAskedFor) {
+  const test::TemporaryFolder folder;
+  std::vector<GalleryField> fields = gallery_of(2, 1);
+  const auto bytes_of = [&](const GalleryPage& page) {
+    draw_gallery(page, fields, folder.file("a.png"));
+    return read_file(folder.file("a.png"));
+  };
+  const std::string plain = bytes_of({"All"});
+  EXPECT_FALSE(bytes_of({"All", "with care"}) == plain);
+  EXPECT_FALSE(bytes_of({"All", "", GalleryCaption::Correlation}) == plain);
+  fields[0].plans[0].plan.clear();
+  const std::string empty = bytes_of({"All"});
+  fields[0].plans[0].plan.foci.push_back({0, fields[0].target.position(2, 2), 1.0});
+  EXPECT_FALSE(bytes_of({"All"}) == empty);
+}
+
 TEST(DrawGallery, RefusesWhatDoesNotFitTogether) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.png");
-  EXPECT_THROW(draw_gallery("None", {}, path), std::invalid_argument);
+  EXPECT_THROW(draw_gallery({"None"}, {}, path), std::invalid_argument);
   std::vector<GalleryField> fields = gallery_of(2, 2);
   fields[1].plans.pop_back();
-  EXPECT_THROW(draw_gallery("Odd", fields, path), std::invalid_argument);
+  EXPECT_THROW(draw_gallery({"Odd"}, fields, path), std::invalid_argument);
   fields = gallery_of(1, 1);
   fields[0].plans[0].rendered.pop_back();
-  EXPECT_THROW(draw_gallery("Short", fields, path), std::invalid_argument);
+  EXPECT_THROW(draw_gallery({"Short"}, fields, path), std::invalid_argument);
   EXPECT_EQ(folder.entries(), 0u);
-  test::input_error([&] { draw_gallery("Name", gallery_of(1, 1), folder.file("a.gif")); });
+  test::input_error([&] { draw_gallery({"Name"}, gallery_of(1, 1), folder.file("a.gif")); });
 }
 
 TEST(DrawCharts, ShowsEveryLine) {

@@ -38,7 +38,7 @@ std::string example() {
   field.cell = 0.005;
   field.skin[1] = 1;
   field.height[1] = 0.001;
-  return plan_to_json(test::triangle_plan(), field, {}, {}, "");
+  return plan_to_json(test::triangle_plan(), field, {}, "");
 }
 
 TEST(PlanFile, RoundTripsPathsAndRaster) {
@@ -46,7 +46,7 @@ TEST(PlanFile, RoundTripsPathsAndRaster) {
   for (int trial = 0; trial < 200; ++trial) {
     const TargetField field = test::random_field(random);
     const Plan plan = random_plan(random, random.below(kMaxPaths + 1));
-    const PlanFile file = plan_from_json(plan_to_json(plan, field, {}, {}, ""), "plan.json");
+    const PlanFile file = plan_from_json(plan_to_json(plan, field, {}, ""), "plan.json");
     ASSERT_EQ(file.plan.paths.size(), plan.paths.size());
     for (std::size_t i = 0; i < plan.paths.size(); ++i) {
       const FocalPath &a = file.plan.paths[i], &b = plan.paths[i];
@@ -80,11 +80,10 @@ TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
   extras.stats = &stats;
   extras.metrics = &metrics;
   extras.controls = &controls;
-  PlanSettings settings;
-  settings.preset = "paper";
+  extras.preset = "paper";
   const Plan plan = random_plan(random, 4);
-  const auto json = nlohmann::json::parse(plan_to_json(plan, test::random_field(random), settings,
-                                                       extras, R"({"emit": {"speed": 7}})"));
+  const auto json = nlohmann::json::parse(
+      plan_to_json(plan, test::random_field(random), extras, R"({"emit": {"speed": 7}})"));
   EXPECT_EQ(json["format"], "prostm-plan/1");
   EXPECT_EQ(json["method"], "pro-stm");
   EXPECT_EQ(json["preset"], "paper");
@@ -107,12 +106,57 @@ TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
   EXPECT_NEAR(path["points_mm"][0][1].get<double>(), 1e3 * plan.paths[0].points[0].y(), 1e-9);
 }
 
-TEST(PlanFile, WritesThePlannersSettingsWhenNoOthersAreGiven) {
+TEST(PlanFile, SaysNothingThatItWasNotTold) {
   const auto json = nlohmann::json::parse(example());
-  EXPECT_EQ(json["settings"]["plan"]["clusters"], 50);
-  EXPECT_EQ(json["settings"]["plan"]["preset"], "best");
-  EXPECT_FALSE(json.contains("metrics"));
-  EXPECT_FALSE(json.contains("stage_us"));
+  for (const char* key : {"settings", "preset", "metrics", "stage_us", "foci"})
+    EXPECT_FALSE(json.contains(key)) << key;
+}
+
+Plan two_foci() {
+  Plan plan;
+  plan.foci.push_back({0, Vec2(0.02, 0.03), 2.5});
+  plan.foci.push_back({1, Vec2(-0.02, 0.01), 0.0});
+  return plan;
+}
+
+std::string foci_example() {
+  TargetField field;
+  field.resize(1, 1);
+  field.cell = 0.005;
+  field.skin[0] = 1;
+  PlanFileExtras extras;
+  extras.method = Method::Am;
+  return plan_to_json(two_foci(), field, extras, "");
+}
+
+TEST(PlanFile, RoundTripsFoci) {
+  const auto json = nlohmann::json::parse(foci_example());
+  EXPECT_EQ(json["method"], "am");
+  EXPECT_FALSE(json.contains("paths"));
+  const PlanFile file = plan_from_json(foci_example(), "am.json");
+  EXPECT_EQ(file.method, Method::Am);
+  EXPECT_TRUE(file.plan.paths.empty());
+  const Plan plan = two_foci();
+  ASSERT_EQ(file.plan.foci.size(), plan.foci.size());
+  for (std::size_t i = 0; i < plan.foci.size(); ++i) {
+    EXPECT_EQ(file.plan.foci[i].patch, plan.foci[i].patch);
+    EXPECT_EQ(file.plan.foci[i].position, plan.foci[i].position);
+    EXPECT_EQ(file.plan.foci[i].pressure, plan.foci[i].pressure);
+  }
+}
+
+TEST(PlanFile, SaysWhatIsWrongWithFoci) {
+  test::expect_refused(foci_example(), "p.json",
+                       {{"\"foci\"", "\"paths\": [], \"foci\"", "has both foci and paths"},
+                        {"\"foci\"", "\"focii\"", "\"paths\" is missing"},
+                        {"20.0,30.0", "20.0", "position_mm has 1 numbers; it must have 2"},
+                        {"2.5", "-2.5", "pressure is -2.5"},
+                        {"\"patch\": 1", "\"patch\": 2", "patch is 2; it must be from 0 to 1"}},
+                       [](const std::string& text) { plan_from_json(text, "p.json"); });
+  auto json = nlohmann::json::parse(foci_example());
+  for (int i = 0; i < 7; ++i) json["foci"].push_back(json["foci"][0]);
+  EXPECT_THAT(input_error([&] { plan_from_json(json.dump(), "p.json"); }),
+              HasSubstr("has 9 foci; it must have at most 8"));
 }
 
 TEST(PlanFile, WritesTheSameBytesForTheSamePlan) {

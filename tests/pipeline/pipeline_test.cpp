@@ -19,8 +19,9 @@ constexpr double kSeconds = 2.0;
 constexpr double kSeconds = 8.0;
 #endif
 
-PipelineSettings small_settings(bool realtime) {
+PipelineSettings small_settings(bool realtime, const char* method = "pro-stm") {
   PipelineSettings s;
+  s.method = method;
   s.fluid.cells = 32;
   s.scripted_hand.period = 6.0;
   s.simulated_array.realtime = realtime;
@@ -60,6 +61,11 @@ class Keeper final : public RunObserver {
 };
 
 void expect_same(const Plan& a, const Plan& b) {
+  ASSERT_EQ(a.foci.size(), b.foci.size());
+  for (std::size_t i = 0; i < a.foci.size(); ++i) {
+    ASSERT_EQ(a.foci[i].position, b.foci[i].position);
+    ASSERT_EQ(a.foci[i].pressure, b.foci[i].pressure);
+  }
   ASSERT_EQ(a.paths.size(), b.paths.size());
   for (std::size_t i = 0; i < a.paths.size(); ++i) {
     ASSERT_EQ(a.paths[i].points.size(), b.paths[i].points.size());
@@ -70,8 +76,9 @@ void expect_same(const Plan& a, const Plan& b) {
   }
 }
 
-Keeper run_keeping(RunMode mode, RunSummary& summary, std::vector<FocusSample>& played) {
-  const PipelineSettings settings = small_settings(false);
+Keeper run_keeping(const char* method, RunMode mode, RunSummary& summary,
+                   std::vector<FocusSample>& played) {
+  const PipelineSettings settings = small_settings(false, method);
   Pipeline pipeline(settings, scripted(settings));
   Keeper keeper;
   summary = run(pipeline, settings, {kSeconds, mode}, keeper);
@@ -80,15 +87,25 @@ Keeper run_keeping(RunMode mode, RunSummary& summary, std::vector<FocusSample>& 
   return keeper;
 }
 
-TEST(Pipeline, ThreadedRunEqualsSteppedRunToTheBit) {
+/// Of both methods.
+class EachMethod : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Pipeline, EachMethod, testing::Values("pro-stm", "am"),
+                         [](const auto& info) {
+                           return std::string(info.param) == "am" ? "am" : "pro_stm";
+                         });
+
+TEST_P(EachMethod, ThreadedRunEqualsSteppedRunToTheBit) {
   RunSummary stepped, threaded;
   std::vector<FocusSample> a, b;
-  const Keeper first = run_keeping(RunMode::Stepped, stepped, a);
-  const Keeper second = run_keeping(RunMode::AsFastAsPossible, threaded, b);
+  const Keeper first = run_keeping(GetParam(), RunMode::Stepped, stepped, a);
+  const Keeper second = run_keeping(GetParam(), RunMode::AsFastAsPossible, threaded, b);
+  const int steps_per_plan = small_settings(false, GetParam()).steps_per_plan();
+  EXPECT_EQ(steps_per_plan, std::string(GetParam()) == "am" ? 1 : 2);
   ASSERT_EQ(first.plans.size(), second.plans.size());
   EXPECT_EQ(first.steps, second.steps);
   for (std::size_t k = 0; k < first.steps.size(); ++k)
-    EXPECT_EQ(first.steps[k], 2 * static_cast<std::int64_t>(k + 1));
+    EXPECT_EQ(first.steps[k], steps_per_plan * static_cast<std::int64_t>(k + 1));
   for (std::size_t k = 0; k < first.plans.size(); ++k) expect_same(first.plans[k], second.plans[k]);
   EXPECT_GT(stepped.plans, 10);
   EXPECT_EQ(stepped.device.blocks, threaded.device.blocks);
@@ -124,8 +141,8 @@ TEST(Pipeline, WithoutAHandNothingIsPlayed) {
     EXPECT_EQ(s.intensity, 0.0F);
 }
 
-TEST(Pipeline, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
-  const PipelineSettings settings = small_settings(false);
+TEST_P(EachMethod, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
+  const PipelineSettings settings = small_settings(false, GetParam());
   Pipeline pipeline(settings, scripted(settings));
   bool sounded = false, left = false;
   double silent_since = 0.0;
@@ -198,7 +215,15 @@ TEST(Pipeline, RejectsBadSettings) {
   s.fluid_rate = 0.0;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
   s = small_settings(false);
-  s.fluid_steps_per_plan = 0;
+  s.fluid_steps_per_plan = -1;
+  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
+  s = small_settings(false, "fm");
+  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
+  s = small_settings(false, "am");
+  s.am.foci = 9;
+  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
+  s = small_settings(false, "am");
+  s.emit.am_frequency = 500.0;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
 }
 

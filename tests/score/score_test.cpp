@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "am/am_planner.hpp"
 #include "core/random.hpp"
 #include "fields/fields.hpp"
 #include "plan/planner.hpp"
@@ -57,6 +58,23 @@ TEST(ScoreField, APerfectFieldOfAnyStrengthHasFullSkill) {
     EXPECT_NEAR(m.skill_8, 1.0, 1e-9);
     EXPECT_NEAR(m.overlap, 1.0, 1e-9);
   }
+}
+
+TEST(ScorePlan, OfFociIsThatOfTheNearestFocus) {
+  TargetField target = small_target();
+  Plan plan;
+  plan.foci.push_back({0, target.position(0, 0), 4.0});
+  plan.foci.push_back({0, target.position(1, 1), 2.0});
+  plan.foci.push_back({1, target.position(0, 1), 9.0});  // of another hand
+  const double sigma = 0.1;                              // a cell
+  const double near = std::exp(-0.5);
+  const std::vector<double> rendered{4.0, 4.0 * near, 2.0 * near * near, 4.0 * near, 2.0, 0.0};
+  const Metrics expected = score_field(target, rendered, 0.0);
+  // two cells have the distance of one to either: of equals the first counts
+  const Metrics m = score_plan(target, plan, 0, sigma, kGain);
+  EXPECT_NEAR(m.rmse, expected.rmse, 1e-12);
+  EXPECT_NEAR(m.correlation, expected.correlation, 1e-12);
+  EXPECT_NEAR(m.coverage, 1.0, 1e-12);
 }
 
 TEST(ScoreField, AFlatFieldHasNoSkillAndNoCorrelation) {
@@ -192,6 +210,28 @@ TEST(Controls, AreFiniteForOneCellAndForEveryPattern) {
   cell.pressure[0] = 1e-290;
   expect_finite(cell);
   for (const fields::Pattern pattern : fields::kPatterns) expect_finite(fields::make(pattern, 0));
+}
+
+TEST(Controls, FociAtRandomPlacesAndOfAnotherTargetLoseToPlannedOnes) {
+  AmPlanner planner(AmSettings{}, fields::make(fields::Pattern::Ring, 0).size());
+  Plan plan, other;
+  PlanStats stats;
+  double planned = 0.0, random = 0.0, moved = 0.0;
+  for (std::size_t k = 0; k < fields::kPatterns.size(); ++k) {
+    const TargetField target = fields::make(fields::kPatterns[k], 5);
+    planner.plan(fields::make(fields::kPatterns[(k + 3) % 9], 5), other, stats);
+    planner.plan(target, plan, stats);
+    planned += score_plan(target, plan, 0, kSigma, kGain).correlation;
+    for (const Control& control : controls(target, kSigma, kGain, 0.14, &other, 1)) {
+      if (control.name == "random foci, solved pressures") random += control.metrics.correlation;
+      if (control.name == "foci of another target") moved += control.metrics.correlation;
+      EXPECT_NE(control.name, "paths of another target");
+    }
+  }
+  EXPECT_GT(random, 0.0);
+  EXPECT_NE(moved, 0.0);
+  EXPECT_GT(planned, 1.2 * random);
+  EXPECT_GT(planned, 1.2 * moved);
 }
 
 TEST(WeightedRmse, CountsErrorsByTheirWeights) {

@@ -1,0 +1,44 @@
+#pragma once
+/// What passes between the planner's thread and the device's. Private to emit.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/latest.hpp"
+#include "emit/emitter.hpp"
+#include "emit/take_over_log.hpp"
+
+namespace prostm {
+
+/// What is handed to the device's thread.
+struct Message {
+  LiftedPlan plan;
+  bool lost = false;
+  bool refused = false;
+};
+
+struct Emitter::Exchange {
+  Exchange(const EmitSettings& s, Method m) : settings(s), method(m) {}
+  const EmitSettings settings;
+  const Method method;
+  Latest<Message> inbox;
+  Latest<EmitStats> published;
+  TakeOverLog log;
+};
+
+/// The longest way between two samples of a focal point that sounds: max_focus_step.
+class LongestStep {
+ public:
+  void look(const FocusSample& before, const FocusSample& now) {
+    constexpr float kSounding = 0.01F;  // intensity above which a focal point must not jump
+    if (std::max(now.intensity, before.intensity) <= kSounding) return;
+    const double squared = (now.p_D.cast<double>() - before.p_D.cast<double>()).squaredNorm();
+    squared_ = std::max(squared_, squared);
+  }
+  double length() const { return std::sqrt(squared_); }  ///< [m]
+
+ private:
+  double squared_ = 0.0;
+};
+
+}  // namespace prostm
