@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include "emit/drive.hpp"
+#include "emit/focus_emitter.hpp"
 
 namespace prostm {
 namespace {
@@ -50,17 +52,35 @@ int loop_length(const std::vector<double>& laps) {
 
 void check(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
   validate(settings, sample_rate);
-  const std::size_t paths = plan.paths.size();
-  if (paths < 1 || paths > static_cast<std::size_t>(settings.foci)) {
-    throw std::invalid_argument("a plan has " + std::to_string(paths) +
-                                " paths; a loop is of 1 to " + std::to_string(settings.foci) +
-                                ", the number of focal points");
+  const std::size_t count = plan.paths.size() + plan.foci.size();
+  if (count < 1 || count > static_cast<std::size_t>(settings.foci)) {
+    throw std::invalid_argument("a plan has " + std::to_string(count) +
+                                (plan.foci.empty() ? " paths" : " foci") + "; a loop is of 1 to " +
+                                std::to_string(settings.foci) + ", the number of focal points");
   }
   for (const LiftedPath& path : plan.paths) {
     if (lap_of(path, sample_rate) <= kLongestLap * sample_rate) continue;
     throw std::invalid_argument(
         "a path takes more than 1 s; for a loop it must be shorter or its focal point faster");
   }
+}
+
+/// Whole periods of the modulation.
+LoopSamples loop_of_foci(const LiftedPlan& plan, EmitSettings settings, double sample_rate) {
+  settings.foci = static_cast<int>(plan.foci.size());
+  settings.stall_time = 1.0;  // longer than any loop
+  FocusEmitter emitter(settings, sample_rate);
+  emitter.draft() = plan;
+  emitter.submit();
+  LoopSamples loop;
+  loop.foci = settings.foci;
+  loop.samples = std::lcm(emitter.period(), kLoopUnit);
+  loop.sample_rate = sample_rate;
+  loop.sample.resize(plan.foci.size() * static_cast<std::size_t>(loop.samples));
+  loop.laps.assign(plan.foci.size(), 0);
+  loop.stretch.assign(plan.foci.size(), 0.0);
+  emitter.fill(0, loop.sample);
+  return loop;
 }
 
 /// One sample of every focal point: where it is, and what its path wants.
@@ -89,6 +109,7 @@ double LoopSamples::largest_stretch() const {
 
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
   check(plan, settings, sample_rate);
+  if (!plan.foci.empty()) return loop_of_foci(plan, settings, sample_rate);
   std::vector<double> laps;
   for (const LiftedPath& path : plan.paths) laps.push_back(lap_of(path, sample_rate));
   LoopSamples loop;

@@ -116,5 +116,35 @@ TEST(LoopSamples, RefusesWhatIsNoLoop) {
   EXPECT_THROW(loop_samples(rings({0.1}), EmitSettings(), kRate), std::invalid_argument);
 }
 
+TEST(LoopSamples, OfFociAreWholePeriodsOfTheirModulation) {
+  LiftedPlan plan;
+  plan.foci.push_back({Vec3(0.01, 0.0, 0.2), 1.0});
+  plan.foci.push_back({Vec3(-0.03, 0.02, 0.19), 0.25});
+  EmitSettings s = settings();
+  LoopSamples loop = loop_samples(plan, s, kRate);
+  EXPECT_EQ(loop.foci, 2);
+  ASSERT_EQ(loop.samples, 200);
+  EXPECT_EQ(loop.laps, (std::vector<int>{0, 0}));
+  EXPECT_EQ(loop.largest_stretch(), 0.0);
+  for (std::size_t k = 0; k < 200; ++k) {
+    double sum = 0.0;
+    for (std::size_t f = 0; f < 2; ++f) {
+      EXPECT_EQ(loop.sample[2 * k + f].p_D, loop.sample[f].p_D);
+      sum += std::pow(static_cast<double>(loop.sample[2 * k + f].intensity), 2);
+    }
+    EXPECT_NEAR(sum, 1.25 * std::pow(std::sin(kPi * static_cast<double>(k) / 200.0), 2), 1e-6);
+  }
+  // periods of 211 and of 1600 samples, of which the first is no multiple of the unit
+  s.am_frequency = 190.0;
+  EXPECT_EQ(loop_samples(plan, s, kRate).samples, 8 * 211);
+  s.am_frequency = 25.0;
+  loop = loop_samples(plan, s, kRate);
+  EXPECT_EQ(loop.samples, 1600);
+  EXPECT_GT(loop.sample[2 * 1590].intensity + loop.sample[2 * 1590 + 1].intensity, 0.0F);
+
+  s.foci = 1;
+  EXPECT_THROW(loop_samples(plan, s, kRate), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace prostm
