@@ -15,3 +15,4 @@ for scene in one-plume four-plumes; do "$prostm" capture --scene $scene --frames
 "$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png" \
   --bending-figure "$root/docs/pictures/bending.png"
 "$root/build/release/am_bench" --frames 2 --figure "$root/docs/pictures/am.png" one-plume.h5 four-plumes.h5
+"$root/build/release/skin_bench" --figures "$root/docs/pictures"

@@ -82,6 +82,23 @@ struct Chart {
 /// InputError when the file cannot be written.
 void draw_charts(const std::vector<Chart>& charts, const std::string& path);
 
+/// A map over a raster of a plane.
+struct FieldMap {
+  std::string title, note;  ///< above and below it
+  int rows = 0, cols = 0;
+  double cell = 0.0;               ///< [m]
+  std::vector<double> values;      ///< rows·cols, >= 0; the largest is at the end of the colours
+  std::vector<Vec2> outline = {};  ///< a closed line over it, or none [m] from its middle
+};
+struct MapFigure {
+  std::string title, scale;  ///< of the whole, and what stands beside the colour bar
+  int columns = 1;
+  std::vector<FieldMap> maps;
+};
+/// Maps in rows, with one colour bar. @throws std::invalid_argument: no map or column, or a map
+/// whose values are not one for each cell. @throws InputError when the file cannot be written.
+void draw_maps(const MapFigure& maps, const std::string& path);
+
 /// One instant of the whole pipeline.
 struct SceneFigure {
   // the scene from the side: the x–z plane through the hand's middle, frame D

@@ -112,12 +112,15 @@ void Panel::closed_line(std::span<const Vec2> points, const Colour& colour, doub
   canvas_.unclip();
 }
 
+void Panel::closed_line_on_field(std::span<const Vec2> points) {
+  closed_line(points, kInk, 3.0);
+  closed_line(points, kPaper, 1.6);
+}
+
 void Panel::plan_on_field(const Plan& plan, int patch) {
   for (const FocalPath& path : plan.paths) {
     if (path.patch != patch) continue;
-    const std::span<const Vec2> points(path.points.data(), path.points.size());
-    closed_line(points, kInk, 3.0);
-    closed_line(points, kPaper, 1.6);
+    closed_line_on_field({path.points.data(), path.points.size()});
   }
   for (const FocalPoint& focus : plan.foci) {
     if (focus.patch != patch) continue;

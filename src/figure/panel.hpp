@@ -50,6 +50,8 @@ class Panel {
   void silhouette(const TargetField& field);
   /// A closed polygon with an arrow that shows its direction.
   void closed_line(std::span<const Vec2> points, const Colour& colour, double line_width);
+  /// The same, legible on any colour.
+  void closed_line_on_field(std::span<const Vec2> points);
   /// The paths and foci of a plan that lie on a patch, legible on any colour.
   void plan_on_field(const Plan& plan, int patch);
   void disc(const Vec2& centre, double radius_points, const Colour& colour);

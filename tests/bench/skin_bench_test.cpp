@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "skin/experiments.hpp"
+#include "skin/stimuli.hpp"
+
+namespace prostm::bench {
+namespace {
+
+TEST(SkinBench, LapsAreClosedAndRunAtOneSpeed) {
+  const struct {
+    Lap lap;
+    double length;
+  } cases[] = {{circle_lap(0.1), 0.1}, {square_lap(0.03), 0.12}, {line_lap(0.05), 0.1}};
+  for (const auto& [lap, length] : cases) {
+    EXPECT_LT((lap(1.0) - lap(0.0)).norm(), 1e-12);
+    constexpr int kSteps = 1000;
+    double sum = 0.0;
+    for (int k = 0; k < kSteps; ++k) {
+      const double step = (lap((k + 1.0) / kSteps) - lap(static_cast<double>(k) / kSteps)).norm();
+      EXPECT_LT(step, length / kSteps * (1.0 + 1e-9));
+      sum += step;
+    }
+    EXPECT_NEAR(sum, length, 1e-5);
+  }
+}
+
+TEST(SkinBench, APeakLiesBetweenTheValues) {
+  std::vector<double> x, y;
+  for (int i = 0; i < 9; ++i) {
+    x.push_back(i);
+    y.push_back(2.0 - (i - 4.3) * (i - 4.3));
+  }
+  EXPECT_NEAR(peak_place(x, y), 4.3, 1e-12);
+  std::sort(y.begin(), y.end());
+  EXPECT_EQ(peak_place(x, y), 8.0);
+}
+
+/// Largest radiation pressure of a sample, and where it is.
+struct Strongest {
+  double pressure;
+  Vec2 at;
+};
+Strongest strongest(const std::vector<double>& pressure, const Palm& palm, int sample) {
+  const auto first = pressure.begin() + static_cast<std::ptrdiff_t>(palm.cells()) * sample;
+  const auto most = std::max_element(first, first + static_cast<std::ptrdiff_t>(palm.cells()));
+  const int cell = static_cast<int>(most - first);
+  return {*most, palm.at(cell / palm.patch.cols, cell % palm.patch.cols)};
+}
+
+TEST(SkinBench, TheFieldFollowsTheLap) {
+  const Palm palm;
+  const TransducerArray array = usx_array();
+  const StmField field(array, palm);
+  const Lap lap = circle_lap(0.1);
+  for (const double speed : {2.0, 10.0}) {
+    const std::vector<double> ideal = field.pressure(lap, 0.1 / speed, true);
+    const std::vector<double> real = field.pressure(lap, 0.1 / speed, false);
+    for (const int sample : {0, 1, 40, 95}) {
+      const Vec2 asked = lap(static_cast<double>(sample) / StmField::kSamples);
+      const Strongest at_once = strongest(ideal, palm, sample);
+      EXPECT_LT((at_once.at - asked).norm(), 2.2e-3);
+      // all in phase there: the sum of (A1)'s amplitudes
+      double sum = 0.0;
+      for (std::size_t n = 0; n < array.position.size(); ++n) {
+        sum += std::abs(propagate(array, Medium(), n, Vec3(asked.x(), asked.y(), palm.height)));
+      }
+      const double expected = radiation_pressure(sum, Medium());
+      EXPECT_LT(at_once.pressure, expected * 1.001);
+      EXPECT_GT(at_once.pressure, expected * 0.9);  // the nearest cell is up to 1.4 mm off
+      const Strongest lagging = strongest(real, palm, sample);
+      EXPECT_LT((lagging.at - asked).norm(), 2.2e-3 + speed * 0.228e-3);
+      EXPECT_LT(lagging.pressure, at_once.pressure * 1.03);
+    }
+    double total = 0.0, total_ideal = 0.0;
+    for (int k = 0; k < StmField::kSamples; ++k) {
+      total += strongest(real, palm, k).pressure;
+      total_ideal += strongest(ideal, palm, k).pressure;
+    }
+    EXPECT_NEAR(total / total_ideal, speed < 5.0 ? 0.995 : 0.90, 0.015);
+  }
+}
+
+TEST(SkinBench, TwoFociAreAlikeAndWeakerThanOne) {
+  const Palm palm;
+  const std::vector<double> one = foci_pressure(usx_array(), palm, {Vec2(1e-3, 1e-3)});
+  const std::vector<double> two =
+      foci_pressure(usx_array(), palm, {Vec2(-21e-3, 1e-3), Vec2(21e-3, 1e-3)});
+  const auto at = [&](const std::vector<double>& pressure, int col) {
+    return pressure[static_cast<std::size_t>(24 * palm.patch.cols + col)];
+  };
+  EXPECT_NEAR(at(two, 13) / at(two, 34), 1.0, 1e-3);  // −21 and +21 mm
+  EXPECT_LT(at(two, 13), 0.55 * at(one, 24));
+  EXPECT_GT(at(two, 13), 0.3 * at(one, 24));
+}
+
+}  // namespace
+}  // namespace prostm::bench
