@@ -18,17 +18,20 @@ struct NamedMethod {
   const char* name;
   FocusMethod method;
 };
-constexpr std::array kMethods = {
-    NamedMethod{"superposition", FocusMethod::Superposition}, NamedMethod{"ibp", FocusMethod::Ibp},
-    NamedMethod{"gs-pat", FocusMethod::GsPat}, NamedMethod{"eigenvector", FocusMethod::Eigenvector},
-    NamedMethod{"lm", FocusMethod::LevenbergMarquardt}};
+constexpr std::array kMethods = {NamedMethod{"superposition", FocusMethod::Superposition},
+                                 NamedMethod{"ibp", FocusMethod::Ibp},
+                                 NamedMethod{"gs-pat", FocusMethod::GsPat},
+                                 NamedMethod{"weighted", FocusMethod::Weighted},
+                                 NamedMethod{"eigenvector", FocusMethod::Eigenvector},
+                                 NamedMethod{"lm", FocusMethod::LevenbergMarquardt}};
 
 FocusMethod method_of(const std::string& name) {
   for (const NamedMethod& m : kMethods) {
     if (name == m.name) return m.method;
   }
-  throw InputError("--solver " + name +
-                   " is unknown; it must be superposition, ibp, gs-pat, eigenvector or lm");
+  throw InputError(
+      "--solver " + name +
+      " is unknown; it must be superposition, ibp, gs-pat, weighted, eigenvector or lm");
 }
 
 TransducerArray array_of(const std::string& name) {

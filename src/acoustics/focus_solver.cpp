@@ -21,6 +21,10 @@ constexpr int kPowerIterations = 100;
 constexpr int kReferenceFactor = 50;      // of iterations that the reference may take
 constexpr double kConverged = 1e-12;      // of an eigenvector's or of the targets' square norm
 constexpr double kFirstDamping = 1e-3;    // of (A15), over the mean of the diagonal of JJᵀ
+constexpr double kDamping = 1e-2;         // of (A17), over the mean of its diagonal
+constexpr double kLeastDamping = 1e-9;    // where no phase changes anything
+constexpr double kLeastShare = 1e-6;      // of what a focal point has alone
+constexpr double kMostWeight = 10.0;      // in (A16), and its inverse
 constexpr double kLargestDamping = 1e12;  // where no step lowers the error
 
 /// z/|z|, and 1 for 0.
@@ -101,6 +105,41 @@ double level_of(const VectorXcd& pressure, const VectorXd& target) {
   return target.dot(pressure.cwiseAbs()) / target.squaredNorm();
 }
 
+/// How the |p_m| change with the phases of the drives: ∂|p_m|/∂θ_n = −Im(conj(p_m)/|p_m| G_mn q_n).
+Eigen::MatrixXd phase_gradients(const Propagation& g, const VectorXcd& p, const VectorXcd& q) {
+  const MatrixXcd turned = directions(p).conjugate().asDiagonal() * g * q.asDiagonal();
+  return -turned.imag();
+}
+
+/// q with its phases turned by these angles [rad].
+VectorXcd turned(const VectorXcd& q, const VectorXd& angle) {
+  return q.cwiseProduct(VectorXcd(angle.unaryExpr([](double t) { return std::polar(1.0, t); })));
+}
+
+/// (A16), and once in the end (A17), over the pressures that each focal point has alone.
+VectorXcd weighted(const Propagation& propagation, const VectorXd& target, VectorXcd phase,
+                   int iterations) {
+  const VectorXd alone = propagation.cwiseAbs().rowwise().sum();
+  const Propagation g = alone.cwiseInverse().cast<Complex>().asDiagonal() * propagation;
+  const VectorXd a = target.cwiseQuotient(alone) / target.cwiseQuotient(alone).maxCoeff();
+  VectorXd weight = VectorXd::Ones(a.size());
+  VectorXcd q, y;
+  for (int i = 0; i < iterations; ++i) {
+    q = directions(g.adjoint() * with_phases(weight.cwiseProduct(a), phase));
+    y = g * q;
+    phase = directions(y);
+    const VectorXd share = y.cwiseAbs().cwiseMax(kLeastShare);
+    weight = weight.cwiseProduct(level_of(y, a) * a).cwiseQuotient(share);
+    weight *= a.sum() / a.dot(weight);
+    weight = weight.cwiseMax(1.0 / kMostWeight).cwiseMin(kMostWeight);
+  }
+  const Eigen::MatrixXd j = phase_gradients(g, y, q);
+  Eigen::MatrixXd normal = j * j.transpose();
+  normal.diagonal().array() += kDamping * normal.diagonal().mean() + kLeastDamping;
+  const VectorXd residual = y.cwiseAbs() - level_of(y, a) * a;
+  return turned(q, -j.transpose() * normal.llt().solve(residual));
+}
+
 /// (A15) from the phases of `drive`: Gauss-Newton on |p_m| − s a_m with s the level, damped.
 VectorXcd levenberg_marquardt(const Propagation& g, const VectorXd& target, const VectorXcd& drive,
                               int iterations) {
@@ -113,14 +152,10 @@ VectorXcd levenberg_marquardt(const Propagation& g, const VectorXd& target, cons
   double damping = kFirstDamping;
   for (int i = 0; i < iterations && damping < kLargestDamping; ++i) {
     if (r.squaredNorm() < kConverged * p.squaredNorm()) break;
-    // ∂|p_m|/∂θ_n = −Im(conj(p_m)/|p_m| G_mn q_n)
-    const MatrixXcd turned = directions(p).conjugate().asDiagonal() * g * q.asDiagonal();
-    const Eigen::MatrixXd j = -turned.imag();
+    const Eigen::MatrixXd j = phase_gradients(g, p, q);
     Eigen::MatrixXd normal = j * j.transpose();
     normal.diagonal().array() += damping * normal.diagonal().mean();
-    const VectorXd step = -j.transpose() * normal.llt().solve(r);
-    const VectorXcd trial =
-        q.cwiseProduct(VectorXcd(step.unaryExpr([](double t) { return std::polar(1.0, t); })));
+    const VectorXcd trial = turned(q, -j.transpose() * normal.llt().solve(r));
     const VectorXcd reached = g * trial;
     const VectorXd left = residual(reached);
     if (left.squaredNorm() < r.squaredNorm()) {
@@ -144,6 +179,8 @@ VectorXcd drives_of(const Propagation& g, const VectorXd& target, const FocusSet
       return iterate_back(g, target, phase, settings.iterations);
     case FocusMethod::GsPat:
       return gs_pat(g, target, phase, settings.iterations);
+    case FocusMethod::Weighted:
+      return weighted(g, target, phase, settings.iterations);
     case FocusMethod::Eigenvector:
       return least_squares(g, target, with_phases(target, eigenvector_phases(g, target, phase)),
                            settings.regularisation);

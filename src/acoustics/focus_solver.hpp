@@ -9,14 +9,16 @@ enum class FocusMethod {
   Superposition,  ///< (A11): the naive foci, added
   Ibp,            ///< (A12): iterative back-propagation, phases alone [Marzo and Drinkwater 2019]
   GsPat,          ///< (A13): Gerchberg-Saxton on the focal points [Plasencia et al. 2020]
-  Eigenvector,    ///< (A14): phases of the dominant eigenvector, then least squares with Tikhonov's
-                  ///< regularisation [Long et al. 2014]
+  Weighted,  ///< (A16): weighted Gerchberg-Saxton on phases alone [Di Leonardo et al. 2007], (A17)
+  Eigenvector,  ///< (A14): phases of the dominant eigenvector, then least squares with Tikhonov's
+                ///< regularisation [Long et al. 2014]
   LevenbergMarquardt  ///< (A15): phases alone, to convergence: the slow reference
 };
 
 struct FocusSettings {
   FocusMethod method = FocusMethod::GsPat;
-  int iterations = 20;          ///< of Ibp and GsPat; LevenbergMarquardt may take 50 times as many
+  int iterations =
+      20;  ///< of Ibp, GsPat and Weighted; LevenbergMarquardt may take 50 times as many
   double regularisation = 1.0;  ///< γ of Eigenvector, 0..1
 };
 

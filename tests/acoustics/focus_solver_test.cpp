@@ -18,8 +18,9 @@
 namespace prostm {
 namespace {
 
-constexpr std::array kMethods = {FocusMethod::Superposition, FocusMethod::Ibp, FocusMethod::GsPat,
-                                 FocusMethod::Eigenvector, FocusMethod::LevenbergMarquardt};
+constexpr std::array kMethods = {FocusMethod::Superposition, FocusMethod::Ibp,
+                                 FocusMethod::GsPat,         FocusMethod::Weighted,
+                                 FocusMethod::Eigenvector,   FocusMethod::LevenbergMarquardt};
 
 FocusSettings with(FocusMethod method) {
   FocusSettings settings;

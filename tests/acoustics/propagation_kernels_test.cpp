@@ -85,6 +85,19 @@ TEST(PropagationKernels, EveryElementIsThatOfA1) {
   }
 }
 
+TEST(PropagationKernels, RowsInSinglePrecisionAreNearlyTheSame) {
+  for (const TransducerArray& array : {usx_array(), autd3_array(), turned_omni()}) {
+    const PackedArray packed(array, Medium());
+    const std::vector<Vec3> points = points_around(array, 1.0, 15);
+    Matrix g = rows_of(propagation_rows_plain, packed, points);
+    for (std::size_t m = 0; m < points.size(); ++m) {
+      const std::size_t at = m * packed.stride();
+      propagation_row_in_single(packed, points[m], g.re.data() + at, g.im.data() + at);
+    }
+    EXPECT_LT(worst_error(packed, g, points), 2e-4) << array.name;
+  }
+}
+
 TEST(PropagationKernels, NormalsOfTheirOwnAreTheSame) {
   Random random(11);
   TransducerArray array = usx_array();

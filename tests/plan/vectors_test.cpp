@@ -1,7 +1,6 @@
 /// The planner on every set of vector instructions that this processor has.
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <array>
 #include <cstdint>
@@ -11,26 +10,14 @@
 #include "plan/planner.hpp"
 #include "score/score.hpp"
 #include "support/load.hpp"
+#include "support/only_targets.hpp"
 
 namespace prostm {
 namespace {
 
 using fields::kPatterns;
-
-/// Lets kernels use these targets alone, until it goes.
-class OnlyTargets {
- public:
-  explicit OnlyTargets(std::int64_t targets) { set(targets); }
-  ~OnlyTargets() { set(0); }
-  OnlyTargets(const OnlyTargets&) = delete;
-  OnlyTargets& operator=(const OnlyTargets&) = delete;
-
- private:
-  static void set(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().DeInit();
-  }
-};
+using test::OnlyTargets;
+using test::vector_targets;
 
 /// Mean RMSE of each pattern over some frames of its sequence.
 std::array<double, kPatterns.size()> gallery_rmse(const PlanSettings& settings, int frames) {
@@ -60,7 +47,7 @@ double mean(const std::array<double, kPatterns.size()>& values) {
 void expect_as_good_as_plain(const PlanSettings& settings, int frames, std::int64_t targets) {
   std::array<double, kPatterns.size()> plain{};
   {
-    const OnlyTargets only(HWY_EMU128 | HWY_SCALAR);
+    const OnlyTargets only(test::kPlainTarget);
     plain = gallery_rmse(settings, frames);
   }
   for (; targets != 0; targets &= targets - 1) {
@@ -73,11 +60,6 @@ void expect_as_good_as_plain(const PlanSettings& settings, int frames, std::int6
           << hwy::TargetName(target) << ", " << fields::to_string(kPatterns[p]);
     }
   }
-}
-
-/// Those of this processor, the best one in the lowest bit.
-std::int64_t vector_targets() {
-  return hwy::SupportedTargets() & HWY_TARGETS & ~(HWY_EMU128 | HWY_SCALAR);
 }
 
 TEST(Vectors, FastRendersTheGalleryAsWellOnEverySet) {

@@ -1,0 +1,18 @@
+/// Focus solvers: how many solutions a second, how true they are, and how smoothly drives move.
+///
+/// usage: solvers_bench [--json FILE]
+
+#include "report.hpp"
+#include "solvers/solver_tables.hpp"
+
+int main(int argc, char** argv) {
+  using namespace prostm::bench;
+  return run(argc, argv, [] {
+    std::vector<Row> rows;
+    measure_speed(rows);
+    measure_streams(rows);
+    print_power_and_rounding();
+    print_random_sets(1000);
+    return rows;
+  });
+}
