@@ -11,6 +11,7 @@
 #include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "figure/figures.hpp"
+#include "io/array_file.hpp"
 #include "io/hand_file.hpp"
 
 namespace prostm::app {
@@ -35,6 +36,8 @@ PipelineSettings make_settings(const CommonOptions& options,
   PipelineSettings settings;
   if (!options.settings_file.empty()) read_settings(options.settings_file, groups_of(settings));
   if (scene) settings.scene = *scene;
+  if (options.array) settings.array = *options.array;
+  settings.transducers = array_from_name(settings.array);
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = *options.method;
   if (options.preset) settings.plan.preset = *options.preset;

@@ -53,7 +53,7 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
       ->capture_default_str();
   command.add_option("--grid", common.grid,
                      "cells along each edge of the fluid's box, a multiple of 16");
-  only(command, "--array", "usx", "autd3", "the array");
+  command.add_option("--array", common.array, "usx (default), autd3, or an array file (.json)");
 }
 
 void add_run(CLI::App& app, int& status) {
@@ -132,7 +132,8 @@ void add_solve(CLI::App& app, int& status) {
       ->required();
   command->add_option("--array", o->array, "usx, autd3, or an array file (.json)")
       ->capture_default_str();
-  command->add_option("--solver", o->solver, "superposition, ibp, gs-pat, eigenvector or lm")
+  command
+      ->add_option("--solver", o->solver, "superposition, ibp, gs-pat, weighted, eigenvector or lm")
       ->capture_default_str();
   command->add_option("--json", o->json, "write the drives as JSON; - is standard output");
   command->footer(

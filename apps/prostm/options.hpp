@@ -14,7 +14,7 @@ struct CommonOptions {
   std::string json;  ///< file, "-" for standard output, empty for none
   std::string figure;
   std::optional<int> seed;
-  std::optional<std::string> method, preset;
+  std::optional<std::string> method, preset, array;
   std::optional<int> paths;
   std::optional<double> budget_ms;
   std::optional<int> grid;
@@ -54,7 +54,7 @@ struct BenchOptionsGiven {
 struct SolveOptionsGiven {
   std::string foci;
   std::string array = "usx";
-  std::string solver = "gs-pat";
+  std::string solver = "weighted";
   std::string json;
 };
 

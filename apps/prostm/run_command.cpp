@@ -75,7 +75,7 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   figure.origin = grid.p_DF({0, 2}) + Vec2::Constant(0.5 * grid.cell);
   figure.smoke = contact.side.smoke;
   figure.hand = contact.side.hand;
-  for (const Vec3& p : usx_array().position) figure.array.emplace_back(p.x(), p.z());
+  for (const Vec3& p : settings.transducers.position) figure.array.emplace_back(p.x(), p.z());
   LiftedPlan lifted;
   lift(observer.plan().plan, contact.target, lifted);
   for (const LiftedPath& lifted_path : lifted.paths) {

@@ -14,37 +14,15 @@
 namespace prostm::app {
 namespace {
 
-struct NamedMethod {
-  const char* name;
-  FocusMethod method;
-};
-constexpr std::array kMethods = {NamedMethod{"superposition", FocusMethod::Superposition},
-                                 NamedMethod{"ibp", FocusMethod::Ibp},
-                                 NamedMethod{"gs-pat", FocusMethod::GsPat},
-                                 NamedMethod{"weighted", FocusMethod::Weighted},
-                                 NamedMethod{"eigenvector", FocusMethod::Eigenvector},
-                                 NamedMethod{"lm", FocusMethod::LevenbergMarquardt}};
-
 FocusMethod method_of(const std::string& name) {
-  for (const NamedMethod& m : kMethods) {
-    if (name == m.name) return m.method;
-  }
-  throw InputError(
-      "--solver " + name +
-      " is unknown; it must be superposition, ibp, gs-pat, weighted, eigenvector or lm");
-}
-
-TransducerArray array_of(const std::string& name) {
-  if (name == "usx") return usx_array();
-  if (name == "autd3") return autd3_array();
-  if (name.ends_with(".json")) return read_array(name);
-  throw InputError("--array " + name + " is unknown; it must be usx, autd3 or a file (.json)");
+  if (const auto method = focus_method_from_name(name)) return *method;
+  throw InputError("--solver " + name + " is unknown; it must be one of " + focus_method_names());
 }
 
 }  // namespace
 
 int solve_command(const SolveOptionsGiven& options) {
-  const TransducerArray array = array_of(options.array);
+  const TransducerArray array = array_from_name(options.array);
   FocusSettings settings;
   settings.method = method_of(options.solver);
   if (!options.json.empty()) check_writable(options.json);

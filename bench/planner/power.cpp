@@ -17,12 +17,6 @@ namespace {
 
 constexpr int kInstants = 8;  // of a lap of the longest path
 
-SimulatedArray make_array() {
-  SimulatedArraySettings settings;
-  settings.realtime = false;
-  return SimulatedArray(settings, usx_array(), Medium{});
-}
-
 double highest_pressure(const LiftedPlan& plan) {
   double highest = 0.0;
   for (const LiftedPath& path : plan.paths) {
@@ -62,9 +56,9 @@ struct AtPaths {
   Distribution wanted;                 // Σ I² of an instant
   double asked = 0.0, got = 0.0;       // Σ radiation pressure over one focal point alone
   Distribution peak, mean;             // of what a plan gets
-  Distribution superposed, full;       // of focal points that all want intensity 1
+  Distribution full, superposed;       // of focal points that all want intensity 1
 
-  void play(const SimulatedArray& array, const LiftedPlan& plan, double period) {
+  void play(const TransducerArray& array, const LiftedPlan& plan, double period) {
     const double full_scale = highest_pressure(plan);
     double peak_of_plan = 0.0, sum = 0.0, count = 0.0;
     for (int i = 0; i < kInstants; ++i) {
@@ -73,23 +67,22 @@ struct AtPaths {
           foci_at(plan, (i + 0.5) / kInstants * period, full_scale, power);
       wanted.add(power);
       asked += power;
-      for (const double pressure : reached(array, foci).superposed) {
+      for (const double pressure : reached(array, FocusMethod::Weighted, foci)) {
         got += pressure;
         peak_of_plan = std::max(peak_of_plan, pressure);
         sum += pressure;
         count += 1.0;
       }
       for (FocusSample& focus : foci) focus.intensity = 1.0F;
-      const Reached equal = reached(array, foci);
-      for (const double pressure : equal.superposed) superposed.add(pressure);
-      for (const double pressure : equal.full) full.add(pressure);
+      for (const double p : reached(array, FocusMethod::Weighted, foci)) full.add(p);
+      for (const double p : reached(array, FocusMethod::Superposition, foci)) superposed.add(p);
     }
     peak.add(peak_of_plan);
     mean.add(sum / count);
   }
 };
 
-AtPaths plan_all(int paths, int frames, const SimulatedArray& array) {
+AtPaths plan_all(int paths, int frames, const TransducerArray& array) {
   AtPaths out;
   PlanSettings settings;
   settings.paths = paths;
@@ -116,43 +109,35 @@ AtPaths plan_all(int paths, int frames, const SimulatedArray& array) {
 
 }  // namespace
 
-Reached reached(const SimulatedArray& array, const std::vector<FocusSample>& foci) {
-  std::vector<std::complex<double>> drives;
+std::vector<double> reached(const TransducerArray& array, FocusMethod method,
+                            const std::vector<FocusSample>& foci) {
   std::vector<Vec3> places;
   for (const FocusSample& focus : foci) places.push_back(focus.p_D.cast<double>());
-  const auto squared = [](double x) { return x * x; };
-
-  std::vector<double> alone;  // at each place, with it alone at full drive
+  const Propagation g = propagation_to(array, Medium{}, places);
+  const Eigen::VectorXd alone = g.cwiseAbs().rowwise().sum();
+  Eigen::VectorXd target = alone;
   for (std::size_t f = 0; f < foci.size(); ++f) {
-    FocusSample one = foci[f];
-    one.intensity = 1.0F;
-    array.drives({&one, 1}, drives);
-    alone.push_back(array.field(drives, {&places[f], 1})[0]);
+    target[static_cast<Eigen::Index>(f)] *= static_cast<double>(foci[f].intensity);
   }
-  Reached out;
-  array.drives(foci, drives);
-  const std::vector<double> together = array.field(drives, places);
-  for (auto& drive : drives) {
-    const double size = std::abs(drive);
-    if (size > 0.0) drive /= size;
-  }
-  const std::vector<double> at_full = array.field(drives, places);
-  for (std::size_t f = 0; f < foci.size(); ++f) {
-    out.superposed.push_back(squared(together[f] / alone[f]));
-    out.full.push_back(squared(at_full[f] / alone[f]));
+  std::vector<double> out(foci.size(), 0.0);
+  if (target.isZero(0.0)) return out;
+  const FocusSolution solution = solve_foci(g, target, {.method = method});
+  for (Eigen::Index f = 0; f < g.rows(); ++f) {
+    const double share = std::abs(solution.pressure[f]) / alone[f];
+    out[static_cast<std::size_t>(f)] = share * share;
   }
   return out;
 }
 
 void measure_power(int frames, std::vector<Row>& rows) {
-  const SimulatedArray array = make_array();
+  const TransducerArray array = usx_array();
   const double limit = EmitSettings{}.power_limit;
   fmt::print(
       "\nPaths and power, preset best, 200 mm above the array; pressures over that of one focal "
       "point at full drive\n{:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9} {:>9} "
       "{:>9}\n",
-      "paths", "RMSE", "cover", "S_8.5", "asked", "p99", "E4a", "got", "highest", "mean", "(A4)",
-      "full");
+      "paths", "RMSE", "cover", "S_8.5", "asked", "p99", "E4a", "got", "highest", "mean", "full",
+      "added");
   for (int paths = 1; paths <= kMaxPaths; ++paths) {
     const AtPaths at = plan_all(paths, frames, array);
     const Summary wanted = at.wanted.summary();
@@ -161,8 +146,8 @@ void measure_power(int frames, std::vector<Row>& rows) {
         "{:>9.3f} {:>9.3f}\n",
         paths, at.rmse.summary().mean, at.coverage.summary().mean, at.skill.summary().mean,
         wanted.mean, wanted.p99, even_share(paths, limit), at.got / at.asked,
-        at.peak.summary().mean, at.mean.summary().mean, at.superposed.summary().mean,
-        at.full.summary().mean);
+        at.peak.summary().mean, at.mean.summary().mean, at.full.summary().mean,
+        at.superposed.summary().mean);
     const std::string name = fmt::format("planner/best/{} paths/", paths);
     rows.push_back({name + "rmse", "", at.rmse.summary(), "", 0.0});
     rows.push_back({name + "highest pressure reached", "", at.peak.summary(), "", 0.0});
@@ -171,9 +156,7 @@ void measure_power(int frames, std::vector<Row>& rows) {
       "asked: sum of intensity^2 at a time, mean and p99; E4a: share of full scale that the limit "
       "of "
       "{:g} leaves each\ngot: what the array renders of what is asked for; highest, mean: of that, "
-      "of a plan\n(A4): all focal points at intensity 1, superposed; full: with every transducer "
-      "at "
-      "full drive\n",
+      "of a plan\nfull: all focal points at intensity 1; added: the same, superposed by (A11)\n",
       limit);
 }
 

@@ -1,6 +1,10 @@
 #pragma once
 /// Drives of an array that make several focal points at the same time.
 
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include "acoustics/propagation.hpp"
 
 namespace prostm {
@@ -14,6 +18,13 @@ enum class FocusMethod {
                 ///< regularisation [Long et al. 2014]
   LevenbergMarquardt  ///< (A15): phases alone, to convergence: the slow reference
 };
+
+/// "superposition", "ibp", "gs-pat", "weighted", "eigenvector", "lm".
+const char* focus_method_name(FocusMethod method);
+/// Nothing when there is no method of that name.
+std::optional<FocusMethod> focus_method_from_name(std::string_view name);
+/// All names, with a comma between.
+std::string focus_method_names();
 
 struct FocusSettings {
   FocusMethod method = FocusMethod::GsPat;

@@ -24,12 +24,33 @@ using Seconds = std::chrono::duration<double>;
 constexpr int kMostFoci = 8;
 constexpr std::int64_t kMostWaiting = 64;  // blocks, while a reader holds the lock
 
+FocusMethod live_method(const std::string& name) {
+  const std::optional<FocusMethod> method = focus_method_from_name(name);
+  if (method != FocusMethod::Weighted && method != FocusMethod::GsPat &&
+      method != FocusMethod::Superposition) {
+    throw std::invalid_argument("solver = \"" + name +
+                                "\" must be weighted, gs-pat or superposition");
+  }
+  return *method;
+}
+
+ArrayOutputSettings output_settings(const SimulatedArraySettings& s, const TransducerArray& array) {
+  ArrayOutputSettings out;
+  out.solver.method = live_method(s.solver);
+  out.solver.iterations = out.solver.method == FocusMethod::GsPat ? 20 : 1;
+  out.transducer.frequency = array.frequency;
+  out.transducer.sample_rate = s.sample_rate;
+  out.transducer.memoryless = s.memoryless;
+  return out;
+}
+
 const SimulatedArraySettings& validated(const SimulatedArraySettings& s) {
   require_between("sample_rate", s.sample_rate, 1e3, 1e6, "Hz");
   require_between("block_samples", s.block_samples, 1, 4096);
   require_between("max_foci", s.max_foci, 1, kMostFoci);
   require_between("queue_blocks", s.queue_blocks, 1, 10);
   require_between("history", s.history, 0.0, 600.0, "s");
+  live_method(s.solver);
   return s;
 }
 
@@ -56,6 +77,8 @@ void SimulatedArraySettings::visit(SettingsVisitor& v) {
   v.field("queue_blocks", queue_blocks);
   v.field("history", history);
   v.field("realtime", realtime);
+  v.field("solver", solver);
+  v.field("memoryless", memoryless);
 }
 
 struct SimulatedArray::Impl {
@@ -346,36 +369,42 @@ std::int64_t SimulatedArray::samples() const {
   return impl_->played();
 }
 
-void SimulatedArray::drives(std::span<const FocusSample> foci,
-                            std::vector<std::complex<double>>& out) const {
-  const std::size_t transducers = impl_->array.position.size();
-  out.assign(transducers, 0.0);
-  std::vector<double> phases(transducers);
-  for (const FocusSample& focus : foci) {
-    focus_phases(impl_->array, impl_->medium, focus.p_D.cast<double>(), phases);
-    for (std::size_t i = 0; i < transducers; ++i) {
-      out[i] += std::polar(static_cast<double>(focus.intensity), phases[i]);
-    }
+std::vector<std::complex<double>> SimulatedArray::output(std::int64_t first, std::int64_t n) const {
+  const SimulatedArraySettings& s = impl_->settings;
+  ArrayOutput array(impl_->array, impl_->medium, output_settings(s, impl_->array));
+  const std::int64_t kept = std::max<std::int64_t>(0, samples() - impl_->history_samples);
+  const std::int64_t begin = std::min(first, std::max(kept, first - kLeadIn));
+  const std::vector<FocusSample> played = read_back(begin, first + n - begin);
+  const auto width = static_cast<std::size_t>(foci());
+  std::vector<LiveFocus> foci(width);
+  std::vector<std::complex<double>> out;
+  out.reserve(static_cast<std::size_t>(n) * array.envelopes().size());
+  for (std::size_t i = 0; i < played.size(); i += width) {
+    for (std::size_t f = 0; f < width; ++f) foci[f] = {played[i + f].p_D, played[i + f].intensity};
+    array.step(foci);
+    if (begin + static_cast<std::int64_t>(i / width) < first) continue;
+    out.insert(out.end(), array.envelopes().begin(), array.envelopes().end());
   }
-
-  // a common factor, so that the foci keep their ratios
-  double largest = 1.0;
-  for (const auto& drive : out) largest = std::max(largest, std::abs(drive));
-  for (auto& drive : out) drive /= largest;
+  return out;
 }
 
-std::vector<double> SimulatedArray::field(std::span<const std::complex<double>> drives,
-                                          std::span<const Vec3> points) const {
+std::vector<double> SimulatedArray::pressure(std::int64_t first, std::int64_t n,
+                                             std::span<const Vec3> points) const {
+  using Rows = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::vector<std::complex<double>> envelopes = output(first, n);
+  const auto transducers = static_cast<Eigen::Index>(impl_->array.position.size());
   const Wave sound = wave(impl_->array, impl_->medium);
-  std::vector<double> out;
-  out.reserve(points.size());
-  for (const Vec3& p : points) {
-    std::complex<double> sum = 0.0;
-    for (std::size_t i = 0; i < drives.size(); ++i) {
-      sum += drives[i] * propagate(impl_->array, sound, i, p);
+  Eigen::MatrixXcd g(transducers, static_cast<Eigen::Index>(points.size()));
+  for (Eigen::Index m = 0; m < g.cols(); ++m) {
+    for (Eigen::Index i = 0; i < transducers; ++i) {
+      g(i, m) = propagate(impl_->array, sound, static_cast<std::size_t>(i),
+                          points[static_cast<std::size_t>(m)]);
     }
-    out.push_back(std::abs(sum));
   }
+  const Eigen::Map<const Rows> a(envelopes.data(), static_cast<Eigen::Index>(n), transducers);
+  std::vector<double> out(static_cast<std::size_t>(n) * points.size());
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+      out.data(), a.rows(), g.cols()) = (a * g).cwiseAbs();
   return out;
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "acoustics/array.hpp"
+#include "acoustics/array_output.hpp"
 #include "core/settings.hpp"
 #include "device/device.hpp"
 
@@ -18,6 +18,8 @@ struct SimulatedArraySettings {
   int queue_blocks = 10;      ///< 1..10; each costs a block of latency and covers for one of delay
   double history = 4.0;       ///< kept for reading back [s], up to 600
   bool realtime = true;       ///< false: no thread and no clock, pull() is called by hand
+  std::string solver = "weighted";  ///< of `output`: or superposition, gs-pat
+  bool memoryless = false;          ///< transducers follow their drives at once, against (A9)
 
   void visit(SettingsVisitor& v);
 };
@@ -64,13 +66,20 @@ class SimulatedArray final : public Device {
   int foci() const;  ///< per sample, of the running source or segment; 0 before the first
   std::int64_t samples() const;  ///< played so far
 
-  /// Complex drive of each transducer for one sample, (A4): the naive superposition of one focus
-  /// per focal point, with amplitudes from intensities, scaled down by a common factor when any
-  /// exceeds 1.
-  void drives(std::span<const FocusSample> foci, std::vector<std::complex<double>>& out) const;
-  /// rms acoustic pressure at points for such drives [Pa], |Σ drive·propagate|.
-  std::vector<double> field(std::span<const std::complex<double>> drives,
-                            std::span<const Vec3> points) const;
+  /// Envelopes of the transducers, (A9), at the ends of samples first … first+n−1 as they were
+  /// played, sample-major: solved again, from up to kLeadIn samples before. @throws
+  /// std::out_of_range as read_back does.
+  std::vector<std::complex<double>> output(std::int64_t first, std::int64_t n) const;
+  /// rms acoustic pressure [Pa] at points for the same samples, sample-major with one for each
+  /// point: |Σ envelope · (A1)|.
+  /// @throws std::out_of_range as read_back does. @pre no point is within kNearestPoint of a
+  /// transducer.
+  std::vector<double> pressure(std::int64_t first, std::int64_t n,
+                               std::span<const Vec3> points) const;
+
+  /// Samples that are solved before those that are asked for: 10 ms at 40 kHz, after which nothing
+  /// is left of what transducers did before, and little of what the solver did.
+  static constexpr std::int64_t kLeadIn = 400;
 
  private:
   struct Impl;

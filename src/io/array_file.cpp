@@ -116,6 +116,13 @@ TransducerArray array_from_json(std::string_view text, const std::string& file) 
   return array;
 }
 
+TransducerArray array_from_name(const std::string& name) {
+  if (name == "usx") return usx_array();
+  if (name == "autd3") return autd3_array();
+  if (name.ends_with(".json")) return read_array(name);
+  throw InputError("array " + name + " is unknown; it must be usx, autd3 or a file (.json)");
+}
+
 TransducerArray read_array(const std::string& path) {
   return array_from_json(read_file(path, kMaxJsonBytes), path);
 }

@@ -131,7 +131,7 @@ void play_until(SimulatedArray& device, double time) {
 Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands)
     : smoke_(settings, std::move(hands)),
       plans_(settings, smoke_.max_cells(), smoke_.scene().full_scale_pressure),
-      device_(settings.simulated_array, usx_array(), Medium{}) {
+      device_(settings.simulated_array, settings.transducers, Medium{}) {
   if (device_.start(plans_.emitter()) != DeviceStatus::Running)
     throw std::invalid_argument(device_.problem());
 }

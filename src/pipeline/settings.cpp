@@ -5,6 +5,7 @@ namespace prostm {
 void PipelineSettings::visit(SettingsVisitor& v) {
   v.field("scene", scene);
   v.field("method", method);
+  v.field("array", array);
   v.field("tracker", tracker);
   v.field("fluid_rate", fluid_rate);
   v.field("fluid_steps_per_plan", fluid_steps_per_plan);

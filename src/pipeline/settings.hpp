@@ -20,6 +20,7 @@ namespace prostm {
 struct PipelineSettings {
   std::string scene = "one-plume";  ///< see scene_from_name
   std::string method = "pro-stm";   ///< see method_from_name
+  std::string array = "usx";        ///< what `transducers` are, by name: usx, autd3 or a file
   std::string tracker = "centre";   ///< pose of the tracker: "centre", or "ultraleap-kit"
   double fluid_rate = 50.0;         ///< fluid steps a second [Hz]
   int fluid_steps_per_plan = 0;     ///< a plan every so many fluid steps; 0: as the method asks, 2
@@ -35,6 +36,7 @@ struct PipelineSettings {
   AmSettings am;
   EmitSettings emit;
   SimulatedArraySettings simulated_array;
+  TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
 
   /// fluid_steps_per_plan, where 0 stands for what the method asks. @throws std::invalid_argument
   /// for a method that is unknown.

@@ -267,18 +267,12 @@ TEST(Bending, IsThatOfShapesWhoseTurnsAreKnown) {
 }
 
 TEST(Power, OneFocalPointGetsWhatItAsksFor) {
-  SimulatedArraySettings settings;
-  settings.realtime = false;
-  const SimulatedArray array(settings, usx_array(), Medium{});
-  const Reached one = reached(array, {{Eigen::Vector3f(0.02F, -0.01F, 0.2F), 0.5F}});
-  EXPECT_NEAR(one.superposed[0], 0.25, 1e-9);
-  EXPECT_NEAR(one.full[0], 1.0, 1e-9);
+  const std::vector<FocusSample> one = {{Eigen::Vector3f(0.02F, -0.01F, 0.2F), 0.5F}};
+  EXPECT_NEAR(reached(usx_array(), FocusMethod::Weighted, one)[0], 0.25, 1e-9);
+  EXPECT_NEAR(reached(usx_array(), FocusMethod::Superposition, one)[0], 0.25, 1e-9);
 }
 
 TEST(Power, SeveralShareTheArray) {
-  SimulatedArraySettings settings;
-  settings.realtime = false;
-  const SimulatedArray array(settings, usx_array(), Medium{});
   // apart from each other, where the drives for one hardly sound at another
   for (int foci = 2; foci <= 8; ++foci) {
     std::vector<FocusSample> all;
@@ -287,17 +281,17 @@ TEST(Power, SeveralShareTheArray) {
       all.push_back(
           {(Vec3(0.045 * std::cos(angle), 0.045 * std::sin(angle), 0.2)).cast<float>(), 1.0F});
     }
-    const Reached r = reached(array, all);
-    double superposed = 0.0, full = 0.0;
-    for (int f = 0; f < foci; ++f) {
-      superposed += r.superposed[static_cast<std::size_t>(f)] / foci;
-      full += r.full[static_cast<std::size_t>(f)] / foci;
-    }
+    const auto mean = [&](FocusMethod method) {
+      double sum = 0.0;
+      for (const double p : reached(usx_array(), method, all)) sum += p / foci;
+      return sum;
+    };
     // at most 1/P of the power each; superposed about 1/P² of the pressure
+    const double full = mean(FocusMethod::Weighted);
     EXPECT_LT(full, 1.1 / foci) << foci;
     EXPECT_GT(full, 0.6 / foci) << foci;
-    EXPECT_LT(superposed, full) << foci;
-    EXPECT_NEAR(superposed * foci * foci, 1.0, 0.6) << foci;
+    EXPECT_LT(mean(FocusMethod::Superposition), full) << foci;
+    EXPECT_NEAR(mean(FocusMethod::Superposition) * foci * foci, 1.0, 0.6) << foci;
   }
 }
 

@@ -260,6 +260,7 @@ def test_bad_foci(refuses, tmp_path, positions, words):
 def test_solve_refuses_what_it_does_not_know(refuses, tmp_path):
     good = foci_file(tmp_path, [0, 0, 200])
     refuses("solve", good, "--array", "disc", words=["disc", "usx", "autd3"])
+    refuses("run", "--array", "disc", words=["disc", "usx", "autd3"])
     refuses("solve", good, "--solver", "magic", words=["magic", "gs-pat"])
     refuses("solve", foci_file(tmp_path, [0, 0, 200], pressure=0), words=["above 0 Pa"])
     (tmp_path / "array.json").write_text('{"format": "prostm-array/1", "name": "none", "frequency_hz": 40000,'

@@ -194,6 +194,15 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
         assert h5.attrs["scene"] == "one-plume"
 
 
+@pytest.mark.parametrize("array", ["autd3", "plate.json"])
+def test_run_plays_any_array(prostm, tmp_path, array):
+    (tmp_path / "plate.json").write_text(json.dumps(PLATE))
+    recording = tmp_path / "run.h5"
+    run_summary(prostm, "--as-fast-as-possible", "--array", array, "--seconds", 1, "--record", recording)
+    with h5py.File(recording) as h5:
+        assert json.loads(h5.attrs["settings"])["pipeline"]["array"] == array
+
+
 def test_threaded_and_stepped_runs_record_the_same(prostm, tmp_path):
     files = [tmp_path / "threaded.h5", tmp_path / "stepped.h5"]
     run_summary(prostm, "--as-fast-as-possible", "--record", files[0])
@@ -255,6 +264,15 @@ def test_the_power_of_many_paths_is_shared(prostm, tmp_path):
     assert f"at most {150 / paths:.1f} % of full scale's pressure" in told
 
 
+PLATE = {
+    "format": "prostm-array/1",
+    "name": "plate",
+    "frequency_hz": 40000,
+    "radius_mm": 4.5,
+    "directivity": "omni",
+    "amplitude_pa_m": 3.4,
+    "transducers_mm": [[10 * x, 10 * y, 0] for x in range(-8, 8) for y in range(-8, 8)],
+}
 FOCI = {
     "format": "prostm-foci/1",
     "foci": [
@@ -265,12 +283,10 @@ FOCI = {
 
 
 @pytest.mark.parametrize("array", ["usx", "autd3", "plate.json"])
-@pytest.mark.parametrize("solver", ["superposition", "ibp", "gs-pat", "eigenvector", "lm"])
+@pytest.mark.parametrize("solver", ["superposition", "ibp", "gs-pat", "weighted", "eigenvector", "lm"])
 def test_solve(prostm, tmp_path, array, solver):
     (tmp_path / "foci.json").write_text(json.dumps(FOCI))
-    plate = {"format": "prostm-array/1", "name": "plate", "frequency_hz": 40000, "radius_mm": 4.5, "directivity": "omni",
-             "amplitude_pa_m": 3.4, "transducers_mm": [[10 * x, 10 * y, 0] for x in range(-8, 8) for y in range(-8, 8)]}
-    (tmp_path / "plate.json").write_text(json.dumps(plate))
+    (tmp_path / "plate.json").write_text(json.dumps(PLATE))
     out = prostm("solve", "foci.json", "--array", array, "--solver", solver, "--json", "-").stdout
     result = json.loads(out)
     assert all(0 <= amplitude <= 1 for amplitude, _ in result["drives"])
@@ -278,7 +294,7 @@ def test_solve(prostm, tmp_path, array, solver):
     # one factor for both: together they reach what was asked for
     asked = np.array([800, 400])
     assert asked @ result["reached_pa"] == pytest.approx(result["level"] * asked @ asked)
-    if solver == "lm":
+    if solver in ("weighted", "lm"):
         assert result["reached_pa"] == pytest.approx([800, 400], rel=1e-3)
     assert prostm("solve", "foci.json", "--array", array, "--solver", solver, "--json", "-").stdout == out
 
