@@ -198,7 +198,7 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
 def test_run_plays_any_array(prostm, tmp_path, array):
     (tmp_path / "plate.json").write_text(json.dumps(PLATE))
     recording = tmp_path / "run.h5"
-    run_summary(prostm, "--as-fast-as-possible", "--array", array, "--seconds", 1, "--record", recording)
+    run_summary(prostm, "--as-fast-as-possible", "--array", array, "--record", recording)
     with h5py.File(recording) as h5:
         assert json.loads(h5.attrs["settings"])["pipeline"]["array"] == array
 
