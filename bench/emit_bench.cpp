@@ -45,6 +45,16 @@ void make_plan(Random& random, std::vector<Vec3>& centres, double drift, LiftedP
   }
 }
 
+/// Four foci at such places.
+void make_foci(Random& random, std::vector<Vec3>& centres, double drift, LiftedPlan& plan) {
+  plan.foci.clear();
+  ++plan.id;
+  for (Vec3& centre : centres) {
+    centre += drift * Vec3(random.normal(), random.normal(), 0.0);
+    plan.foci.push_back({centre, 0.6});
+  }
+}
+
 EmitSettings emit_settings() {
   EmitSettings settings;
   settings.foci = kFoci;
@@ -59,18 +69,19 @@ std::vector<Vec3> centres() {
 }
 
 /// Cost of fill() [µs], of blocks with a new plan and of the others.
-void measure_fill(Distribution& without, Distribution& with) {
-  PathEmitter emitter(emit_settings(), kRate);
+template <class MakePlan>
+void measure_fill(Method method, const MakePlan& make, Distribution& without, Distribution& with) {
+  const auto emitter = make_emitter(method, emit_settings(), kRate);
   std::vector<FocusSample> block(kBlock * kFoci);
   Random random(1);
   std::vector<Vec3> places = centres();
   std::int64_t first = 0;
   for (int plan = 0; plan < 2000; ++plan) {
-    make_plan(random, places, 2e-3, emitter.draft());
-    emitter.submit();
+    make(random, places, 2e-3, emitter->draft());
+    emitter->submit();
     for (int k = 0; k < kBlocksPerPlan; ++k) {
       const StageTimer timer;
-      emitter.fill(first, block);
+      emitter->fill(first, block);
       (k == 0 ? with : without).add(1e6 * timer.seconds());
       first += static_cast<std::int64_t>(kBlock);
     }
@@ -104,10 +115,13 @@ DeviceStats stream(unsigned busy) {
 
 /// Cost of a block of 40 samples of 4 focal points.
 void add_fill_rows(std::vector<Row>& rows) {
-  Distribution steady, with_plan;  // [µs]
-  measure_fill(steady, with_plan);
+  Distribution steady, with_plan, foci;  // [µs]
+  measure_fill(Method::ProStm, make_plan, steady, with_plan);
+  // foci take a plan over in whichever block has a zero
+  measure_fill(Method::Am, make_foci, foci, foci);
   rows.push_back({"fill", "us", steady.summary(), "", 0.0});
   rows.push_back({"fill with a new plan", "us", with_plan.summary(), "", 0.0});
+  rows.push_back({"fill, am, new plans among them", "us", foci.summary(), "", 0.0});
 }
 
 /// How many of the 10,000 blocks of ten seconds come late or not at all.
