@@ -8,8 +8,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "acoustics/transducer.hpp"
 #include "core/random.hpp"
 #include "core/units.hpp"
+#include "emit/envelope.hpp"
 #include "emit/focus_emitter.hpp"
 #include "emit/path_emitter.hpp"
 #include "support/heap_guard.hpp"
@@ -314,6 +316,21 @@ TEST(SimulatedArray, HalfTheFocusGivesHalfTheRadiationPressureThroughTheModulati
   EXPECT_NEAR(half.first / full.first, 0.5, 1e-4);
   EXPECT_NEAR(half.second / full.second, 0.5, 1e-4);
   EXPECT_NEAR(full.first / full.second, 0.5, 1e-4);  // of sine-magnitude
+}
+
+TEST(SimulatedArray, AtAZeroOfTheModulationTransducersStillRingAsTheirMemorySays) {
+  const TransducerSettings transducer;
+  const double tau_turns = time_constant(transducer) * 200.0;
+  for (const char* name : {"sine-magnitude", "raised-cosine"}) {
+    const Waveform waveform = waveform_from_name(name);
+    TransducerDynamics dynamics(transducer, 1);
+    for (int k = 0; k <= 400; ++k) {
+      const std::complex<double> drive = envelope(waveform, k % 200 / 200.0);
+      dynamics.step(std::span(&drive, 1));
+    }
+    const double rings = std::abs(dynamics.output()[0]), x = kPi * tau_turns;  // (B6)
+    EXPECT_NEAR(rings, waveform == Waveform::SineMagnitude ? x : 2.0 * x * x, 0.15 * rings) << name;
+  }
 }
 
 TEST(SimulatedArray, HalfTheTargetGivesHalfTheRadiationPressure) {
