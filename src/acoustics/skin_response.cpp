@@ -52,6 +52,7 @@ void SkinResponse::make_radii() {
   bessel_.resize(static_cast<Eigen::Index>(index.size()), count);
   for (const auto& [square, row] : index) {
     const double radius = patch_.cell * std::sqrt(square);
+    // POSIX's j0: std::cyl_bessel_j raises floating-point exceptions, which tests trap
     for (Eigen::Index m = 0; m < count; ++m) {
       bessel_(row, m) = j0(kWaveNumberStep * static_cast<double>(m + 1) * radius);
     }

@@ -1,7 +1,8 @@
-/// What a response of the skin costs.
+/// What the experiments share, and what a response of the skin costs.
+#include "skin/experiments.hpp"
+
 #include "core/random.hpp"
 #include "core/stage_timer.hpp"
-#include "skin/experiments.hpp"
 #include "skin/stimuli.hpp"
 
 namespace prostm::bench {
