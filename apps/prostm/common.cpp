@@ -55,6 +55,11 @@ void check_outputs(const CommonOptions& options) {
   if (!options.figure.empty()) check_figure(options.figure);
 }
 
+FocusMethod solver_of(const std::string& name) {
+  if (const auto method = focus_method_from_name(name)) return *method;
+  throw InputError("--solver " + name + " is unknown; it must be one of " + focus_method_names());
+}
+
 std::string settings_json(PipelineSettings settings) {
   return settings_to_json(groups_of(settings));
 }

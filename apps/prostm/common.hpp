@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "acoustics/focus_solver.hpp"
 #include "core/distribution.hpp"
 #include "io/settings_file.hpp"
 #include "options.hpp"
@@ -21,6 +22,9 @@ PipelineSettings make_settings(const CommonOptions& options,
 
 /// Tries the files that the results are to go to, before the work. @throws InputError.
 void check_outputs(const CommonOptions& options);
+
+/// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
+FocusMethod solver_of(const std::string& name);
 
 /// All settings as {"pipeline": {…}, "plan": {…}, …}.
 std::string settings_json(PipelineSettings settings);

@@ -96,6 +96,9 @@ void add_plan(CLI::App& app, int& status) {
       "--figure", o->common.figure,
       "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
       "presets (.png or .svg)");
+  command->add_option(
+      "--array", o->array,
+      "plan with the width that the focus of usx, autd3 or an array file has there");
   command->add_option("--beside", o->beside, "draw these digitised panels beside ours (JSON)");
   command->footer(
       "Example:\n  prostm plan palm.npy --cell-mm 5 --preset paper --figure palm.png --json "
@@ -141,6 +144,36 @@ void add_solve(CLI::App& app, int& status) {
   command->callback([o, &status] { status = solve_command(*o); });
 }
 
+void add_field(CLI::App& app, int& status) {
+  auto* command = app.add_subcommand("field", "what an array puts on the skin by a plan");
+  auto o = std::make_shared<FieldOptionsGiven>();
+  command->add_option("plan", o->plan, "a plan of prostm plan --json");
+  command->add_flag("--widths", o->widths,
+                    "instead: how wide a focus of the array is, by height, offset and tilt");
+  command->add_option("--field", o->target,
+                      "the field that was planned, to compare with (.json, .npy, .png or .h5)");
+  command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
+  command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
+  command->add_option("--array", o->array, "usx, autd3, or an array file (.json)")
+      ->capture_default_str();
+  command
+      ->add_option("--solver", o->solver, "superposition, ibp, gs-pat, weighted, eigenvector or lm")
+      ->capture_default_str();
+  command->add_option("--full-scale-pa", o->full_scale_pa,
+                      "acoustic pressure of intensity 1, rms; 0: the most that the array can hold "
+                      "over the whole loop");
+  command->add_flag("--memoryless", o->memoryless, "transducers that follow their drives at once");
+  command->add_option("--settings", o->common.settings_file,
+                      "settings of any stage, a TOML file (docs/files.md)");
+  command->add_option("--figure", o->common.figure,
+                      "target, envelope, mean and difference (.png or .svg)");
+  command->add_option("--json", o->common.json, "write the result as JSON; - is standard output");
+  command->footer(
+      "Example:\n  prostm field palm.plan.json --field palm.npy --cell-mm 5 --array autd3 --figure "
+      "palm.field.png");
+  command->callback([o, &status] { status = field_command(*o); });
+}
+
 void add_devices(CLI::App& app, int& status) {
   auto* command =
       app.add_subcommand("devices", "what can be driven from here, and why not, for each kind");
@@ -153,7 +186,6 @@ void add_devices(CLI::App& app, int& status) {
 /// Commands of the design that do not exist yet answer with a sentence, not with a usage error.
 void add_unbuilt(CLI::App& app) {
   const std::map<std::string, std::string> commands = {
-      {"field", "the physical field of a plan"},
       {"stim", "the stimuli of earlier studies"},
       {"play", "play a plan, field or samples"},
       {"study", "the perceptual study"},
@@ -180,6 +212,7 @@ int main(int argc, char** argv) {
   add_capture(app, status);
   add_bench(app, status);
   add_solve(app, status);
+  add_field(app, status);
   add_devices(app, status);
   add_unbuilt(app);
   try {

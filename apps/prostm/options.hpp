@@ -35,6 +35,7 @@ struct PlanOptionsGiven {
   std::optional<double> cell_mm;
   int frame = 0;
   std::string beside;  ///< digitised figure to draw beside the panels
+  std::string array;   ///< whose focus on the skin is the plan's σ; empty: the setting is
 };
 
 struct CaptureOptionsGiven {
@@ -58,6 +59,19 @@ struct SolveOptionsGiven {
   std::string json;
 };
 
+struct FieldOptionsGiven {
+  CommonOptions common;  ///< settings file, JSON and figure
+  std::string plan;
+  std::string target;  ///< the field that was planned; empty: no target
+  std::optional<double> cell_mm;
+  int frame = 0;
+  std::string array = "usx";
+  std::string solver = "gs-pat";
+  double full_scale_pa = 0.0;
+  bool memoryless = false;
+  bool widths = false;  ///< of a focus, instead of the field of a plan
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument.
 int run_command(const RunOptionsGiven& options);
@@ -65,6 +79,7 @@ int plan_command(const PlanOptionsGiven& options);
 int capture_command(const CaptureOptionsGiven& options);
 int bench_command(const BenchOptionsGiven& options);
 int solve_command(const SolveOptionsGiven& options);
+int field_command(const FieldOptionsGiven& options);
 int devices_command(const std::string& json);
 
 }  // namespace prostm::app

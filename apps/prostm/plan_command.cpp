@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acoustics/focus_width.hpp"
 #include "am/am_planner.hpp"
 #include "common.hpp"
 #include "core/file.hpp"
@@ -10,11 +11,13 @@
 #include "core/random.hpp"
 #include "emit/emitter.hpp"
 #include "figure/figures.hpp"
+#include "io/array_file.hpp"
 #include "io/digitised_figure.hpp"
 #include "io/field_file.hpp"
 #include "io/plan_file.hpp"
 #include "plan/planner.hpp"
 #include "plan/quasi_static.hpp"
+#include "score/physical.hpp"
 #include "score/score.hpp"
 
 namespace prostm::app {
@@ -206,11 +209,30 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   write_file(json, plan_to_json(r.plan, target, extras, settings_json(settings)));
 }
 
+/// σ of the array's focus at the middle of the pressure on the skin, and as the skin lies there;
+/// `otherwise` where there is no pressure.
+double sigma_on_skin(const std::string& array, const TargetField& target, double otherwise) {
+  const SkinSurface skin = skin_surface(target);
+  Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < skin.cell.size(); ++i) {
+    const double p = target.pressure[skin.cell[i]];
+    middle += p * skin.points.p_D[i];
+    normal += p * skin.points.normal[i];
+    sum += p;
+  }
+  if (sum <= 0.0 || normal.norm() < 1e-3 * sum) return otherwise;
+  normal.normalize();
+  const Medium air;
+  const PackedArray packed(array_from_name(array), air);
+  return focus_width(packed, air, middle / sum, normal, normal.unitOrthogonal()).sigma();
+}
+
 }  // namespace
 
 int plan_command(const PlanOptionsGiven& given) {
   check_outputs(given.common);
-  const PipelineSettings settings = make_settings(given.common, std::nullopt);
+  PipelineSettings settings = make_settings(given.common, std::nullopt);
   const PlanSettings& s = settings.plan;
   if (!given.beside.empty() && given.common.figure.empty())
     throw InputError("--beside needs --figure to draw in");
@@ -220,6 +242,9 @@ int plan_command(const PlanOptionsGiven& given) {
   file_options.cell_mm = given.cell_mm;
   file_options.frame = given.frame;
   const TargetField target = read_field(given.field, file_options);
+  if (!given.array.empty()) {
+    settings.plan.sigma = settings.am.sigma = sigma_on_skin(given.array, target, settings.sigma());
+  }
 
   const Result r = plan_and_score(target, settings, !given.common.figure.empty());
   if (r.status == PlanStatus::InvalidTarget) {
@@ -245,6 +270,10 @@ int plan_command(const PlanOptionsGiven& given) {
       print_paths(out, r.plan, r.stats);
     }
     print_metrics(out, r.metrics, r.controls);
+    if (!given.array.empty()) {
+      fmt::print(out, "  focus of {} on the skin: sigma {:.2f} mm\n", given.array,
+                 1e3 * settings.sigma());
+    }
     if (!target.weight.empty()) {
       fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights",
                  weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law()));

@@ -1,30 +1,20 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 
 #include "acoustics/focus_solver.hpp"
 #include "acoustics/propagation.hpp"
 #include "common.hpp"
 #include "core/file.hpp"
-#include "core/input_error.hpp"
 #include "io/array_file.hpp"
 #include "io/foci_file.hpp"
 
 namespace prostm::app {
-namespace {
-
-FocusMethod method_of(const std::string& name) {
-  if (const auto method = focus_method_from_name(name)) return *method;
-  throw InputError("--solver " + name + " is unknown; it must be one of " + focus_method_names());
-}
-
-}  // namespace
 
 int solve_command(const SolveOptionsGiven& options) {
   const TransducerArray array = array_from_name(options.array);
   FocusSettings settings;
-  settings.method = method_of(options.solver);
+  settings.method = solver_of(options.solver);
   if (!options.json.empty()) check_writable(options.json);
   const FociFile foci = read_foci(options.foci);
 

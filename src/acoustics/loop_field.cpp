@@ -80,6 +80,21 @@ void check(const PackedArray& packed, const LoopDrives& drives, const SurfacePoi
   }
 }
 
+/// v of (A20) for one set of drives, or p of (A1) without normals.
+Eigen::VectorXcf field_of(const PackedArray& packed, std::span<const Vec3> points,
+                          std::span<const Vec3> normals, const Eigen::VectorXcf& drives) {
+  const PackedMatrix right = packed_from(drives, packed.stride());
+  std::vector<float> re(packed.stride()), im(re.size()), z_re(right.cols()), z_im(z_re.size());
+  Eigen::VectorXcf out(static_cast<Eigen::Index>(points.size()));
+  for (std::size_t m = 0; m < points.size(); ++m) {
+    propagation_rows(packed, points.subspan(m, 1),
+                     normals.empty() ? normals : normals.subspan(m, 1), re.data(), im.data());
+    complex_product({re.data(), im.data(), 1, packed.stride()}, right, 0, z_re.data(), z_im.data());
+    out[static_cast<Eigen::Index>(m)] = {z_re[0], z_im[0]};
+  }
+  return out;
+}
+
 }  // namespace
 
 void validate(const SurfacePoints& surface, const TransducerArray& array) {
@@ -112,14 +127,16 @@ void validate(const SurfacePoints& surface, const TransducerArray& array) {
 
 Eigen::VectorXcf acoustic_pressure(const PackedArray& packed, std::span<const Vec3> points,
                                    const Eigen::VectorXcf& drives) {
-  const PackedMatrix right = packed_from(drives, packed.stride());
-  std::vector<float> re(packed.stride()), im(re.size()), z_re(right.cols()), z_im(z_re.size());
-  Eigen::VectorXcf out(static_cast<Eigen::Index>(points.size()));
-  for (std::size_t m = 0; m < points.size(); ++m) {
-    propagation_rows(packed, points.subspan(m, 1), {}, re.data(), im.data());
-    complex_product({re.data(), im.data(), 1, packed.stride()}, right, 0, z_re.data(), z_im.data());
-    out[static_cast<Eigen::Index>(m)] = {z_re[0], z_im[0]};
-  }
+  return field_of(packed, points, {}, drives);
+}
+
+std::vector<float> radiation_pressure(const PackedArray& packed, const Medium& medium,
+                                      const SurfacePoints& surface,
+                                      const Eigen::VectorXcf& drives) {
+  const Eigen::VectorXcf v = field_of(packed, surface.p_D, surface.normal, drives);
+  const float unit = static_cast<float>(radiation_pressure(1.0, medium));
+  std::vector<float> out;
+  for (const std::complex<float>& value : v) out.push_back(unit * std::norm(value));
   return out;
 }
 

@@ -26,6 +26,11 @@ void validate(const SurfacePoints& surface, const TransducerArray& array);
 Eigen::VectorXcf acoustic_pressure(const PackedArray& packed, std::span<const Vec3> points,
                                    const Eigen::VectorXcf& drives);
 
+/// Radiation pressure [Pa] on a surface for one set of drives, (A20).
+/// @pre as for acoustic_pressure(), validate(surface, array) passes.
+std::vector<float> radiation_pressure(const PackedArray& packed, const Medium& medium,
+                                      const SurfacePoints& surface, const Eigen::VectorXcf& drives);
+
 /// Mean radiation pressure [Pa] over the loop at each point, (A20) with (A21): Σ |(G L)_m|² instead
 /// of the mean of |(G a_k)_m|²; within 1e-5 of the largest for drives of focal points. The same for
 /// any number of threads.

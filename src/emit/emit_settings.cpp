@@ -11,6 +11,7 @@ void EmitSettings::visit(SettingsVisitor& v) {
   v.field("full_scale_pressure", full_scale_pressure);
   v.field("silent_below", silent_below);
   v.field("power_limit", power_limit);
+  v.field("tilt_bound", tilt_bound);
   v.field("switch_at", switch_at);
   v.field("fade_time", fade_time);
   v.field("stall_time", stall_time);
@@ -27,6 +28,7 @@ void validate(const EmitSettings& settings, double sample_rate) {
                   "Pa");
   require_between("silent_below", settings.silent_below, 0.0, 0.999);
   require_between("power_limit", settings.power_limit, 1e-6, double{kMaxPaths});
+  require_between("tilt_bound", settings.tilt_bound, 1.0, 4.0);
   require_between("fade_time", settings.fade_time, 1e-6, 0.02, "s");
   require_between("stall_time", settings.stall_time, 1e-3, kMaxWait, "s");
   require_between("stall_fade_time", settings.stall_fade_time, 1e-6, 0.04, "s");

@@ -20,6 +20,8 @@ struct EmitSettings {
   double full_scale_pressure = 0.0;  ///< that maps to intensity 1 [unit of the target]; > 0
   double silent_below = 0.01;        ///< share of full scale under which a sample is silent
   double power_limit = 4.0;          ///< largest Σ intensity² over simultaneous focal points, > 0
+  double tilt_bound = 1.0;  ///< largest factor of pressure that makes up for tilted skin, (E8),
+                            ///< 1 to 4; 1: none
   std::string switch_at = "lap";  ///< take-over at each path's lap end, or "now": at the next block
   double fade_time = 1e-3;    ///< of a fade down or up over the full range [s], at least 40 samples
   double stall_time = 0.100;  ///< without a new plan for this long, the output fades [s]

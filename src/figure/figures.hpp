@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plan/planner.hpp"
+#include "score/physical.hpp"
 #include "score/score.hpp"
 #include "target/target_field.hpp"
 
@@ -62,6 +63,20 @@ struct GalleryPage {
 /// written.
 void draw_gallery(const GalleryPage& page, const std::vector<GalleryField>& fields,
                   const std::string& path);
+
+/// What an array puts on the skin, and what it should.
+struct PhysicalFigure {
+  const TargetField* raster = nullptr;  ///< the skin; the target where there is one
+  const Plan* plan = nullptr;
+  const PhysicalField* field = nullptr;
+  const Metrics* metrics = nullptr;  ///< of the envelope; without them there is no target to show
+  std::string title;
+};
+/// Panels beside each other: the target, the envelope and the mean, each over its own largest
+/// value, and the envelope, scaled as it is scored, minus the target, over the target's largest;
+/// without a target only the two in the middle. With axes in mm and the paths. @throws InputError
+/// when the file cannot be written.
+void draw_physical(const PhysicalFigure& figure, const std::string& path);
 
 /// One line of a chart; x ascends.
 struct ChartSeries {

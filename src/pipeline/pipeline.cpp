@@ -6,6 +6,7 @@
 
 #include "core/require.hpp"
 #include "core/stage_timer.hpp"
+#include "emit/compensation.hpp"
 
 namespace prostm {
 namespace {
@@ -113,6 +114,7 @@ void PlanStage::run(const ContactFrame& contact, PlanFrame& out) noexcept {
   } else {
     LiftedPlan& lifted = emitter_->draft();
     lift(out.plan, contact.target, lifted);
+    compensate_tilt(lifted, contact.target, emit_settings_.tilt_bound);
     lifted.id = out.id;
     lifted.hand_time = contact.arrival;
     for (const LiftedPath& path : lifted.paths)

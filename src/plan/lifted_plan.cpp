@@ -80,6 +80,7 @@ void subdivide(const FocalPath& path, LiftedPath& out) {
 
 void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out) {
   out.speed = path.speed;
+  out.patch = path.patch;
   subdivide(path, out);
   measure(out);
 
@@ -115,7 +116,7 @@ void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept 
     assert(patch < frame.patches.size());
     const TargetField& field = frame.patches[patch];
     const Vec3 p(focus.position.x(), focus.position.y(), height_at(field, focus.position));
-    out.foci.push_back({field.X_DP * p, focus.pressure});
+    out.foci.push_back({field.X_DP * p, focus.pressure, focus.patch});
   }
 }
 

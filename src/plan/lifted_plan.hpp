@@ -22,12 +22,14 @@ struct LiftedPath {
   boost::container::static_vector<double, kMaxLiftedPoints> s;  ///< [m], s[0] = 0
   double length = 0.0;                                          ///< on the skin [m]
   double speed = 0.0;                                           ///< [m/s]
+  int patch = 0;  ///< index of the target patch that it lies on
 };
 
 /// A focal point that stands still.
 struct LiftedFocus {
   Vec3 p_D = Vec3::Zero();  ///< [m]
   double pressure = 0.0;    ///< rendered at the peak of the modulation, unit of the target
+  int patch = 0;            ///< index of the target patch that it lies on
 };
 
 /// Paths, or foci: one of the two is empty.

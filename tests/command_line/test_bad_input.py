@@ -145,7 +145,6 @@ def test_bad_recordings(refuses, tmp_path, fault):
         (["run", "--realtime", "--stepped"], []),
         (["run", "--hend", "x"], ["--hend"]),
         (["capture", "--frames", "0", "--out", "x.h5"], ["frames"]),
-        (["field", "plan.json"], ["not built yet"]),
         (["report", "--out", "x"], ["not built yet"]),
         (["dance"], []),
         ([], []),
@@ -266,3 +265,29 @@ def test_solve_refuses_what_it_does_not_know(refuses, tmp_path):
     (tmp_path / "array.json").write_text('{"format": "prostm-array/1", "name": "none", "frequency_hz": 40000,'
                                          ' "radius_mm": 4.5, "directivity": "omni", "amplitude_pa_m": 3, "transducers_mm": []}')
     refuses("solve", good, "--array", tmp_path / "array.json", words=["0 transducers"])
+
+
+def test_field_refuses_what_has_no_field(refuses, prostm, tmp_path):
+    field, plan = tmp_path / "field.json", tmp_path / "plan.json"
+    field.write_text(changed())
+    prostm("plan", field, "--json", plan)
+    refuses("field", words=["plan", "--widths"])
+    refuses("field", plan, "--widths", words=["--widths"])
+    refuses("field", field, words=["prostm-plan/1"])
+    refuses("field", tmp_path / "none.json", words=["none.json"])
+    refuses("field", plan, "--array", "disc", words=["disc", "usx", "autd3"])
+    refuses("field", plan, "--solver", "magic", words=["magic", "gs-pat"])
+    refuses("field", plan, "--full-scale-pa", "-3", words=["full_scale_pa", "-3"])
+    refuses("field", plan, "--cell-mm", "5", words=["--field"])
+    refuses("field", plan, "--figure", tmp_path / "f.gif", words=[".png"])
+    other = tmp_path / "other.json"
+    other.write_text(changed(cell_mm=4))
+    refuses("field", plan, "--field", other, words=["other.json", "not the field of the plan"])
+    empty = json.loads(plan.read_text())
+    empty["paths"] = []
+    other.write_text(json.dumps(empty))
+    refuses("field", other, words=["no path"])
+    near = json.loads(plan.read_text())
+    near["plane"]["origin_mm"] = [0, 0, 1]
+    other.write_text(json.dumps(near))
+    refuses("field", other, words=["on transducer"])

@@ -42,7 +42,7 @@ def without_times(plan):
 
 
 def test_help_has_an_example(prostm):
-    for command in ["run", "plan", "capture", "bench", "devices"]:
+    for command in ["run", "plan", "capture", "bench", "field", "devices"]:
         done = prostm(command, "--help")
         assert "Example:" in done.stdout
 
@@ -375,3 +375,54 @@ def test_bench_has_the_row_of_am(prostm, tmp_path):
     assert row["name"].endswith("am total") and row["baseline_p50"] == 4000 and row["ratio"] > 1
     done = prostm("bench", recording, "--repeats", "1", "--method", "am")
     assert "updates a second" in done.stdout and "textbook" not in done.stdout
+
+
+def test_field_of_a_plan(prostm, field, tmp_path):
+    prostm("plan", field, "--json", "plan.json")
+    out = prostm("field", "plan.json", "--field", field, "--figure", "f.png", "--json", "-").stdout
+    result = json.loads(out)
+    assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
+    envelope, mean = np.array(result["envelope_pa"]), np.array(result["mean_pa"])
+    assert envelope.shape == mean.shape == (24, 30)
+    assert envelope.max() == result["envelope"]["largest_pa"] and mean.max() == result["mean"]["largest_pa"]
+    assert np.all(envelope >= mean) and envelope.max() > 3 * mean.max() > 0
+    # it is the target's shape, and that of both foci, in both
+    assert result["envelope"]["metrics"]["correlation"] > 0.6 and result["mean"]["metrics"]["skill_8"] > 0.4
+    assert set(result["envelope"]["metrics"]) == {"rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill"}
+    assert result["drives"]["short_samples"] == 0 and result["drives"]["largest_drive"] == pytest.approx(1)
+    assert 0 < result["drives"]["mean_power"] < 256
+    assert 0.5 < result["foci"]["mean_offset_mm"] < 2.5  # transducers lag
+    assert max(map(abs, result["loop"]["stretch"])) < 0.05
+    assert prostm("field", "plan.json", "--field", field, "--json", "-").stdout == out
+
+    quick = json.loads(prostm("field", "plan.json", "--memoryless", "--array", "autd3", "--json", "-").stdout)
+    assert quick["foci"]["mean_offset_mm"] < 0.8 * result["foci"]["mean_offset_mm"]
+    assert quick["envelope"]["metrics"] is None and quick["array"] == "autd3"
+    told = prostm("field", "plan.json", "--field", field).stdout
+    assert "which judges nothing" in told and "worst side lobe" in told
+
+    prostm("plan", field, "--method", "am", "--json", "foci.json")
+    am = json.loads(prostm("field", "foci.json", "--field", field, "--figure", "am.png", "--json", "-").stdout)
+    assert am["loop"]["laps"] == [0, 0, 0, 0] and am["loop"]["duration_ms"] == 5
+    assert am["envelope"]["metrics"]["correlation"] > 0.2
+
+
+def test_a_louder_full_scale_is_short(prostm, field):
+    prostm("plan", field, "--json", "plan.json")
+    quiet, loud = (json.loads(prostm("field", "plan.json", "--full-scale-pa", p, "--json", "-").stdout) for p in (100, 1e5))
+    assert quiet["drives"]["short_samples"] == 0 and quiet["drives"]["full_scale_pa"] == 100
+    assert loud["drives"]["short_samples"] == loud["loop"]["samples"]
+    twice = json.loads(prostm("field", "plan.json", "--full-scale-pa", 200, "--json", "-").stdout)
+    np.testing.assert_allclose(np.array(twice["mean_pa"]), 4 * np.array(quiet["mean_pa"]), rtol=1e-3, atol=1e-6)
+
+
+def test_widths_of_a_focus(prostm, field, tmp_path):
+    rows = json.loads(prostm("field", "--widths", "--json", "-").stdout)["widths"]
+    width = {(r["height_mm"], r["offset_mm"], round(r["tilt_deg"])): r for r in rows}
+    assert len(width) == 5 * 4 * 4
+    assert width[200, 0, 0]["sigma_along_mm"] == pytest.approx(4.3, abs=0.3)
+    assert width[300, 0, 0]["sigma_along_mm"] == pytest.approx(6.1, abs=0.3)
+    assert "sigma" in prostm("field", "--widths", "--array", "autd3").stdout
+    plan = plan_of(prostm, field, "--array", "usx")
+    assert 4e-3 < plan["settings"]["plan"]["sigma"] < 8e-3
+    assert "focus of usx on the skin" in prostm("plan", field, "--array", "usx").stdout

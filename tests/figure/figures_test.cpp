@@ -220,5 +220,30 @@ TEST(NumberText, HasAMinusSignAndNoNegativeZero) {
   EXPECT_EQ(figure::number_text(-1e-9, 3), "0.000");
 }
 
+TEST(DrawPhysical, ShowsEveryPartOfWhatItIsGiven) {
+  const test::TemporaryFolder folder;
+  const test::PlannedExample example;
+  PhysicalField field;
+  field.envelope = field.mean = example.figure.reconstruction;
+  field.largest = 40.0;
+  field.largest_mean = 40.0;
+  PhysicalFigure figure{&example.target, &example.plan, &field, &example.figure.metrics, "Skin"};
+  const auto bytes = [&] {
+    draw_physical(figure, folder.file("a.png"));
+    return read_file(folder.file("a.png"));
+  };
+  const std::string whole = bytes();
+  EXPECT_TRUE(whole == bytes());
+  figure.metrics = nullptr;  // no target: two panels
+  EXPECT_LT(bytes().size(), whole.size());
+  figure.metrics = &example.figure.metrics;
+  field.envelope[400] += 20.0;
+  EXPECT_FALSE(bytes() == whole);
+  field.envelope = example.figure.reconstruction;
+  field.mean.assign(field.mean.size(), 0.0);
+  EXPECT_FALSE(bytes() == whole);
+  test::input_error([&] { draw_physical(figure, folder.file("a.gif")); });
+}
+
 }  // namespace
 }  // namespace prostm

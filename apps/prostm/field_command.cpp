@@ -1,0 +1,251 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "acoustics/focus_width.hpp"
+#include "common.hpp"
+#include "core/file.hpp"
+#include "core/input_error.hpp"
+#include "core/units.hpp"
+#include "emit/compensation.hpp"
+#include "figure/figures.hpp"
+#include "io/array_file.hpp"
+#include "io/field_file.hpp"
+#include "io/physical_file.hpp"
+#include "io/plan_file.hpp"
+#include "score/physical.hpp"
+
+namespace prostm::app {
+namespace {
+
+/// The plan, and the raster that its field is computed on: the target's where one is given.
+struct Input {
+  Plan plan;
+  TargetField raster;
+  bool has_target = false;
+};
+
+Input read_input(const FieldOptionsGiven& given) {
+  PlanFile file = plan_from_json(read_file(given.plan), given.plan);
+  if (file.plan.empty()) {
+    throw InputError(given.plan + ": has no path and no focus, so there is no field to compute");
+  }
+  const auto first = [](const auto& part) { return part.patch == 0; };
+  if (!std::all_of(file.plan.paths.begin(), file.plan.paths.end(), first) ||
+      !std::all_of(file.plan.foci.begin(), file.plan.foci.end(), first)) {
+    throw InputError(given.plan +
+                     ": has a path or focus on a second hand; the field is computed for plans of "
+                     "one");
+  }
+  Input input{file.plan, file.raster, false};
+  if (given.target.empty()) {
+    if (given.cell_mm) throw InputError("--cell-mm needs the --field that it is of");
+    return input;
+  }
+  FieldFileOptions options;
+  options.cell_mm = given.cell_mm;
+  options.frame = given.frame;
+  input.raster = read_field(given.target, options);
+  input.has_target = true;
+  if (input.raster.rows != file.raster.rows || input.raster.cols != file.raster.cols ||
+      std::abs(input.raster.cell - file.raster.cell) > 1e-6 ||
+      (input.raster.origin - file.raster.origin).norm() > 1e-6 ||
+      !input.raster.X_DP.isApprox(file.raster.X_DP, 1e-6)) {
+    throw InputError(fmt::format(
+        "{}: is not the field of the plan {}: rasters and planes differ ({} × {} cells of {:g} mm, "
+        "the plan's {} × {} of {:g} mm)",
+        given.target, given.plan, input.raster.rows, input.raster.cols, 1e3 * input.raster.cell,
+        file.raster.rows, file.raster.cols, 1e3 * file.raster.cell));
+  }
+  return input;
+}
+
+/// The plan on the skin as one loop. Without a full scale in the settings the plan's own largest
+/// pressure is it.
+LoopSamples make_loop(const Input& input, EmitSettings& settings, double sample_rate) {
+  TargetFrame frame;
+  frame.patches.push_back(input.raster);
+  LiftedPlan lifted;
+  lift(input.plan, frame, lifted);
+  compensate_tilt(lifted, frame, settings.tilt_bound);
+  if (settings.full_scale_pressure <= 0.0) {
+    for (const LiftedPath& path : lifted.paths) {
+      for (const double p : path.pressure) {
+        settings.full_scale_pressure = std::max(settings.full_scale_pressure, p);
+      }
+    }
+    for (const LiftedFocus& focus : lifted.foci) {
+      settings.full_scale_pressure = std::max(settings.full_scale_pressure, focus.pressure);
+    }
+  }
+  if (settings.full_scale_pressure <= 0.0) {
+    throw InputError("the plan has no pressure anywhere, so there is no field to compute");
+  }
+  settings.foci =
+      std::max(settings.foci, static_cast<int>(lifted.paths.size() + lifted.foci.size()));
+  return loop_samples(lifted, settings, sample_rate);
+}
+
+void print_row(std::FILE* out, const char* name, const Metrics& m) {
+  fmt::print(out, "  {:<44} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n", name,
+             m.rmse, m.correlation, m.coverage, m.skill_0, m.skill_8, m.overlap, m.spill);
+}
+
+void print_loop(std::FILE* out, const PhysicalReport& r) {
+  fmt::print(out, "{} on {}, {}: a loop of {:.1f} ms, periods within {:.1f} % of the plan's\n",
+             r.plan, r.array->name, r.solver, 1e3 * r.loop->samples / r.loop->sample_rate,
+             100.0 * r.loop->largest_stretch());
+}
+
+void print_levels(std::FILE* out, const PhysicalReport& r) {
+  const TransducerArray& array = *r.array;
+  const double low = std::pow(array.amplitude_low / array.amplitude, 2),
+               high = std::pow(array.amplitude_high / array.amplitude, 2);
+  fmt::print(
+      out, "  radiation pressure on the skin: up to {:.3g} Pa at some time, {:.3g} Pa in the mean",
+      r.field->largest, r.field->largest_mean);
+  if (high > low) {
+    fmt::print(out, " (sources differ on the array: {:.2f} to {:.2f} times that)", low, high);
+  }
+  fmt::print(out, "\n  worst side lobe, more than {:.0f} mm beside the paths: {:.1f} % of it\n",
+             1e3 * kBesidePaths, 100.0 * r.field->side_lobe);
+  fmt::print(
+      out,
+      "  focal points: {:.1f} mm off in the mean, {:.1f} mm at worst; {:.2f} of the acoustic "
+      "pressure asked for, {:.2f} to {:.2f}\n",
+      1e3 * r.focus.mean_offset, 1e3 * r.focus.worst_offset, r.focus.mean_level,
+      r.focus.least_level, r.focus.most_level);
+}
+
+void print_power(std::FILE* out, const PhysicalReport& r) {
+  const LoopDriveResult& d = *r.drives;
+  const auto transducers = static_cast<double>(r.array->position.size());
+  fmt::print(
+      out,
+      "  drives: intensity 1 is {:.0f} Pa rms; the largest is {:.2f}, mean Σ|q|² {:.1f} of "
+      "{:.0f} transducers, {:.1f} % at full drive; {} of {} samples short of what they ask\n",
+      d.full_scale_pa, d.largest_drive, d.mean_power, transducers, 100.0 * d.full_share,
+      d.short_samples, r.loop->samples);
+  if (d.merged > 0) {
+    fmt::print(out, "  {} times two focal points were at one place: the stronger one was played\n",
+               d.merged);
+  }
+}
+
+void print_scores(std::FILE* out, const PhysicalReport& r) {
+  if (r.envelope_metrics == nullptr) {
+    fmt::print(out, "  no target to compare with; --field FILE gives one\n");
+    return;
+  }
+  fmt::print(out, "  {:<44} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "against the target",
+             "RMSE", "corr", "cover", "S_0", "S_8.5", "overlap", "spill");
+  print_row(out, "envelope: the largest over the loop", *r.envelope_metrics);
+  print_row(out, "mean over the loop, which judges nothing", *r.mean_metrics);
+  fmt::print(out,
+             "  (skin feels movement, not the mean: by the mean a flat field can beat any path)\n");
+}
+
+/// How wide and strong one focus is at 100 to 300 mm, up to 90 mm beside the axis, tilted by up to
+/// 60°.
+void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
+  constexpr std::array kHeights{0.10, 0.15, 0.20, 0.25, 0.30};  // [m]
+  constexpr std::array kOffsets{0.0, 0.03, 0.06, 0.09};         // [m]
+  constexpr std::array kTiltsDegrees{0.0, 20.0, 40.0, 60.0};
+  std::array<double, kTiltsDegrees.size()> tilts{};
+  for (std::size_t i = 0; i < tilts.size(); ++i) tilts[i] = kTiltsDegrees[i] * kPi / 180.0;
+  const Medium air;
+  const std::vector<FocusWidthEntry> table =
+      focus_width_table(PackedArray(array, air), air, kHeights, kOffsets, tilts);
+
+  std::FILE* out = prose(given.common.json);
+  fmt::print(out, "one focus of {} at full drive; sigma along the tilt × across it\n", array.name);
+  fmt::print(out, "  {:>9} {:>9} {:>6} {:>17} {:>14}\n", "height mm", "beside mm", "tilt °",
+             "sigma mm", "pressure Pa");
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const FocusWidthEntry& e : table) {
+    const double degrees = e.tilt * 180.0 / kPi;
+    fmt::print(out, "  {:>9.0f} {:>9.0f} {:>6.0f} {:>8.2f} × {:>6.2f} {:>14.1f}\n", 1e3 * e.height,
+               1e3 * e.offset, degrees, 1e3 * e.width.along, 1e3 * e.width.across, e.width.level);
+    rows.push_back({{"height_mm", 1e3 * e.height},
+                    {"offset_mm", 1e3 * e.offset},
+                    {"tilt_deg", degrees},
+                    {"sigma_along_mm", 1e3 * e.width.along},
+                    {"sigma_across_mm", 1e3 * e.width.across},
+                    {"pressure_pa", e.width.level}});
+  }
+  write_json(given.common.json,
+             {{"format", "prostm-widths/1"}, {"array", array.name}, {"widths", rows}});
+}
+
+}  // namespace
+
+int field_command(const FieldOptionsGiven& given) {
+  check_outputs(given.common);
+  const TransducerArray array = array_from_name(given.array);
+  if (given.widths != given.plan.empty()) {
+    throw InputError("prostm field needs a plan, or --widths without one");
+  }
+  if (given.widths) {
+    tell_widths(array, given);
+    return 0;
+  }
+  LoopDriveSettings settings;
+  settings.focus.method = solver_of(given.solver);
+  settings.full_scale_pa = given.full_scale_pa;
+  settings.transducer.memoryless = given.memoryless;
+  PipelineSettings all = make_settings(given.common, std::nullopt);
+  const Input input = read_input(given);
+  const LoopSamples loop = make_loop(input, all.emit, all.simulated_array.sample_rate);
+
+  const Medium air;
+  const Interrupt interrupt;
+  LoopDriveResult drives;
+  {
+    Progress progress("solving");
+    const auto go_on = [&](int done, int of) {
+      progress.show(done, of, "samples");
+      return !interrupt.requested();
+    };
+    if (!loop_drives(array, air, loop, settings, go_on, drives)) return kInterrupted;
+  }
+  const PackedArray packed(array, air);
+  WorkerPool pool(all.threads);
+  const PhysicalField field = physical_field(packed, air, input.raster, loop, drives, pool);
+  if (interrupt.requested()) return kInterrupted;
+
+  PhysicalReport report;
+  report.plan = given.plan;
+  report.solver = given.solver;
+  report.array = &array;
+  report.raster = &input.raster;
+  report.loop = &loop;
+  report.drives = &drives;
+  report.field = &field;
+  report.focus = focus_accuracy(packed, loop, drives, input.raster.X_DP);
+  report.settings_json = settings_json(all);
+  Metrics envelope, mean;
+  if (input.has_target) {
+    const double coverage =
+        score_plan(input.raster, input.plan, 0, all.plan.sigma, all.plan.gain_law()).coverage;
+    envelope = score_physical(input.raster, field.envelope, coverage);
+    mean = score_physical(input.raster, field.mean, coverage);
+    report.envelope_metrics = &envelope;
+    report.mean_metrics = &mean;
+  }
+  if (!given.common.json.empty()) write_file(given.common.json, physical_to_json(report));
+  if (!given.common.figure.empty()) {
+    draw_physical({&input.raster, &input.plan, &field, report.envelope_metrics,
+                   fmt::format("{} on {}", given.plan, array.name)},
+                  given.common.figure);
+  }
+  std::FILE* out = prose(given.common.json);
+  print_loop(out, report);
+  print_levels(out, report);
+  print_power(out, report);
+  print_scores(out, report);
+  return 0;
+}
+
+}  // namespace prostm::app
