@@ -11,7 +11,6 @@
 #include "core/units.hpp"
 #include "emit/compensation.hpp"
 #include "figure/figures.hpp"
-#include "io/array_file.hpp"
 #include "io/field_file.hpp"
 #include "io/physical_file.hpp"
 #include "io/plan_file.hpp"
@@ -183,7 +182,8 @@ void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
 
 int field_command(const FieldOptionsGiven& given) {
   check_outputs(given.common);
-  const TransducerArray array = array_from_name(given.array);
+  PipelineSettings all = make_settings(given.common, std::nullopt);
+  const TransducerArray& array = all.transducers;
   if (given.widths != given.plan.empty()) {
     throw InputError("prostm field needs a plan, or --widths without one");
   }
@@ -195,7 +195,6 @@ int field_command(const FieldOptionsGiven& given) {
   settings.focus.method = solver_of(given.solver);
   settings.full_scale_pa = given.full_scale_pa;
   settings.transducer.memoryless = given.memoryless;
-  PipelineSettings all = make_settings(given.common, std::nullopt);
   const Input input = read_input(given);
   const LoopSamples loop = make_loop(input, all.emit, all.simulated_array.sample_rate);
 

@@ -97,7 +97,7 @@ void add_plan(CLI::App& app, int& status) {
       "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
       "presets (.png or .svg)");
   command->add_option(
-      "--array", o->array,
+      "--array", o->common.array,
       "plan with the width that the focus of usx, autd3 or an array file has there");
   command->add_option("--beside", o->beside, "draw these digitised panels beside ours (JSON)");
   command->footer(
@@ -154,8 +154,7 @@ void add_field(CLI::App& app, int& status) {
                       "the field that was planned, to compare with (.json, .npy, .png or .h5)");
   command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
   command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
-  command->add_option("--array", o->array, "usx, autd3, or an array file (.json)")
-      ->capture_default_str();
+  command->add_option("--array", o->common.array, "usx (default), autd3, or an array file (.json)");
   command
       ->add_option("--solver", o->solver, "superposition, ibp, gs-pat, weighted, eigenvector or lm")
       ->capture_default_str();

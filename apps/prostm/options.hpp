@@ -35,7 +35,6 @@ struct PlanOptionsGiven {
   std::optional<double> cell_mm;
   int frame = 0;
   std::string beside;  ///< digitised figure to draw beside the panels
-  std::string array;   ///< whose focus on the skin is the plan's σ; empty: the setting is
 };
 
 struct CaptureOptionsGiven {
@@ -60,13 +59,12 @@ struct SolveOptionsGiven {
 };
 
 struct FieldOptionsGiven {
-  CommonOptions common;  ///< settings file, JSON and figure
+  CommonOptions common;  ///< settings file, array, JSON and figure
   std::string plan;
   std::string target;  ///< the field that was planned; empty: no target
   std::optional<double> cell_mm;
   int frame = 0;
-  std::string array = "usx";
-  std::string solver = "gs-pat";
+  std::string solver = "weighted";
   double full_scale_pa = 0.0;
   bool memoryless = false;
   bool widths = false;  ///< of a focus, instead of the field of a plan

@@ -11,7 +11,6 @@
 #include "core/random.hpp"
 #include "emit/emitter.hpp"
 #include "figure/figures.hpp"
-#include "io/array_file.hpp"
 #include "io/digitised_figure.hpp"
 #include "io/field_file.hpp"
 #include "io/plan_file.hpp"
@@ -211,7 +210,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
 
 /// σ of the array's focus at the middle of the pressure on the skin, and as the skin lies there;
 /// `otherwise` where there is no pressure.
-double sigma_on_skin(const std::string& array, const TargetField& target, double otherwise) {
+double sigma_on_skin(const TransducerArray& array, const TargetField& target, double otherwise) {
   const SkinSurface skin = skin_surface(target);
   Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
   double sum = 0.0;
@@ -224,7 +223,7 @@ double sigma_on_skin(const std::string& array, const TargetField& target, double
   if (sum <= 0.0 || normal.norm() < 1e-3 * sum) return otherwise;
   normal.normalize();
   const Medium air;
-  const PackedArray packed(array_from_name(array), air);
+  const PackedArray packed(array, air);
   return focus_width(packed, air, middle / sum, normal, normal.unitOrthogonal()).sigma();
 }
 
@@ -242,8 +241,9 @@ int plan_command(const PlanOptionsGiven& given) {
   file_options.cell_mm = given.cell_mm;
   file_options.frame = given.frame;
   const TargetField target = read_field(given.field, file_options);
-  if (!given.array.empty()) {
-    settings.plan.sigma = settings.am.sigma = sigma_on_skin(given.array, target, settings.sigma());
+  if (given.common.array) {
+    settings.plan.sigma = settings.am.sigma =
+        sigma_on_skin(settings.transducers, target, settings.sigma());
   }
 
   const Result r = plan_and_score(target, settings, !given.common.figure.empty());
@@ -270,8 +270,8 @@ int plan_command(const PlanOptionsGiven& given) {
       print_paths(out, r.plan, r.stats);
     }
     print_metrics(out, r.metrics, r.controls);
-    if (!given.array.empty()) {
-      fmt::print(out, "  focus of {} on the skin: sigma {:.2f} mm\n", given.array,
+    if (given.common.array) {
+      fmt::print(out, "  focus of {} on the skin: sigma {:.2f} mm\n", settings.transducers.name,
                  1e3 * settings.sigma());
     }
     if (!target.weight.empty()) {
