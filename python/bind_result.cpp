@@ -56,8 +56,8 @@ double PlanResult::sigma() const {
 }
 
 GainLaw PlanResult::gain_law() const {
-  const auto* plan = std::get_if<PlanSettings>(&settings);
-  return plan != nullptr ? plan->gain_law() : GainLaw{};  // foci have no γ
+  const auto* of_paths = std::get_if<PlanSettings>(&settings);
+  return of_paths != nullptr ? of_paths->gain_law() : GainLaw{};  // foci have no γ
 }
 
 const TargetField& PlanResult::patch(int index) const {

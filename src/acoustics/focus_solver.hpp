@@ -27,7 +27,7 @@ std::optional<FocusMethod> focus_method_from_name(std::string_view name);
 std::string focus_method_names();
 
 struct FocusSettings {
-  FocusMethod method = FocusMethod::GsPat;
+  FocusMethod method = FocusMethod::Weighted;
   int iterations =
       20;  ///< of Ibp, GsPat and Weighted; LevenbergMarquardt may take 50 times as many
   double regularisation = 1.0;  ///< γ of Eigenvector, 0..1

@@ -31,6 +31,8 @@ const TransducerArray& validated(const TransducerArray& array, const LiveFocusSe
   }
   require_between("iterations", settings.iterations, 1, 1000);
   if (settings.phase_levels != 0) require_between("phase_levels", settings.phase_levels, 2, 65536);
+  require_between("full_scale", settings.full_scale, 0.0, 1e6, "Pa");
+  require_between("bound", settings.bound, 1.0, 100.0);
   return array;
 }
 
@@ -87,7 +89,7 @@ LiveFocusSolver::LiveFocusSolver(const TransducerArray& array, const Medium& med
       correlation_(kMaxLiveFoci, kMaxLiveFoci),
       magnitude_(1, kMaxLiveFoci),
       x_(1, kMaxLiveFoci),
-      scratch_(2, kMaxLiveFoci) {
+      scratch_(1, kMaxLiveFoci) {
   reset();
 }
 
@@ -124,7 +126,10 @@ bool LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
   const solving::Magnitudes all = solving::magnitudes(g_, count_);
   if (all.squares <= 0.0F) return false;
   place_[count_] = place;
-  wanted_[count_] = focus.amplitude;
+  const auto full_scale = static_cast<float>(settings_.full_scale);
+  const auto bound = static_cast<float>(settings_.bound);
+  wanted_[count_] =
+      focus.amplitude * (full_scale > 0.0F ? std::min(full_scale / all.sum, bound) : 1.0F);
   alone_[count_] = all.sum;
   squares_[count_] = all.squares;
   ++count_;

@@ -19,12 +19,19 @@ struct LiveFocusSettings {
   int iterations = 1;    ///< per sample; for GsPat, which learns little from the last one, 20
   int phase_levels = 0;  ///< steps of a turn that phases of drives are rounded to; 0: any phase
   bool warm = true;      ///< a sample begins with the phases and weights of the one before
+  /// Acoustic pressure (rms) of amplitude 1 [Pa], wherever the focal point is; 0: what the whole
+  /// array makes there alone.
+  double full_scale = 0.0;
+  /// Where the array makes less than full_scale alone, its share of it is taken as at least
+  /// 1/bound, so that a far focal point does not take what nearer ones need.
+  double bound = 2.0;
 };
 
 /// A focal point in one sample.
 struct LiveFocus {
   Eigen::Vector3f p_D = Eigen::Vector3f::Zero();  ///< [m]
-  /// Acoustic pressure wanted over that which the whole array makes there alone, 0..1.
+  /// Acoustic pressure wanted over full_scale, or over that which the whole array makes there
+  /// alone, 0..1.
   float amplitude = 0.0F;
 };
 
@@ -35,7 +42,8 @@ struct LiveFocus {
 class LiveFocusSolver {
  public:
   /// @throws std::invalid_argument with a sentence: an array that is not valid, a method that does
-  /// not run live, iterations not in 1 to 1000, phase_levels neither 0 nor 2 to 65536.
+  /// not run live, iterations not in 1 to 1000, phase_levels neither 0 nor 2 to 65536, full_scale
+  /// not in 0 to 1e6 Pa, bound not in 1 to 100.
   LiveFocusSolver(const TransducerArray& array, const Medium& medium,
                   const LiveFocusSettings& settings);
 
@@ -45,8 +53,8 @@ class LiveFocusSolver {
 
   /// q in row 0, a column for each transducer.
   const ComplexRows& drive() const { return drive_; }
-  /// What is reached of the amplitudes together, Σ a |y| / Σ a², y over what each focal point has
-  /// alone; at most 1, and 0 without focal points. Phases are not rounded yet.
+  /// What is reached of the amplitudes together, Σ a |y| / Σ a², a and y over what each focal point
+  /// has alone; at most 1, and 0 without focal points. Phases are not rounded yet.
   float level() const { return level_; }
   /// Focal points of the last sample that were left out: a position or an amplitude that is out of
   /// range or not finite, behind the array, nearer than kNearestPoint to a transducer, or beyond
@@ -81,7 +89,7 @@ class LiveFocusSolver {
   // of those that count
   std::size_t count_ = 0;
   std::array<std::size_t, kMaxLiveFoci> place_{};
-  std::array<float, kMaxLiveFoci> wanted_{}, alone_{}, squares_{};  // a; Σ|G| [Pa]; Σ|G|²
+  std::array<float, kMaxLiveFoci> wanted_{}, alone_{}, squares_{};  // over alone; Σ|G| [Pa]; Σ|G|²
   std::array<Complex, kMaxLiveFoci> c_{}, y_{};
   float level_ = 0.0F;
   int unreached_ = 0;

@@ -172,44 +172,58 @@ void Correlate(const ComplexRows& g, std::size_t foci, ComplexRows& out) {
   }
 }
 
-/// R x at the focal points from i on.
-HWY_INLINE C at_foci(const ComplexRows& r, std::size_t foci, const ComplexRows& x, std::size_t row,
-                     std::size_t i) {
+/// y = R x at the focal points of kBlocks vectors from i on: so many sums do not wait for each
+/// other.
+template <std::size_t kBlocks>
+HWY_INLINE void apply_blocks(const ComplexRows& r, std::size_t foci, const ComplexRows& x,
+                             std::size_t i, ComplexRows& y) {
   const D d;
   const V zero = hn::Zero(d);
-  C even{zero, zero}, odd{zero, zero};
+  const std::size_t lanes = hn::Lanes(d);
+  C even[kBlocks], odd[kBlocks];
+  for (std::size_t b = 0; b < kBlocks; ++b) even[b] = odd[b] = {zero, zero};
+  const auto add = [&](std::size_t j, C* sum) HWY_ATTR {
+    const C factor{hn::Set(d, x.re(0)[j]), hn::Set(d, x.im(0)[j])};
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      sum[b] = add_product(load(r, j, i + b * lanes), factor, sum[b]);
+    }
+  };
   std::size_t j = 0;
   for (; j + 2 <= foci; j += 2) {
-    const C a{hn::Set(d, x.re(row)[j]), hn::Set(d, x.im(row)[j])};
-    const C b{hn::Set(d, x.re(row)[j + 1]), hn::Set(d, x.im(row)[j + 1])};
-    even = add_product(load(r, j, i), a, even);
-    odd = add_product(load(r, j + 1, i), b, odd);
+    add(j, even);
+    add(j + 1, odd);
   }
-  if (j < foci) {
-    even = add_product(load(r, j, i), {hn::Set(d, x.re(row)[j]), hn::Set(d, x.im(row)[j])}, even);
+  if (j < foci) add(j, even);
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    store({hn::Add(even[b].re, odd[b].re), hn::Add(even[b].im, odd[b].im)}, y, 0, i + b * lanes);
   }
-  return {hn::Add(even.re, odd.re), hn::Add(even.im, odd.im)};
+}
+
+/// Row 0 of y = R x, x in row 0.
+HWY_INLINE void apply(const ComplexRows& r, std::size_t foci, const ComplexRows& x,
+                      ComplexRows& y) {
+  const std::size_t lanes = hn::Lanes(D());
+  std::size_t i = 0;
+  for (; i + lanes < foci; i += 2 * lanes) apply_blocks<2>(r, foci, x, i, y);
+  for (; i < foci; i += lanes) apply_blocks<1>(r, foci, x, i, y);
 }
 
 void IterateGsPat(const ComplexRows& r, const ComplexRows& a, std::size_t foci, int iterations,
                   ComplexRows& x, ComplexRows& scratch) {
   const D d;
-  const auto with_magnitudes = [&](const C& z, std::size_t i) HWY_ATTR {
-    const V scale = over_magnitude(hn::Load(d, a.re(0) + i), z);
-    return C{hn::Mul(z.re, scale), hn::Mul(z.im, scale)};
+  const auto set_magnitudes = [&](const ComplexRows& from, ComplexRows& to) HWY_ATTR {
+    for (std::size_t i = 0; i < foci; i += hn::Lanes(d)) {
+      const C z = load(from, 0, i);
+      const V scale = over_magnitude(hn::Load(d, a.re(0) + i), z);
+      store({hn::Mul(z.re, scale), hn::Mul(z.im, scale)}, to, 0, i);
+    }
   };
   for (int k = 0; k < iterations; ++k) {
-    for (std::size_t i = 0; i < foci; i += hn::Lanes(d)) {
-      store(with_magnitudes(at_foci(r, foci, x, 0, i), i), scratch, 0, i);
-    }
-    for (std::size_t i = 0; i < foci; i += hn::Lanes(d)) {
-      store(at_foci(r, foci, scratch, 0, i), scratch, 1, i);
-    }
-    for (std::size_t i = 0; i < foci; i += hn::Lanes(d)) store(load(scratch, 1, i), x, 0, i);
+    apply(r, foci, x, scratch);
+    set_magnitudes(scratch, scratch);
+    apply(r, foci, scratch, x);
   }
-  for (std::size_t i = 0; i < foci; i += hn::Lanes(d)) {
-    store(with_magnitudes(load(x, 0, i), i), x, 0, i);
-  }
+  set_magnitudes(x, x);
 }
 
 void PhaseGradients(const ComplexRows& g, std::span<const Complex> u, const ComplexRows& drive,

@@ -30,7 +30,7 @@ void propagate_drives(const ComplexRows& g, const ComplexRows& drive, std::span<
 void correlate(const ComplexRows& g, std::size_t foci, ComplexRows& out);
 
 /// (A13)'s iterations on x, M numbers in row 0, which are left with the magnitudes a.
-/// @param a in row 0's real parts. @param scratch two rows of M.
+/// @param a in row 0's real parts. @param scratch a row of M.
 void iterate_gs_pat(const ComplexRows& r, const ComplexRows& a, std::size_t foci, int iterations,
                     ComplexRows& x, ComplexRows& scratch);
 

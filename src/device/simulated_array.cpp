@@ -34,10 +34,25 @@ FocusMethod live_method(const std::string& name) {
   return *method;
 }
 
-ArrayOutputSettings output_settings(const SimulatedArraySettings& s, const TransducerArray& array) {
+/// What the whole array makes 200 mm over its origin [Pa, rms]: there an intensity of 1 is all that
+/// it has. 0 where that is behind it or on it.
+double full_scale_of(const TransducerArray& array, const Medium& medium) {
+  const Vec3 middle(0.0, 0.0, 0.2);
+  const Wave sound = wave(array, medium);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < array.position.size(); ++i) {
+    if ((array.position[i] - middle).norm() < kNearestPoint) return 0.0;
+    sum += std::abs(propagate(array, sound, i, middle));
+  }
+  return sum;
+}
+
+ArrayOutputSettings output_settings(const SimulatedArraySettings& s, const TransducerArray& array,
+                                    const Medium& medium) {
   ArrayOutputSettings out;
   out.solver.method = live_method(s.solver);
   out.solver.iterations = out.solver.method == FocusMethod::GsPat ? 20 : 1;
+  out.solver.full_scale = full_scale_of(array, medium);
   out.transducer.frequency = array.frequency;
   out.transducer.sample_rate = s.sample_rate;
   out.transducer.memoryless = s.memoryless;
@@ -371,7 +386,7 @@ std::int64_t SimulatedArray::samples() const {
 
 std::vector<std::complex<double>> SimulatedArray::output(std::int64_t first, std::int64_t n) const {
   const SimulatedArraySettings& s = impl_->settings;
-  ArrayOutput array(impl_->array, impl_->medium, output_settings(s, impl_->array));
+  ArrayOutput array(impl_->array, impl_->medium, output_settings(s, impl_->array, impl_->medium));
   const std::int64_t kept = std::max<std::int64_t>(0, samples() - impl_->history_samples);
   const std::int64_t begin = std::min(first, std::max(kept, first - kLeadIn));
   const std::vector<FocusSample> played = read_back(begin, first + n - begin);

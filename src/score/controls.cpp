@@ -49,27 +49,6 @@ Metrics flat_field(const TargetField& target, double maximum) {
   return score_field(target, std::vector<double>(target.size(), sum / cells * maximum), 0.0);
 }
 
-/// Circles about the centres of a weighted 4-means, at the mean pressure of what was clustered.
-Plan circles_at_mass_centres(const TargetField& target, double maximum, const GainLaw& gain,
-                             double length, std::uint64_t seed) {
-  planning::WeightedKMeans kmeans(target.size());
-  double sum = 0.0, cells = 0.0;
-  for_skin(target, maximum, [&](const Vec2& x, double p) {
-    if (p < kWeak) return;
-    kmeans.add(x, p);
-    sum += p;
-    cells += 1.0;
-  });
-  planning::Clusters clusters;
-  kmeans.run(kCircles, 100, seed, clusters);
-  Plan plan;
-  const double period = 1.0 / gain.draw_rate;
-  for (const Vec2& centre : clusters.centre) {
-    plan.paths.push_back(circle(centre, length, period, gain.of(period) * sum / cells * maximum));
-  }
-  return plan;
-}
-
 /// Up to four circles about random skin cells that do not cross.
 Plan random_circles(const TargetField& target, double maximum, double length, double period,
                     Random& random) {
@@ -200,13 +179,35 @@ Metrics median(const std::vector<Metrics>& draws) {
 
 }  // namespace
 
+Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
+                             std::uint64_t seed) {
+  Plan plan;
+  const double maximum = max_pressure(target);
+  if (!(maximum > 0.0)) return plan;
+  planning::WeightedKMeans kmeans(target.size());
+  double sum = 0.0, cells = 0.0;
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    if (p < kWeak) return;
+    kmeans.add(x, p);
+    sum += p;
+    cells += 1.0;
+  });
+  planning::Clusters clusters;
+  kmeans.run(kCircles, 100, seed, clusters);
+  const double period = 1.0 / gain.draw_rate;
+  for (const Vec2& centre : clusters.centre) {
+    plan.paths.push_back(circle(centre, length, period, gain.of(period) * sum / cells * maximum));
+  }
+  return plan;
+}
+
 std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
                               double length, const Plan* other, std::uint64_t seed) {
   const double maximum = max_pressure(target);
   if (!(maximum > 0.0)) return {};
   std::vector<Control> table;
   table.push_back({"flat field", flat_field(target, maximum)});
-  const Plan circles = circles_at_mass_centres(target, maximum, gain, length, seed);
+  const Plan circles = circles_at_mass_centres(target, gain, length, seed);
   table.push_back(
       {"four circles at the mass centres", score_plan(target, circles, 0, sigma, gain)});
 

@@ -45,6 +45,11 @@ struct Control {
   Metrics metrics;
 };
 
+/// The circles of the control "four circles at the mass centres": as they stand in `controls`; none
+/// for a target without pressure.
+Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
+                             std::uint64_t seed);
+
 /// The controls of a plan on a target, which must lose to it; empty for a target without pressure:
 /// - "flat field": the mean p* everywhere (no path, so coverage 0);
 /// - "four circles at the mass centres": one about each centre of a weighted 4-means, each `length`

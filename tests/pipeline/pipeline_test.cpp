@@ -91,8 +91,8 @@ Keeper run_keeping(const char* method, RunMode mode, RunSummary& summary,
 class EachMethod : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Pipeline, EachMethod, testing::Values("pro-stm", "am"),
-                         [](const auto& info) {
-                           return std::string(info.param) == "am" ? "am" : "pro_stm";
+                         [](const auto& method) {
+                           return std::string(method.param) == "am" ? "am" : "pro_stm";
                          });
 
 TEST_P(EachMethod, ThreadedRunEqualsSteppedRunToTheBit) {
