@@ -36,8 +36,12 @@ PipelineSettings make_settings(const CommonOptions& options,
   PipelineSettings settings;
   if (!options.settings_file.empty()) read_settings(options.settings_file, groups_of(settings));
   if (scene) settings.scene = *scene;
-  if (options.array) settings.array = *options.array;
+  if (options.array) {
+    settings.array = *options.array;
+    settings.array_width = true;
+  }
   settings.transducers = array_from_name(settings.array);
+  settings.set_widths();
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = *options.method;
   if (options.preset) settings.plan.preset = *options.preset;

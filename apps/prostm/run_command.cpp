@@ -85,8 +85,8 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   for (std::size_t patch = 0; patch < contact.target.patches.size(); ++patch) {
     const TargetField& target = contact.target.patches[patch];
     std::vector<double> field(target.size());
-    quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, settings.sigma(),
-                       settings.plan.gain_law(), field);
+    quasi_static_field(observer.plan().plan, static_cast<int>(patch), target,
+                       settings.sigma_on(target), settings.plan.gain_law(), field);
     figure.targets.push_back(target);
     figure.reconstructions.push_back(std::move(field));
   }

@@ -1,11 +1,15 @@
 #include "pipeline/settings.hpp"
 
+#include "acoustics/focus_width.hpp"
+#include "core/units.hpp"
+
 namespace prostm {
 
 void PipelineSettings::visit(SettingsVisitor& v) {
   v.field("scene", scene);
   v.field("method", method);
   v.field("array", array);
+  v.field("array_width", array_width);
   v.field("tracker", tracker);
   v.field("fluid_rate", fluid_rate);
   v.field("fluid_steps_per_plan", fluid_steps_per_plan);
@@ -20,6 +24,24 @@ int PipelineSettings::steps_per_plan() const {
 
 double PipelineSettings::sigma() const {
   return method_from_name(method) == Method::Am ? am.sigma : plan.sigma;
+}
+
+double PipelineSettings::sigma_on(const TargetField& target) const {
+  return method_from_name(method) == Method::Am ? am.sigma : plan.sigma_on(target);
+}
+
+void PipelineSettings::set_widths() {
+  plan.widths = FocusWidths();
+  if (!array_width) return;
+  FocusWidths& out = plan.widths;
+  out.height = {0.10, 0.15, 0.20, 0.25, 0.30, 0.40};
+  out.offset = {0.0, 0.03, 0.06, 0.09};
+  out.tilt = {0.0, kPi / 9.0, kPi / 4.5, kPi / 3.0};
+  const PackedArray packed(transducers, Medium{});
+  for (const FocusWidthEntry& entry :
+       focus_width_table(packed, Medium{}, out.height, out.offset, out.tilt)) {
+    out.sigma.push_back(entry.width.sigma());
+  }
 }
 
 std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(

@@ -21,10 +21,12 @@ struct PipelineSettings {
   std::string scene = "one-plume";  ///< see scene_from_name
   std::string method = "pro-stm";   ///< see method_from_name
   std::string array = "usx";        ///< what `transducers` are, by name: usx, autd3 or a file
-  std::string tracker = "centre";   ///< pose of the tracker: "centre", or "ultraleap-kit"
-  double fluid_rate = 50.0;         ///< fluid steps a second [Hz]
-  int fluid_steps_per_plan = 0;     ///< a plan every so many fluid steps; 0: as the method asks, 2
-                                    ///< (25 Hz) of pro-stm, 1 (50 Hz) of am
+  /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
+  bool array_width = false;
+  std::string tracker = "centre";  ///< pose of the tracker: "centre", or "ultraleap-kit"
+  double fluid_rate = 50.0;        ///< fluid steps a second [Hz]
+  int fluid_steps_per_plan = 0;    ///< a plan every so many fluid steps; 0: as the method asks, 2
+                                   ///< (25 Hz) of pro-stm, 1 (50 Hz) of am
   bool side_view = false;  ///< keep a picture of the box from the side with every plan update
   int threads = 2;         ///< of the fluid, the stepping thread included
 
@@ -44,6 +46,11 @@ struct PipelineSettings {
 
   /// The fall-off of a focal point that the method counts on [m].
   double sigma() const;
+  /// The same for one target.
+  double sigma_on(const TargetField& target) const;
+
+  /// Makes `plan.widths` what `array_width` asks for: (A22) of `transducers`, or none.
+  void set_widths();
 
   /// The fields of this struct that belong to no stage.
   void visit(SettingsVisitor& v);

@@ -221,6 +221,10 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
                             double budget, Plan& plan, PlanStats& stats) {
   StageTimer timer;
   is_flat_ = is_constant(target.height);
+  if (!settings_.widths.empty()) {
+    settings_.sigma = settings_.widths.on(target);
+    search_.set_sigma(kMmPerMetre * settings_.sigma);
+  }
   search_.set_target(target, maximum, budget);
   stats.init += timer.lap();
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/settings.hpp"
+#include "plan/focus_widths.hpp"
 #include "plan/gain.hpp"
 #include "plan/plan.hpp"
 #include "target/target_field.hpp"
@@ -55,6 +56,11 @@ struct PlanSettings {
   int fit_kicks = 8;             ///< tries to lay one or two paths anew
   double budget = 0.0;  ///< time after which `best` tries nothing more [s]; 0: only the counts
                         ///< bind, and the same input gives the same plan
+  FocusWidths widths;   ///< not a field in files. Of presets best and fast: σ of each target by
+                        ///< where it is and how it lies; without entries, `sigma`
+
+  /// σ that a target is planned with [m]. @pre the target is valid.
+  double sigma_on(const TargetField& target) const;
 
   /// L [m], the length of a path that is drawn draw_rate times a second, (P9a).
   double max_length() const { return speed / draw_rate; }

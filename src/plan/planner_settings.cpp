@@ -61,6 +61,12 @@ void PlanSettings::visit(SettingsVisitor& v) {
   v.field("budget", budget);
 }
 
+double PlanSettings::sigma_on(const TargetField& target) const {
+  const Preset kind = preset_from_name(preset);
+  const bool by_place = (kind == Preset::Best || kind == Preset::Fast) && !widths.empty();
+  return by_place ? widths.on(target) : sigma;
+}
+
 namespace planning {
 
 void check_settings(const PlanSettings& s) {
@@ -72,6 +78,7 @@ void check_settings(const PlanSettings& s) {
   require_between("draw_rate", s.draw_rate, 0.1, 10'000.0, "Hz");
   require_between("speed / draw_rate", s.max_length(), 0.01, 1.0, "m");
   require_between("sigma", s.sigma, 1e-4, 0.1, "m");
+  validate(s.widths);
   require_between("gain", s.gain, 0.01, 100.0);
   require_between("gain_exponent", s.gain_exponent, -2.0, 2.0);
   require_between("weight_pressure", s.weight_pressure, 0.0, 1000.0);

@@ -59,6 +59,11 @@ Search::Search(std::size_t max_cells, const FitSettings& fit, const SearchSettin
       descent_(std::min(max_cells, CellTiles::kMaxTiles), settings.samples, fit),
       random_(settings.seed) {}
 
+void Search::set_sigma(double sigma) {
+  FitSettings& fit = descent_.settings();
+  fit.reconstruction.sigma = fit.shape.spacing = static_cast<float>(sigma);
+}
+
 void Search::set_target(const TargetField& target, double maximum, double budget) {
   timer_.restart();
   budget_ = budget - std::min(kSpareShare * budget, kSpareTime);

@@ -43,6 +43,8 @@ class Search {
   /// Fits at most `paths` paths. @param continues whether best.loops are the paths of the plan
   /// before, to start from. @return evaluations used.
   int run(int paths, bool continues, Fit& best);
+  /// Of focal points, from the next target on [mm].
+  void set_sigma(double sigma);
   /// Lowers the cost of `fit` further on the fine cells, under the given bounds of length [mm].
   int finish(const std::array<float, kMaxPaths>& most_length, Fit& fit);
   /// Tells how long what follows finish() took, for the budgets to come [s].

@@ -200,7 +200,8 @@ def test_run_plays_any_array(prostm, tmp_path, array):
     recording = tmp_path / "run.h5"
     run_summary(prostm, "--as-fast-as-possible", "--array", array, "--record", recording)
     with h5py.File(recording) as h5:
-        assert json.loads(h5.attrs["settings"])["pipeline"]["array"] == array
+        pipeline = json.loads(h5.attrs["settings"])["pipeline"]
+        assert pipeline["array"] == array and pipeline["array_width"] is True
 
 
 def test_threaded_and_stepped_runs_record_the_same(prostm, tmp_path):
