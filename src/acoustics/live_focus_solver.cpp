@@ -23,6 +23,8 @@ constexpr float kMostWeight = 10.0F;    // in (A16), and its inverse
 constexpr double kDamping = 1e-2;       // in (A17), of the mean diagonal
 constexpr double kLeastDamping = 1e-9;  // where no phase changes anything
 
+static_assert(ComplexRows::kBlock == PackedArray::kRowBlock);  // rows of G are written in place
+
 const TransducerArray& validated(const TransducerArray& array, const LiveFocusSettings& settings) {
   validate(array);
   if (settings.method != FocusMethod::Weighted && settings.method != FocusMethod::Superposition &&

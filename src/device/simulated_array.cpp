@@ -387,7 +387,9 @@ std::int64_t SimulatedArray::samples() const {
 std::vector<std::complex<double>> SimulatedArray::output(std::int64_t first, std::int64_t n) const {
   const SimulatedArraySettings& s = impl_->settings;
   ArrayOutput array(impl_->array, impl_->medium, output_settings(s, impl_->array, impl_->medium));
-  const std::int64_t kept = std::max<std::int64_t>(0, samples() - impl_->history_samples);
+  // in real time the oldest of what is kept may be gone a moment later
+  const auto moment = static_cast<std::int64_t>(s.realtime ? 0.1 * s.sample_rate : 0.0);
+  const std::int64_t kept = std::max<std::int64_t>(0, samples() - impl_->history_samples + moment);
   const std::int64_t begin = std::min(first, std::max(kept, first - kLeadIn));
   const std::vector<FocusSample> played = read_back(begin, first + n - begin);
   const auto width = static_cast<std::size_t>(foci());
