@@ -48,7 +48,7 @@ void add_common(CLI::App& command, CommonOptions& o) {
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand) {
   add_common(command, common);
-  command.add_option("--scene", scene, "one-plume (default), or four-plumes");
+  command.add_option("--scene", scene, "one-plume (default), four-plumes, or still-air");
   command.add_option("--hand", hand, "a recording (.hands.jsonl, or Leap JSON), or scripted")
       ->capture_default_str();
   command.add_option("--grid", common.grid,

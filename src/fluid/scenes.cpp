@@ -16,8 +16,10 @@ Scene scene_from_name(const std::string& name) {
     }
     return scene;
   }
+  // ½ρv² of a palm at 0.65 m/s
+  if (name == "still-air") return {name, {}, 0.25, 0.0};
   throw std::invalid_argument("the scene \"" + name +
-                              "\" is unknown; it must be one-plume or four-plumes");
+                              "\" is unknown; it must be one-plume, four-plumes or still-air");
 }
 
 }  // namespace prostm

@@ -122,7 +122,7 @@ def test_bad_recordings(refuses, tmp_path, fault):
 @pytest.mark.parametrize(
     "args, words",
     [
-        (["run", "--scene", "five-plumes"], ["five-plumes", "one-plume", "four-plumes"]),
+        (["run", "--scene", "five-plumes"], ["five-plumes", "one-plume", "four-plumes", "still-air"]),
         (["run", "--device", "toaster"], ["toaster"]),
         (["run", "--device", "autd3"], ["not built yet"]),
         (["run", "--method", "fm"], ["fm", "pro-stm", "am"]),

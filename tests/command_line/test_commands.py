@@ -194,6 +194,11 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
         assert h5.attrs["scene"] == "one-plume"
 
 
+def test_in_still_air_the_hand_feels_its_own_movement(prostm):
+    still = run_summary(prostm, "--as-fast-as-possible", "--scene", "still-air")
+    assert still["fluid_steps"] == 400 and still["plans"] > 50
+
+
 @pytest.mark.parametrize("array", ["autd3", "plate.json"])
 def test_run_plays_any_array(prostm, tmp_path, array):
     (tmp_path / "plate.json").write_text(json.dumps(PLATE))

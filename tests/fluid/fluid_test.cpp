@@ -68,6 +68,7 @@ TEST(Fluid, RefusesSettingsOutOfBounds) {
   EXPECT_THROW(scene_from_name("two-plumes"), std::invalid_argument);
   EXPECT_EQ(scene_from_name("one-plume").jets.size(), 1u);
   EXPECT_EQ(scene_from_name("four-plumes").jets.size(), 4u);
+  EXPECT_TRUE(scene_from_name("still-air").jets.empty());
 }
 
 TEST(Fluid, RestStaysRest) {
