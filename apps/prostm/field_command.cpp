@@ -133,6 +133,23 @@ void print_power(std::FILE* out, const PhysicalReport& r) {
   }
 }
 
+void print_felt(std::FILE* out, const PhysicalReport& r) {
+  if (r.felt == nullptr) {
+    fmt::print(out,
+               "  what is felt is not computed for loops of more than 250 ms, or rasters of more "
+               "than 128 cells along an edge or cells of more than 20 mm\n");
+    return;
+  }
+  fmt::print(out,
+             "  felt: as {:.2f} µm rms at 250 Hz at the strongest place, {:.2f} µm in the whole",
+             1e6 * r.felt->largest, 1e6 * r.felt->intensity);
+  if (r.ghosts != nullptr) {
+    fmt::print(out, "; {} ghosts above half of that, the strongest {:.0f} % of it", r.ghosts->count,
+               100.0 * r.ghosts->largest);
+  }
+  fmt::print(out, "\n");
+}
+
 void print_scores(std::FILE* out, const PhysicalReport& r) {
   if (r.envelope_metrics == nullptr) {
     fmt::print(out, "  no target to compare with; --field FILE gives one\n");
@@ -141,6 +158,7 @@ void print_scores(std::FILE* out, const PhysicalReport& r) {
   fmt::print(out, "  {:<44} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "against the target",
              "RMSE", "corr", "cover", "S_0", "S_8.5", "overlap", "spill");
   print_row(out, "envelope: the largest over the loop", *r.envelope_metrics);
+  if (r.felt_metrics != nullptr) print_row(out, "felt: perceived intensity", *r.felt_metrics);
   print_row(out, "mean over the loop, which judges nothing", *r.mean_metrics);
   fmt::print(out,
              "  (skin feels movement, not the mean: by the mean a flat field can beat any path)\n");
@@ -224,7 +242,13 @@ int field_command(const FieldOptionsGiven& given) {
   report.field = &field;
   report.focus = focus_accuracy(packed, loop, drives, input.raster.X_DP);
   report.settings_json = settings_json(all);
-  Metrics envelope, mean;
+  FeltField felt;
+  if (is_felt(input.raster, loop)) {
+    felt = FeelingSkin(input.raster).feel(packed, air, input.raster, loop, drives, pool);
+    report.felt = &felt;
+  }
+  Metrics envelope, mean, of_felt;
+  Ghosts ghosts;
   if (input.has_target) {
     const double coverage =
         score_plan(input.raster, input.plan, 0, all.plan.sigma, all.plan.gain_law()).coverage;
@@ -232,6 +256,12 @@ int field_command(const FieldOptionsGiven& given) {
     mean = score_physical(input.raster, field.mean, coverage);
     report.envelope_metrics = &envelope;
     report.mean_metrics = &mean;
+    if (report.felt != nullptr) {
+      of_felt = score_physical(input.raster, felt.percept, coverage);
+      ghosts = ghosts_of(input.raster, felt.percept);
+      report.felt_metrics = &of_felt;
+      report.ghosts = &ghosts;
+    }
   }
   if (!given.common.json.empty()) write_file(given.common.json, physical_to_json(report));
   if (!given.common.figure.empty()) {
@@ -243,6 +273,7 @@ int field_command(const FieldOptionsGiven& given) {
   print_loop(out, report);
   print_levels(out, report);
   print_power(out, report);
+  print_felt(out, report);
   print_scores(out, report);
   return 0;
 }

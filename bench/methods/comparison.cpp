@@ -25,16 +25,16 @@ struct Means {
   std::array<Level, 3> level;  // by Equal
 
   void add(const Rendering& r, const Rendering& reference) {
-    skill_0.add(r.envelope.skill_0);
-    skill_8.add(r.envelope.skill_8);
-    overlap.add(r.envelope.overlap);
-    spill.add(r.envelope.spill);
-    felt_skill_8.add(r.felt.skill_8);
-    lack.add(1.0 - r.envelope.skill_8);
-    felt_lack.add(1.0 - r.felt.skill_8);
-    felt_correlation.add(r.felt.correlation);
-    felt_overlap.add(r.felt.overlap);
-    felt_spill.add(r.felt.spill);
+    skill_0.add(r.of_envelope.skill_0);
+    skill_8.add(r.of_envelope.skill_8);
+    overlap.add(r.of_envelope.overlap);
+    spill.add(r.of_envelope.spill);
+    felt_skill_8.add(r.of_felt.skill_8);
+    lack.add(1.0 - r.of_envelope.skill_8);
+    felt_lack.add(1.0 - r.of_felt.skill_8);
+    felt_correlation.add(r.of_felt.correlation);
+    felt_overlap.add(r.of_felt.overlap);
+    felt_spill.add(r.of_felt.spill);
     side_lobe.add(r.field.side_lobe);
     ghosts.add(r.ghosts.count);
     ghost.add(r.ghosts.largest);
@@ -44,9 +44,9 @@ struct Means {
       if (factor == 0.0) continue;
       out.pressure.add(factor * r.field.largest);
       out.lobe.add(factor * r.field.side_lobe * r.field.largest);
-      out.percept.add(1e6 * factor * r.largest_percept);
-      out.intensity.add(1e6 * factor * r.intensity);
-      out.ghost.add(1e6 * factor * r.ghosts.largest * r.largest_percept);
+      out.percept.add(1e6 * factor * r.felt.largest);
+      out.intensity.add(1e6 * factor * r.felt.intensity);
+      out.ghost.add(1e6 * factor * r.ghosts.largest * r.felt.largest);
     }
   }
 };
@@ -98,7 +98,7 @@ void print_levels(const std::array<Means, kWays.size()>& means) {
 }  // namespace
 
 double factor_for(Equal equal, const Rendering& rendering, const Rendering& reference) {
-  if (equal == Equal::Percept) return reference.largest_percept / rendering.largest_percept;
+  if (equal == Equal::Percept) return reference.felt.largest / rendering.felt.largest;
   if (rendering.mean_power == 0.0) return 0.0;
   return equal == Equal::Drive ? 1.0 : reference.mean_power / rendering.mean_power;
 }
@@ -151,8 +151,8 @@ void draw_ways(const std::string& path) {
     for (const Way way : kWays) {
       if (way == Way::Flat) continue;
       const Rendering r = renderer.render(way, target);
-      figure.maps.push_back(map(to_string(way) + ", pressure", r.field.envelope, r.envelope));
-      felt.push_back(map(to_string(way) + ", felt", r.percept, r.felt));
+      figure.maps.push_back(map(to_string(way) + ", pressure", r.field.envelope, r.of_envelope));
+      felt.push_back(map(to_string(way) + ", felt", r.felt.percept, r.of_felt));
     }
     figure.maps.insert(figure.maps.end(), felt.begin(), felt.end());
   }

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "acoustics/array.hpp"
-#include "acoustics/skin_response.hpp"
 #include "core/worker_pool.hpp"
-#include "score/physical.hpp"
+#include "score/felt.hpp"
 #include "score/score.hpp"
 #include "target/target_field.hpp"
 
@@ -22,22 +21,14 @@ inline constexpr std::array kWays = {Way::PaperValid, Way::Best,    Way::BestNar
                                      Way::Am,         Way::Circles, Way::Flat};
 std::string to_string(Way way);
 
-/// A strong place of the percept's map where nothing is to be felt.
-struct Ghosts {
-  int count = 0;         ///< local maxima above half of the map's largest value
-  double largest = 0.0;  ///< of all local maxima there, over the map's largest value
-};
-
 /// One way on one target, with the largest drive at 1; flat: with a pressure of 1 Pa. Radiation
 /// pressures [Pa] and percepts [m] go with the square of the drives.
 struct Rendering {
   Plan plan;
   double mean_power = 0.0;  ///< Σ |q|², mean over the loop; 0 of flat
   PhysicalField field;
-  std::vector<double> percept;  ///< √e, (S7), rows·cols [m]
-  double intensity = 0.0;       ///< √E, (S8) [m]
-  double largest_percept = 0.0;
-  Metrics envelope, felt;  ///< of field.envelope and of percept, against the target
+  FeltField felt;
+  Metrics of_envelope, of_felt;  ///< of field.envelope and of felt.percept, against the target
   Ghosts ghosts;
 };
 
@@ -54,8 +45,5 @@ class Renderer {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
-
-/// Local maxima of the map on skin farther than 10 mm from all with a target of 0.1 max or more.
-Ghosts ghosts_of(const TargetField& target, const std::vector<double>& percept);
 
 }  // namespace prostm::bench

@@ -31,7 +31,8 @@ struct Scene {
                             ///< side need not draw each other in [m/s]
 };
 
-/// "one-plume", "four-plumes", "still-air". @throws std::invalid_argument that lists the names for any other.
+/// "one-plume", "four-plumes", "still-air". @throws std::invalid_argument that lists the names for
+/// any other.
 Scene scene_from_name(const std::string& name);
 
 struct FluidSettings {

@@ -55,6 +55,25 @@ Json focus_json(const FocusAccuracy& focus) {
           {"most_level", focus.most_level}};
 }
 
+std::vector<double> in_micrometres(std::vector<double> values) {
+  for (double& value : values) value *= 1e6;
+  return values;
+}
+
+Json felt_json(const PhysicalReport& report) {
+  if (report.felt == nullptr) return nullptr;
+  Json felt = {{"largest_um", 1e6 * report.felt->largest},
+               {"intensity_um", 1e6 * report.felt->intensity},
+               {"metrics", metrics_or_null(report.felt_metrics)},
+               {"ghosts", nullptr},
+               {"strongest_ghost", nullptr}};
+  if (report.ghosts != nullptr) {
+    felt["ghosts"] = report.ghosts->count;
+    felt["strongest_ghost"] = report.ghosts->largest;
+  }
+  return felt;
+}
+
 }  // namespace
 
 std::string physical_to_json(const PhysicalReport& report) {
@@ -73,12 +92,16 @@ std::string physical_to_json(const PhysicalReport& report) {
                           {"metrics", metrics_or_null(report.envelope_metrics)}};
   document["mean"] = {{"largest_pa", report.field->largest_mean},
                       {"metrics", metrics_or_null(report.mean_metrics)}};
+  document["felt"] = felt_json(report);
   document["plane"] = plane_json(report.raster->X_DP);
   Json raster = Json::object();
   write_raster(*report.raster, raster);
   document["raster"] = std::move(raster);
   document["envelope_pa"] = matrix(*report.raster, report.field->envelope);
   document["mean_pa"] = matrix(*report.raster, report.field->mean);
+  document["felt_um"] = report.felt != nullptr
+                            ? matrix(*report.raster, in_micrometres(report.felt->percept))
+                            : Json();
   document["settings"] = Json::parse(report.settings_json);
   return to_text(document);
 }

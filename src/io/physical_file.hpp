@@ -4,7 +4,7 @@
 #include <string>
 
 #include "acoustics/array.hpp"
-#include "score/physical.hpp"
+#include "score/felt.hpp"
 
 namespace prostm {
 
@@ -19,7 +19,10 @@ struct PhysicalReport {
   FocusAccuracy focus;
   const Metrics* envelope_metrics = nullptr;  ///< null without a target
   const Metrics* mean_metrics = nullptr;
-  std::string settings_json;  ///< of every stage, an object as text
+  const FeltField* felt = nullptr;        ///< null for loops that are not felt
+  const Metrics* felt_metrics = nullptr;  ///< null without a target, too
+  const Ghosts* ghosts = nullptr;         ///< the same
+  std::string settings_json;              ///< of every stage, an object as text
 };
 std::string physical_to_json(const PhysicalReport& report);
 

@@ -395,6 +395,9 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     # it is the target's shape, and that of both foci, in both
     assert result["envelope"]["metrics"]["correlation"] > 0.6 and result["mean"]["metrics"]["skill_8"] > 0.4
     assert set(result["envelope"]["metrics"]) == {"rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill"}
+    felt = result["felt"]
+    assert np.array(result["felt_um"]).max() == pytest.approx(felt["largest_um"]) and felt["intensity_um"] > 0
+    assert felt["metrics"]["skill_8"] > 0.2 and 0 <= felt["strongest_ghost"] <= 1 and felt["ghosts"] >= 0
     assert result["drives"]["short_samples"] == 0 and result["drives"]["largest_drive"] == pytest.approx(1)
     assert 0 < result["drives"]["mean_power"] < 256
     assert 0.5 < result["foci"]["mean_offset_mm"] < 2.5  # transducers lag
@@ -403,6 +406,7 @@ def test_field_of_a_plan(prostm, field, tmp_path):
 
     quick = json.loads(prostm("field", "plan.json", "--memoryless", "--array", "autd3", "--json", "-").stdout)
     assert quick["foci"]["mean_offset_mm"] < 0.8 * result["foci"]["mean_offset_mm"]
+    assert quick["felt"]["metrics"] is None and quick["felt"]["ghosts"] is None and quick["felt"]["largest_um"] > 0
     assert quick["envelope"]["metrics"] is None and quick["array"] == "autd3"
     told = prostm("field", "plan.json", "--field", field).stdout
     assert "which judges nothing" in told and "worst side lobe" in told
