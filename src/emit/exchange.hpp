@@ -17,15 +17,6 @@ struct Message {
   bool refused = false;
 };
 
-struct Emitter::Exchange {
-  Exchange(const EmitSettings& s, Method m) : settings(s), method(m) {}
-  const EmitSettings settings;
-  const Method method;
-  Latest<Message> inbox;
-  Latest<EmitStats> published;
-  TakeOverLog log;
-};
-
 /// The longest way between two samples of a focal point that sounds: max_focus_step.
 class LongestStep {
  public:
@@ -39,6 +30,23 @@ class LongestStep {
 
  private:
   double squared_ = 0.0;
+};
+
+struct Emitter::Exchange {
+  Exchange(const EmitSettings& s, Method m) : settings(s), method(m) {}
+  const EmitSettings settings;
+  const Method method;
+  Latest<Message> inbox;
+  Latest<EmitStats> published;
+  TakeOverLog log;
+
+  /// Counts `samples` more of all focal points and makes the counters readable. Device's thread.
+  void publish(EmitStats& stats, std::size_t samples, const LongestStep& longest) {
+    stats.samples += static_cast<std::int64_t>(samples);
+    stats.max_focus_step = longest.length();
+    published.draft() = stats;
+    published.publish();
+  }
 };
 
 }  // namespace prostm

@@ -312,12 +312,7 @@ void PathEmitter::fill(std::int64_t first, std::span<FocusSample> out) noexcept 
   for (std::size_t i = 0; i < samples; ++i) {
     impl.emit(first + static_cast<std::int64_t>(i), out.subspan(i * foci, foci));
   }
-
-  // counters for stats()
-  impl.stats.samples += static_cast<std::int64_t>(samples * foci);
-  impl.stats.max_focus_step = impl.longest_step.length();
-  exchange().published.draft() = impl.stats;
-  exchange().published.publish();
+  exchange().publish(impl.stats, samples * foci, impl.longest_step);
 }
 
 }  // namespace prostm
