@@ -41,7 +41,6 @@ PipelineSettings make_settings(const CommonOptions& options,
     settings.array_width = true;
   }
   settings.transducers = array_from_name(settings.array);
-  settings.set_widths();
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = *options.method;
   if (options.preset) settings.plan.preset = *options.preset;

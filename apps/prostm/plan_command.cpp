@@ -242,7 +242,6 @@ int plan_command(const PlanOptionsGiven& given) {
   file_options.frame = given.frame;
   const TargetField target = read_field(given.field, file_options);
   if (given.common.array) {
-    settings.plan.widths = FocusWidths();  // one field has one place, looked at itself
     settings.plan.sigma = settings.am.sigma =
         sigma_on_skin(settings.transducers, target, settings.sigma());
   }

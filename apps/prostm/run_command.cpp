@@ -82,11 +82,14 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
     figure.foci.insert(figure.foci.end(), lifted_path.p_D.begin(), lifted_path.p_D.end());
   }
   for (const LiftedFocus& focus : lifted.foci) figure.foci.push_back(focus.p_D);
+  const PlanSettings plan = plan_settings(settings);
   for (std::size_t patch = 0; patch < contact.target.patches.size(); ++patch) {
     const TargetField& target = contact.target.patches[patch];
+    const double sigma =
+        method_from_name(settings.method) == Method::Am ? settings.am.sigma : plan.sigma_on(target);
     std::vector<double> field(target.size());
-    quasi_static_field(observer.plan().plan, static_cast<int>(patch), target,
-                       settings.sigma_on(target), settings.plan.gain_law(), field);
+    quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, sigma,
+                       settings.plan.gain_law(), field);
     figure.targets.push_back(target);
     figure.reconstructions.push_back(std::move(field));
   }

@@ -37,7 +37,7 @@ EmitSettings with_full_scale(const PipelineSettings& settings, double scene_full
 std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
                                               std::size_t max_cells) {
   if (method_from_name(settings.method) == Method::Am) return AmPlanner(settings.am, max_cells);
-  return Planner(settings.plan, max_cells);
+  return Planner(plan_settings(settings), max_cells);
 }
 
 }  // namespace

@@ -26,22 +26,20 @@ double PipelineSettings::sigma() const {
   return method_from_name(method) == Method::Am ? am.sigma : plan.sigma;
 }
 
-double PipelineSettings::sigma_on(const TargetField& target) const {
-  return method_from_name(method) == Method::Am ? am.sigma : plan.sigma_on(target);
-}
-
-void PipelineSettings::set_widths() {
-  plan.widths = FocusWidths();
-  if (!array_width) return;
+PlanSettings plan_settings(const PipelineSettings& settings) {
+  PlanSettings plan = settings.plan;
+  if (!settings.array_width) return plan;
   FocusWidths& out = plan.widths;
   out.height = {0.10, 0.15, 0.20, 0.25, 0.30, 0.40};
   out.offset = {0.0, 0.03, 0.06, 0.09};
   out.tilt = {0.0, kPi / 9.0, kPi / 4.5, kPi / 3.0};
-  const PackedArray packed(transducers, Medium{});
+  out.sigma.clear();
+  const PackedArray packed(settings.transducers, Medium{});
   for (const FocusWidthEntry& entry :
        focus_width_table(packed, Medium{}, out.height, out.offset, out.tilt)) {
     out.sigma.push_back(entry.width.sigma());
   }
+  return plan;
 }
 
 std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(

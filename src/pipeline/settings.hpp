@@ -46,15 +46,12 @@ struct PipelineSettings {
 
   /// The fall-off of a focal point that the method counts on [m].
   double sigma() const;
-  /// The same for one target.
-  double sigma_on(const TargetField& target) const;
-
-  /// Makes `plan.widths` what `array_width` asks for: (A22) of `transducers`, or none.
-  void set_widths();
-
   /// The fields of this struct that belong to no stage.
   void visit(SettingsVisitor& v);
 };
+
+/// The planner's settings with the widths that `array_width` asks for: (A22) of `transducers`.
+PlanSettings plan_settings(const PipelineSettings& settings);
 
 /// Every stage's settings under its name in files: "pipeline", "track", "scripted_hand", "fluid", …
 std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(

@@ -204,6 +204,30 @@ TEST(Pipeline, RealTimeRunAccountsForEveryStep) {
   EXPECT_FALSE(s.stopped);
 }
 
+TEST(Pipeline, PlansWithTheWidthOfTheArrayWhereItIsAskedTo) {
+  PipelineSettings settings = small_settings(false);
+  EXPECT_TRUE(plan_settings(settings).widths.empty());
+  settings.array_width = true;
+  const FocusWidths widths = plan_settings(settings).widths;
+  EXPECT_NEAR(widths.at(0.2, 0.0, 0.0), 4.3e-3, 0.1e-3);
+  EXPECT_GT(widths.at(0.3, 0.0, 0.0), 1.3 * widths.at(0.2, 0.0, 0.0));
+
+  // and its plans are others
+  const auto first_plan = [](const PipelineSettings& s) {
+    Pipeline pipeline(s, make_scripted_hand(s.scripted_hand, s.track));
+    for (int step = 0; step < 400; ++step) {
+      if (pipeline.step(1.0 / s.fluid_rate) && pipeline.plan().status == PlanStatus::Planned) break;
+    }
+    return pipeline.plan().plan;
+  };
+  const Plan narrow = first_plan(settings);
+  settings.array_width = false;
+  const Plan wide = first_plan(settings);
+  ASSERT_FALSE(narrow.paths.empty());
+  ASSERT_FALSE(wide.paths.empty());
+  EXPECT_NE(narrow.paths[0].points, wide.paths[0].points);
+}
+
 TEST(Pipeline, RejectsBadSettings) {
   PipelineSettings s = small_settings(false);
   s.scene = "five-plumes";
