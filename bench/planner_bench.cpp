@@ -1,14 +1,9 @@
 /// What the planners are worth: quality and speed of every preset on the gallery of bench/fields or
 /// on captured fields, beside a textbook planner and controls.
-///
-/// usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--figure FILE]
-///                      [--scaling-figure FILE] [--bending-figure FILE] [FIELDS ...]
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -28,77 +23,23 @@
 #include "planner/steadiness.hpp"
 #include "planner/vectors.hpp"
 #include "planner/weights.hpp"
-#include "report.hpp"
+#include "program.hpp"
 
 namespace prostm::bench {
 namespace {
 
-constexpr const char* kUsage =
-    "usage: planner_bench [--json FILE] [--frames N] [--seeds N] [--vectors NAME]\n"
-    "                     [--figure FILE] [--scaling-figure FILE] [--bending-figure FILE] [FIELDS "
-    "...]\n"
-    "  --frames N   scored of each field, spread over its sequence (20)\n"
-    "  --seeds N    of the textbook planner, whose median counts (20)\n"
-    "  --vectors NAME   no better vector instructions than these: AVX2, SSE4, …, none\n"
-    "  --figure FILE, --scaling-figure FILE, --bending-figure FILE   draw the gallery, time "
-    "against size, and error\n"
-    "               against corners; .png or .svg\n"
-    "FIELDS, recordings of prostm capture or field files, take the place of the generated "
-    "fields.\n";
-
 struct Options {
-  std::string json, figure, scaling_figure, bending_figure;
+  std::string vectors, figure, scaling_figure, bending_figure;
   QualityOptions quality;
   std::vector<std::string> files;
 };
 
-int number(const char* option, const char* text, int low, int high) {
-  int value = 0;
-  const char* end = text + std::strlen(text);
-  const auto [last, error] = std::from_chars(text, end, value);
-  if (error != std::errc() || last != end || value < low || value > high) {
-    throw InputError(
-        fmt::format("{} {} must be a whole number between {} and {}", option, text, low, high));
-  }
-  return value;
-}
-
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument.rfind("--", 0) != 0) {
-      options.files.push_back(argument);
-      continue;
-    }
-    if (i + 1 == argc) throw InputError(argument + " needs a value");
-    const char* value = argv[++i];
-    if (argument == "--json") {
-      options.json = value;
-    } else if (argument == "--figure") {
-      options.figure = value;
-    } else if (argument == "--scaling-figure") {
-      options.scaling_figure = value;
-    } else if (argument == "--bending-figure") {
-      options.bending_figure = value;
-    } else if (argument == "--frames") {
-      options.quality.frames = number("--frames", value, 1, 10'000);
-    } else if (argument == "--vectors") {
-      limit_vectors(value);
-    } else if (argument == "--seeds") {
-      options.quality.seeds = number("--seeds", value, 1, 1000);
-    } else {
-      throw InputError("there is no option " + argument);
-    }
-  }
+std::vector<Row> measure_all(const Options& options) {
+  if (!options.vectors.empty()) limit_vectors(options.vectors);
   for (const std::string& figure :
        {options.figure, options.scaling_figure, options.bending_figure}) {
     if (!figure.empty()) check_figure(figure);
   }
-  return options;
-}
-
-std::vector<Row> measure_all(const Options& options) {
   std::vector<Sequence> sequences;
   for (const std::string& file : options.files) sequences.push_back(read_sequence(file));
   const std::vector<Sequence> generated = gallery();
@@ -134,20 +75,22 @@ std::vector<Row> measure_all(const Options& options) {
 }  // namespace prostm::bench
 
 int main(int argc, char** argv) {
-  using namespace prostm;
-  try {
-    if (argc == 2 && std::strcmp(argv[1], "--help") == 0) {
-      fmt::print("{}", bench::kUsage);
-      return 0;
-    }
-    const bench::Options options = bench::parse(argc, argv);
-    const std::vector<bench::Row> rows = bench::measure_all(options);
-    fmt::print("\n");
-    bench::print(rows);
-    if (!options.json.empty()) write_file(options.json, bench::to_json(rows));
-    return 0;
-  } catch (const InputError& error) {
-    fmt::print(stderr, "{}: {}\n{}", argv[0], error.what(), bench::kUsage);
-    return 2;
-  }
+  using namespace prostm::bench;
+  CLI::App app("every preset on generated or given fields, beside a textbook planner and controls");
+  Options options;
+  app.add_option("--frames", options.quality.frames,
+                 "scored of each field, spread over its sequence")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  app.add_option("--seeds", options.quality.seeds, "of the textbook planner, whose median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--vectors", options.vectors,
+                 "no better vector instructions than these: AVX2, SSE4, …, none");
+  app.add_option("--figure", options.figure, "draw the gallery; .png or .svg");
+  app.add_option("--scaling-figure", options.scaling_figure, "draw time against size");
+  app.add_option("--bending-figure", options.bending_figure, "draw error against corners");
+  app.add_option("FIELDS", options.files,
+                 "recordings of prostm capture or field files, in place of the generated fields");
+  return run(app, argc, argv, [&] { return measure_all(options); });
 }

@@ -67,6 +67,14 @@ inline std::string to_json(const std::vector<Row>& rows) {
   return list.dump(1) + "\n";
 }
 
+/// Prints rows and, where a file is named, writes them. @return 0
+inline int print_and_write(const std::vector<Row>& rows, const std::string& json) {
+  fmt::print("\n");
+  print(rows);
+  if (!json.empty()) write_file(json, to_json(rows));
+  return 0;
+}
+
 /// The main() of a benchmark: `program [--json FILE]`, where `measure` gives the rows.
 template <class Measure>
 int run(int argc, char** argv, Measure measure) {
@@ -78,10 +86,7 @@ int run(int argc, char** argv, Measure measure) {
     return 2;
   }
   try {
-    const std::vector<Row> rows = measure();
-    print(rows);
-    if (!json.empty()) write_file(json, to_json(rows));
-    return 0;
+    return print_and_write(measure(), json);
   } catch (const InputError& error) {
     fmt::print(stderr, "{}: {}\n", argv[0], error.what());
     return 2;

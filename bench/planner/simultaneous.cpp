@@ -181,12 +181,7 @@ double LeastDistances::share_below(double distance) const {
 }
 
 double LeastDistances::quantile(double share) const {
-  if (least_.empty()) return 0.0;
-  std::vector<double> sorted = least_;
-  const auto rank = static_cast<std::ptrdiff_t>(
-      std::max(std::ceil(share * static_cast<double>(sorted.size())), 1.0));
-  std::nth_element(sorted.begin(), sorted.begin() + rank - 1, sorted.end());
-  return sorted[static_cast<std::size_t>(rank - 1)];
+  return bench::quantile(least_, share);
 }
 
 FocalPath begun_at(const FocalPath& path, int first, bool reversed) {
