@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/random.hpp"
+#include "support/only_targets.hpp"
 
 namespace prostm {
 namespace {
@@ -127,13 +128,10 @@ void compare(const Body& body, int cubes, Random& random, Errors& errors) {
 template <class F>
 void with_each_target(F&& f) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const test::OnlyTargets only(target);
     SCOPED_TRACE(hwy::TargetName(target));
     f();
   }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 TEST(BodyKernels, VectorsAgreeWithTheBodies) {

@@ -112,12 +112,15 @@ TEST(LoopDrives, TheCommonScaleHoldsInEverySample) {
   const LoopSamples loop = loop_of(two_squares(raster([](double, double) { return 0.0; }), 1.0));
   LoopDriveSettings settings;
   settings.transducer.memoryless = true;
+  settings.focus.method = FocusMethod::GsPat;
+  EXPECT_LT(drives_of(loop, settings).full_share, 0.1);  // its drives differ in a sample
+  settings.focus.method = FocusMethod::Weighted;
   const LoopDriveResult drives = drives_of(loop, settings);
   EXPECT_EQ(drives.short_samples, 0);
   EXPECT_NEAR(drives.largest_drive, 1.0, 1e-9);
   EXPECT_GT(drives.full_scale_pa, 100.0);
   EXPECT_LE(drives.mean_power, 256.0);
-  EXPECT_LT(drives.full_share, 0.2);  // of weighted, whose drives are all alike in a sample
+  EXPECT_GE(drives.full_share, 1.0 / loop.samples);  // all drives of a sample are alike
   const PackedArray packed(usx_array(), Medium());
   const FocusAccuracy focus = focus_accuracy(packed, loop, drives, TargetField::default_plane());
   EXPECT_GT(focus.looked_at, 100);
