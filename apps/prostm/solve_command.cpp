@@ -31,8 +31,10 @@ int solve_command(const SolveOptionsGiven& options) {
   fmt::print(out, "  {:>6} {:>10} {:>10} {:>22}\n", "focus", "asked Pa", "reached Pa",
              "error of its share, %");
   for (Eigen::Index m = 0; m < target.size(); ++m) {
-    fmt::print(out, "  {:>6} {:>10.1f} {:>10.1f} {:>22.2f}\n", m + 1, target[m],
-               std::abs(solution.pressure[m]), 100.0 * errors[m]);
+    // what is not asked for has no share
+    const std::string error = target[m] > 0.0 ? fmt::format("{:.2f}", 100.0 * errors[m]) : "-";
+    fmt::print(out, "  {:>6} {:>10.1f} {:>10.1f} {:>22}\n", m + 1, target[m],
+               std::abs(solution.pressure[m]), error);
   }
   const double high = array.amplitude_high / array.amplitude;
   if (high > 1.0) {
