@@ -8,7 +8,7 @@
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/json.hpp"
+#include "core/json.hpp"
 
 namespace prostm {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/json.hpp"
+#include "core/json.hpp"
 #include "io/raster_json.hpp"
 
 namespace prostm {

@@ -9,7 +9,7 @@
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
-#include "io/json.hpp"
+#include "core/json.hpp"
 #include "io/recorder.hpp"
 
 namespace prostm {

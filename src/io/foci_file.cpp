@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.hpp"
+#include "core/json.hpp"
 #include "core/units.hpp"
-#include "io/json.hpp"
 
 namespace prostm {
 namespace {

@@ -8,15 +8,15 @@
 #include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "io/hand_file_parts.hpp"
+#include "track/hand_json.hpp"
 
 namespace prostm {
 namespace {
 
 using nlohmann::json;
 
+constexpr double kMaxHandDistance = 10.0;  // farther than any tracker sees [m]
 constexpr std::size_t kMaxRecordingBytes = std::size_t{256} << 20;
-constexpr double kMinRadius = 0.003, kMaxRadius = 0.040;  // [m]
-constexpr double kMinBone = 0.008, kMaxBone = 0.120;      // [m]
 
 /// An array of exactly `count` numbers.
 JsonNode numbers(const JsonNode& hand, const char* key, std::size_t count, const char* meaning) {
@@ -102,41 +102,13 @@ std::string_view next_line(std::string_view& text, std::size_t& line) {
 
 }  // namespace
 
-void check_hand(const JsonNode& node, const Hand& hand) {
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    if (hand.radius[j] >= kMinRadius && hand.radius[j] <= kMaxRadius) continue;
-    node.fail(fmt::format("has a radius of {:.4g} mm at joint {}; radii must be from 3 to 40 mm",
-                          hand.radius[j] * 1e3, joint_name(static_cast<int>(j))));
-  }
-  for (int j = kThumbMetacarpal; j + 1 < kJointCount; ++j) {
-    if (j == kThumbTip || j == kIndexTip || j == kMiddleTip || j == kRingTip) continue;
-    const auto from = static_cast<std::size_t>(j);
-    const double length = (hand.position[from + 1] - hand.position[from]).norm();
-    if (length >= kMinBone && length <= kMaxBone) continue;
-    node.fail(
-        fmt::format("has a bone of {:.4g} mm from {} to {}; bones must be from 8 to 120 mm long",
-                    length * 1e3, joint_name(j), joint_name(j + 1)));
-  }
-}
-
-JsonNode hands_of(const JsonNode& frame) {
-  JsonNode hands = frame.at("hands", "an array of at most 2 hands");
-  if (hands.array_size() > 2)
-    hands.fail(fmt::format("has {} hands; it must have at most 2", hands.array_size()));
-  return hands;
-}
-
 void append_frame(const JsonNode& node, double time, HandFrame frame, HandRecording& recording) {
   if (!recording.frames.empty() && !(time > recording.frames.back().time)) {
     node.fail(fmt::format(
         "is {:.6f} s after the first frame, the frame before it {:.6f} s; time must increase", time,
         recording.frames.back().time));
   }
-  if (frame.hands.size() == 2 && frame.hands[0].id == frame.hands[1].id &&
-      frame.hands[0].side == frame.hands[1].side) {
-    node.fail(
-        fmt::format("has two hands of id {} and one side; ids must differ", frame.hands[0].id));
-  }
+  check_ids(node, frame);
   frame.time = time;
   recording.frames.push_back(std::move(frame));
 }

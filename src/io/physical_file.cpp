@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/json.hpp"
 #include "core/units.hpp"
-#include "io/json.hpp"
 #include "io/raster_json.hpp"
 
 namespace prostm {

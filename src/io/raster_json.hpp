@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "io/json.hpp"
+#include "core/json.hpp"
 #include "target/target_field.hpp"
 
 namespace prostm {

@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.hpp"
+#include "core/json.hpp"
 #include "io/examples.hpp"
 #include "io/field_file.hpp"
-#include "io/json.hpp"
 #include "io/random_field.hpp"
 #include "support/shared.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// JSON read with sentences: what every JSON file of this project shares. Private to io.
+/// JSON read with sentences: what every JSON file and message of this project shares.
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
