@@ -60,6 +60,8 @@ struct Hand {
 
 struct HandFrame {
   double time = 0.0;  ///< [s]
+  double age = 0.0;  ///< how long before `time` the tracker's frame came in that this is made from;
+                     ///< 0 for hands that were computed for exactly `time` [s]
   boost::container::static_vector<Hand, 2> hands;
 };
 

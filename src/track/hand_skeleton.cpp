@@ -104,9 +104,7 @@ void bend(const double* open, const double* closed, double closure, double* flex
   for (int i = 0; i < 3; ++i) flexion[i] = open[i] + closure * (closed[i] - open[i]);
 }
 
-}  // namespace
-
-void pose_skeleton(const Pose& X_TH, double closure, Hand& hand) noexcept {
+void pose_right(const Pose& X_TH, double closure, Hand& hand) {
   const Eigen::Matrix3d R_TH = X_TH.linear();
 
   // palm and wrist move as one
@@ -136,6 +134,25 @@ void pose_skeleton(const Pose& X_TH, double closure, Hand& hand) noexcept {
   walk(R_TH * thumb_frame() * flexed(flexion[0]), kThumbMetacarpal, 3, kThumbLength, flexion + 1,
        hand);
   for (std::size_t j = 0; j < 4; ++j) hand.radius[kThumbMetacarpal + j] = kThumbRadius[j];
+}
+
+}  // namespace
+
+void pose_skeleton(const Pose& X_TH, double closure, Side side, Hand& hand) noexcept {
+  hand.side = side;
+  if (side == Side::Right) {
+    pose_right(X_TH, closure, hand);
+    return;
+  }
+  // with M the mirror at x = 0 of H: points M p, rotations M R M, which is a rotation again
+  pose_right(Pose::Identity(), closure, hand);
+  const Quat q_TH(X_TH.linear());
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    Vec3& p = hand.position[j];
+    p = X_TH * Vec3(-p.x(), p.y(), p.z());
+    const Quat& q = hand.orientation[j];
+    hand.orientation[j] = (q_TH * Quat(q.w(), q.x(), -q.y(), -q.z())).normalized();
+  }
 }
 
 }  // namespace prostm

@@ -1,8 +1,10 @@
 #pragma once
 /// Where hands come from.
 
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +13,17 @@
 
 namespace prostm {
 
-/// Hands as a function of time. Frames are in T. Not thread-safe: one caller.
+/// How a live tracker does. Plain values, as seen at one moment.
+struct TrackerStatus {
+  bool connected = false;
+  std::int64_t frames = 0;      ///< that came in
+  std::int64_t dropped = 0;     ///< of these, refused for what they hold
+  std::int64_t reconnects = 0;  ///< connections after the first one
+  std::string sentence;         ///< what to tell: where it is, and what is wrong
+};
+
+/// Hands as a function of time. Frames are in T. Not thread-safe: one caller, except for
+/// tracker_status().
 class HandSource {
  public:
   virtual ~HandSource() = default;
@@ -20,6 +32,17 @@ class HandSource {
   virtual void sample(double time, HandFrame& out) = 0;
   /// Seconds after which sample() has nothing new; infinity for a source without an end.
   virtual double duration() const = 0;
+
+  /// Length of the recording that is played, 0 without one [s].
+  virtual double recording_length() const { return 0.0; }
+  /// Where in the recording the last sample() was, NaN without one [s].
+  virtual double recording_time() const { return std::numeric_limits<double>::quiet_NaN(); }
+  /// Goes on from `time` of the recording [s] at the next sample(), as a hand that has just come:
+  /// clamped to the recording. Does nothing without one.
+  virtual void seek(double time) { static_cast<void>(time); }
+
+  /// None for hands that are not tracked live. May be called from any thread.
+  virtual std::optional<TrackerStatus> tracker_status() const { return {}; }
 };
 
 struct TrackSettings {
@@ -27,6 +50,10 @@ struct TrackSettings {
                                   ///< are differentiated [s]
   double max_speed =
       3.0;  ///< joint velocities are clamped to this magnitude: trackers glitch [m/s]
+  double prediction = 0.015;  ///< hands of live trackers, and of recordings in real time, are
+                              ///< predicted over the age of their frame and this much more; 0: not
+                              ///< at all [s]
+  double prediction_limit = 0.015;  ///< no joint is predicted farther than this [m]
   double max_gap = 0.060;  ///< a hand missing for longer than this between two frames is gone [s]
   double filter_position =
       0.3;  ///< α of the filter on still joints at the pipeline's rate, (0, 1]; 1 = no filter
@@ -54,6 +81,15 @@ struct HandRecording {
 /// @throws std::invalid_argument: a setting outside its bounds, no frames, times that do not
 /// increase from 0, two hands of the same id and side in one frame.
 std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording,
+                                               const TrackSettings& settings, bool loop,
+                                               double step);
+
+/// Plays a recording as a tracker would have sent it: of its frames only those that have come in by
+/// the time asked for are known, and hands come from them through CausalTrack, with the age of the
+/// newest one. When `loop`, frames without hands come in at the end, and the recording starts again
+/// once its last hands are gone and a caller with `step` [s] between samples has seen that.
+/// @throws std::invalid_argument as make_recorded_hand.
+std::unique_ptr<HandSource> make_replayed_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step);
 

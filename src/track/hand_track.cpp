@@ -49,15 +49,15 @@ void smoothed_velocity(const HandTrack& track, double t, const TrackSettings& se
   const double distance = 0.5 * ((after_begin + after_end) - (before_begin + before_end));
   for (std::size_t j = 0; j < kJointCount; ++j) {
     velocity[j] = (velocity[j] - mean[j]) / distance;
-    clamp_speed(settings.max_speed, velocity[j]);
+    clamp_length(settings.max_speed, velocity[j]);
   }
 }
 
 }  // namespace
 
-void clamp_speed(double max_speed, Vec3& v) noexcept {
-  const double speed = v.norm();
-  if (speed > max_speed) v *= max_speed / speed;
+void clamp_length(double longest, Vec3& v) noexcept {
+  const double length = v.norm();
+  if (length > longest) v *= longest / length;
 }
 
 void sample_track(const HandTrack& track, std::size_t i, double t, const TrackSettings& settings,

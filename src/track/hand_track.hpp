@@ -21,7 +21,7 @@ struct HandTrack {
 void sample_track(const HandTrack& track, std::size_t i, double t, const TrackSettings& settings,
                   Hand& out) noexcept;
 
-/// Scales v down to `max_speed` when it is faster.
-void clamp_speed(double max_speed, Vec3& v) noexcept;
+/// Scales v down to length `longest` when it is longer.
+void clamp_length(double longest, Vec3& v) noexcept;
 
 }  // namespace prostm

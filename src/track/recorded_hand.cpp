@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <sstream>
-#include <stdexcept>
 
 #include "track/hand_source.hpp"
 #include "track/hand_track.hpp"
@@ -18,28 +16,6 @@ struct RecordedTrack {
   HandTrack track;
   std::vector<std::size_t> frames;  // of the recording, one per time of the track
 };
-
-void validate_recording(const HandRecording& recording) {
-  if (recording.frames.empty())
-    throw std::invalid_argument("the recording has 0 frames; it must have at least 1");
-  double last = 0.0;
-  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
-    const HandFrame& frame = recording.frames[i];
-    std::ostringstream sentence;
-    if (!std::isfinite(frame.time) || (i == 0 ? frame.time != 0.0 : frame.time <= last)) {
-      sentence << "frame " << i << " of the recording is at " << frame.time
-               << " s; times must increase from 0";
-      throw std::invalid_argument(sentence.str());
-    }
-    if (frame.hands.size() == 2 && frame.hands[0].id == frame.hands[1].id &&
-        frame.hands[0].side == frame.hands[1].side) {
-      sentence << "frame " << i << " of the recording has two hands of id " << frame.hands[0].id
-               << " and the same side; a hand must be there once";
-      throw std::invalid_argument(sentence.str());
-    }
-    last = frame.time;
-  }
-}
 
 /// Joins the hands of consecutive frames by id and side.
 std::vector<RecordedTrack> join_tracks(const HandRecording& recording, double max_gap) {
@@ -74,11 +50,7 @@ class RecordedHand final : public HandSource {
       : settings_(settings), loop_(loop) {
     validate(settings);
     validate_recording(recording);
-    if (!(step > 0.0 && step <= 10.0)) {
-      std::ostringstream sentence;
-      sentence << "step = " << step << " s must be above 0 s and at most 10 s";
-      throw std::invalid_argument(sentence.str());
-    }
+    validate_step(step);
     for (const HandFrame& frame : recording.frames) times_.push_back(frame.time);
     // an interval longer than one step between the end and the new start holds at least one of the
     // caller's times
@@ -89,8 +61,16 @@ class RecordedHand final : public HandSource {
 
   void sample(double time, HandFrame& out) override {
     out.time = time;
+    out.age = 0.0;
     out.hands.clear();
-    const double t = loop_ && time >= 0.0 ? std::fmod(time, period_) : time;
+    if (target_) {
+      shift_ = *target_ - time;
+      target_.reset();
+      ++seeks_;
+    }
+    const double since = time + shift_;
+    const double t = loop_ && since >= 0.0 ? std::fmod(since, period_) : since;
+    recording_time_ = std::clamp(t, 0.0, times_.back());
     if (!(t >= 0.0 && t <= times_.back())) return;
     const auto frame = static_cast<std::size_t>(std::upper_bound(times_.begin(), times_.end(), t) -
                                                 times_.begin()) -
@@ -100,12 +80,16 @@ class RecordedHand final : public HandSource {
       if (t > track.times.back()) continue;
       out.hands.emplace_back();
       sample_track(track, active.index, t, settings_, out.hands.back());
+      out.hands.back().id += kIdsPerSeek * seeks_;
     }
   }
 
   double duration() const override {
     return loop_ ? std::numeric_limits<double>::infinity() : times_.back();
   }
+  double recording_length() const override { return times_.back(); }
+  double recording_time() const override { return recording_time_; }
+  void seek(double time) override { target_ = std::clamp(time, 0.0, times_.back()); }
 
  private:
   /// A track and its last frame at or before some frame of the recording.
@@ -134,7 +118,11 @@ class RecordedHand final : public HandSource {
 
   TrackSettings settings_;
   bool loop_;
-  double period_ = 0.0;        // of the loop [s]
+  double period_ = 0.0;           // of the loop [s]
+  double shift_ = 0.0;            // from the run's time to the recording's [s]
+  double recording_time_ = 0;     // of the last sample [s]
+  std::optional<double> target_;  // to be sampled next [s]
+  std::int64_t seeks_ = 0;
   std::vector<double> times_;  // of the recording's frames [s]
   std::vector<RecordedTrack> tracks_;
   std::vector<boost::container::static_vector<Active, 2>> active_;

@@ -75,6 +75,7 @@ class ScriptedHand final : public HandSource {
 
   void sample(double time, HandFrame& out) override {
     out.time = time;
+    out.age = 0.0;
     out.hands.clear();
     if (!(time >= 0.0)) return;
     const double cycle = settings_.still ? 0.0 : std::floor(time / settings_.period);
@@ -105,8 +106,7 @@ class ScriptedHand final : public HandSource {
                      Eigen::AngleAxisd(gesture.pitch, Vec3::UnitX()))
                         .toRotationMatrix();
     X_TH.translation() = Vec3(gesture.x, settings_.height + gesture.y, gesture.z);
-    pose_skeleton(X_TH, gesture.closure, hand);
-    hand.side = Side::Right;
+    pose_skeleton(X_TH, gesture.closure, Side::Right, hand);
     hand.confidence = 1.0;
     hand.inferred = 0;
   }
@@ -120,7 +120,7 @@ class ScriptedHand final : public HandSource {
     pose(time, start, hand);
     for (std::size_t j = 0; j < kJointCount; ++j) {
       hand.velocity[j] = (after.position[j] - before.position[j]) / (2.0 * kDifference);
-      clamp_speed(track_.max_speed, hand.velocity[j]);
+      clamp_length(track_.max_speed, hand.velocity[j]);
     }
   }
 

@@ -1,5 +1,6 @@
 #include "track/track_settings.hpp"
 
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -21,6 +22,8 @@ void TrackSettings::visit(SettingsVisitor& v) {
   v.field("smoothing_time", smoothing_time);
   v.field("max_speed", max_speed);
   v.field("max_gap", max_gap);
+  v.field("prediction", prediction);
+  v.field("prediction_limit", prediction_limit);
   v.field("filter_position", filter_position);
   v.field("filter_velocity", filter_velocity);
   v.field("filter_position_scale", filter_position_scale);
@@ -39,6 +42,8 @@ void validate(const TrackSettings& settings) {
   require_between("smoothing_time", settings.smoothing_time, 0.001, 0.5, "s");
   require_between("max_speed", settings.max_speed, 0.01, 100.0, "m/s");
   require_between("max_gap", settings.max_gap, 0.001, 10.0, "s");
+  require_between("prediction", settings.prediction, 0.0, 0.2, "s");
+  require_between("prediction_limit", settings.prediction_limit, 0.0, 0.1, "m");
   require_factor("filter_position", settings.filter_position);
   require_factor("filter_velocity", settings.filter_velocity);
   require_between("filter_position_scale", settings.filter_position_scale, 1e-5, 1.0, "m");
@@ -49,6 +54,35 @@ void validate(const ScriptedHandSettings& settings) {
   require_between("height", settings.height, 0.10, 0.60, "m");
   require_between("period", settings.period, 5.0, 3600.0, "s");
   require_between("jitter", settings.jitter, 0.0, 0.01, "m");
+}
+
+void validate_recording(const HandRecording& recording) {
+  if (recording.frames.empty())
+    throw std::invalid_argument("the recording has 0 frames; it must have at least 1");
+  double last = 0.0;
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    const HandFrame& frame = recording.frames[i];
+    std::ostringstream sentence;
+    if (!std::isfinite(frame.time) || (i == 0 ? frame.time != 0.0 : frame.time <= last)) {
+      sentence << "frame " << i << " of the recording is at " << frame.time
+               << " s; times must increase from 0";
+      throw std::invalid_argument(sentence.str());
+    }
+    if (frame.hands.size() == 2 && frame.hands[0].id == frame.hands[1].id &&
+        frame.hands[0].side == frame.hands[1].side) {
+      sentence << "frame " << i << " of the recording has two hands of id " << frame.hands[0].id
+               << " and the same side; a hand must be there once";
+      throw std::invalid_argument(sentence.str());
+    }
+    last = frame.time;
+  }
+}
+
+void validate_step(double step) {
+  if (step > 0.0 && step <= 10.0) return;
+  std::ostringstream sentence;
+  sentence << "step = " << step << " s must be above 0 s and at most 10 s";
+  throw std::invalid_argument(sentence.str());
 }
 
 }  // namespace prostm

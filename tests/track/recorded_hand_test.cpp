@@ -187,6 +187,29 @@ TEST(RecordedHand, EndsWithoutLoopAndSaysNothingBeforeTheStart) {
   EXPECT_TRUE(frame.hands.empty());
 }
 
+TEST(RecordedHand, SeekingGoesOnFromThereAsAnotherHand) {
+  const HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1.0, 0, 0), 100, 6);
+  const auto source = make_recorded_hand(recording, {}, true, kStep);
+  EXPECT_EQ(source->recording_length(), recording.frames.back().time);
+  HandFrame frame;
+  source->sample(0.10, frame);
+  EXPECT_EQ(source->recording_time(), 0.10);
+  const std::int64_t id = frame.hands[0].id;
+  for (const double to : {0.5, 0.2}) {
+    source->seek(to);
+    source->sample(3.0, frame);
+    EXPECT_NEAR(source->recording_time(), to, 1e-12);
+    ASSERT_EQ(frame.hands.size(), 1u);
+    EXPECT_NEAR(frame.hands[0].position[kPalm].x(), to, 1e-12);
+    EXPECT_NE(frame.hands[0].id, id);
+    source->sample(3.1, frame);
+    EXPECT_NEAR(frame.hands[0].position[kPalm].x(), to + 0.1, 1e-12);
+  }
+  source->seek(1e9);
+  source->sample(3.2, frame);
+  EXPECT_NEAR(source->recording_time(), source->recording_length(), 1e-12);
+}
+
 TEST(RecordedHand, ASingleFrameRests) {
   const auto source =
       make_recorded_hand(linear_recording(Vec3(1, 2, 3), Vec3(1, 0, 0), 1, 1), {}, false, kStep);

@@ -1,0 +1,25 @@
+/// Messages of a live Leap service: whatever the bytes, hands that can be, or a sentence.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "track/live/leap_frame.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  prostm::HandFrame frame;
+  std::string problem;
+  const auto kind =
+      prostm::leap_message({reinterpret_cast<const char*>(data), size}, frame, problem);
+  if ((kind == prostm::LeapMessage::Refused) == problem.empty()) std::abort();
+  if (kind != prostm::LeapMessage::Frame) return 0;
+  for (const prostm::Hand& hand : frame.hands) {
+    for (const prostm::Vec3& p : hand.position) {
+      if (!p.allFinite() || p.norm() > 2.0) std::abort();
+    }
+    for (const prostm::Quat& q : hand.orientation) {
+      if (!(q.norm() > 0.999 && q.norm() < 1.001)) std::abort();
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,158 @@
+#include "track/live/openxr_hands.hpp"
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "core/file.hpp"
+#include "io/hand_file.hpp"
+#include "support/input_errors.hpp"
+#include "support/shared.hpp"
+
+namespace prostm {
+namespace {
+
+using nlohmann::json;
+
+/// Waits until `done`; false after a time that only a failure takes.
+bool eventually(const std::function<bool()>& done) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+/// The environment that the loader and the replay runtime read, set back afterwards.
+class OpenXr : public testing::Test {
+ protected:
+  OpenXr() {
+    set("XR_RUNTIME_JSON", PROSTM_REPLAY_RUNTIME);
+    set("PROSTM_REPLAY_HANDS", recording_file());
+  }
+  ~OpenXr() override {
+    for (const std::string& name : names_) ::unsetenv(name.c_str());
+  }
+  void set(const std::string& name, const std::string& value) {
+    ::setenv(name.c_str(), value.c_str(), 1);
+    names_.insert(name);
+  }
+
+  /// Two hands: recorded ones where they are there, else the scripted hand and its mirror image.
+  std::string recording_file() {
+    const std::string flapping = test::shared_file("data/hands/flapping.hands.jsonl");
+    if (std::filesystem::exists(flapping)) return flapping;
+    std::string text =
+        json{{"format", "hand-frames"}, {"version", 1}, {"units", "m"}}.dump() + "\n";
+    const auto source = make_scripted_hand({}, {});
+    HandFrame frame;
+    for (int i = 0; i < 300; ++i) {
+      source->sample(5.0 + 0.01 * i, frame);
+      json hands = json::array();
+      for (const bool left : {true, false}) hands.push_back(neutral(frame.hands.at(0), left));
+      text += json{{"t", 0.01 * i}, {"hands", hands}}.dump() + "\n";
+    }
+    write_file(folder_.file("two.hands.jsonl"), text);
+    return folder_.file("two.hands.jsonl");
+  }
+
+ private:
+  static json neutral(const Hand& hand, bool left) {
+    json p = json::array(), q = json::array(), r = json::array();
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const Vec3& x = hand.position[j];
+      const Quat& o = hand.orientation[j];
+      const double m = left ? -1.0 : 1.0;
+      for (const double number : {m * x.x() + m * 0.1, x.y(), x.z()}) p.push_back(number);
+      for (const double number : {o.x(), m * o.y(), m * o.z(), o.w()}) q.push_back(number);
+      r.push_back(hand.radius[j]);
+    }
+    return {{"id", left ? 1 : 2}, {"side", left ? "L" : "R"}, {"p", p}, {"q", q}, {"r", r}};
+  }
+
+  test::TemporaryFolder folder_;
+  std::set<std::string> names_;
+};
+
+/// Which frame of the recording these hands are, if any.
+std::optional<std::size_t> frame_of(const HandFrame& frame, const HandRecording& recording) {
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    const HandFrame& known = recording.frames[i];
+    if (known.hands.size() != frame.hands.size()) continue;
+    double worst = 0.0;
+    for (const Hand& hand : frame.hands) {
+      for (const Hand& other : known.hands) {
+        if (other.side != hand.side) continue;
+        for (std::size_t j = 0; j < kJointCount; ++j)
+          worst = std::max(worst, (hand.position[j] - other.position[j]).norm());
+      }
+    }
+    if (worst < 1e-6) return i;
+  }
+  return {};
+}
+
+TEST_F(OpenXr, BothHandsArriveThroughTheLoader) {
+  const HandRecording recording = read_hand_recording(recording_file());
+  const auto tracker = make_openxr_tracker();
+  std::set<std::size_t> seen;
+  HandFrame frame;
+  double last = 0.0;
+  ASSERT_TRUE(eventually([&] {
+    while (tracker->next(frame)) {
+      EXPECT_GT(frame.time, last);
+      last = frame.time;
+      if (frame.hands.size() != 2) continue;
+      EXPECT_EQ(frame.hands[0].side, Side::Left);
+      EXPECT_EQ(frame.hands[1].side, Side::Right);
+      EXPECT_NE(frame.hands[0].id, frame.hands[1].id);
+      const auto found = frame_of(frame, recording);
+      EXPECT_TRUE(found) << "hands that are not in the recording";
+      if (found) seen.insert(*found);
+    }
+    return seen.size() >= 50;
+  }));
+  const TrackerStatus status = tracker->status();
+  EXPECT_TRUE(status.connected) << status.sentence;
+  EXPECT_EQ(status.dropped, 0);
+  EXPECT_EQ(status.reconnects, 0);
+  EXPECT_GE(status.frames, 50);
+}
+
+TEST_F(OpenXr, ALostSessionIsAskedForAgain) {
+  set("PROSTM_REPLAY_LOSS", "0.3");
+  const auto hands = make_live_hand(make_openxr_tracker(), {});
+  HandFrame frame;
+  const auto count = [&] {
+    hands->sample(0.0, frame);
+    return frame.hands.size();
+  };
+  ASSERT_TRUE(eventually([&] { return count() == 2; }));
+  ASSERT_TRUE(eventually([&] { return count() == 0; }));
+  EXPECT_FALSE(hands->tracker_status()->connected);
+  EXPECT_THAT(hands->tracker_status()->sentence, testing::HasSubstr("is over"));
+  ASSERT_TRUE(eventually([&] { return count() == 2; }));
+  EXPECT_GE(hands->tracker_status()->reconnects, 1);
+}
+
+TEST_F(OpenXr, SaysWhatIsMissing) {
+  set("PROSTM_REPLAY_WITHOUT", "XR_MND_headless");
+  EXPECT_THAT(test::input_error([] { make_openxr_tracker(); }),
+              testing::HasSubstr("lacks XR_MND_headless"));
+  set("PROSTM_REPLAY_WITHOUT", "");
+  set("PROSTM_REPLAY_HANDS", "/none.hands.jsonl");
+  EXPECT_THAT(test::input_error([] { make_openxr_tracker(); }),
+              testing::HasSubstr("failed in xrCreateInstance"));
+  set("XR_RUNTIME_JSON", "/none.json");
+  EXPECT_THAT(test::input_error([] { make_openxr_tracker(); }),
+              testing::HasSubstr("there is no OpenXR runtime here"));
+}
+
+}  // namespace
+}  // namespace prostm
