@@ -39,6 +39,12 @@ GridShape grid_shape(const FluidSettings& settings) {
   return grid;
 }
 
+/// The scene with its jets at `factor` times their speed.
+Scene blown(Scene scene, double factor) {
+  for (SmokeJet& jet : scene.jets) jet.speed *= factor;
+  return scene;
+}
+
 }  // namespace
 
 Fluid::State::State(const FluidSettings& s, const Scene& scene, WorkerPool& workers)
@@ -46,7 +52,7 @@ Fluid::State::State(const FluidSettings& s, const Scene& scene, WorkerPool& work
       pool(workers),
       grid(grid_shape(s)),
       padded{s.cells},
-      surroundings(grid, scene),
+      surroundings(grid, blown(scene, s.jet_speed)),
       velocity{Field(padded), Field(padded), Field(padded)},
       smoke(padded),
       obstacle(s.cells, workers),
@@ -80,32 +86,55 @@ void Fluid::State::over_planes(F&& f) {
            [&](int task) { f(task * kPlanesPerTask, (task + 1) * kPlanesPerTask); });
 }
 
-FluidStats Fluid::State::step(double dt, const HandRaster& raster) {
-  FluidStats stats;
+void Fluid::State::prepare(double step_dt) {
+  const StageTimer timer;
+  dt = step_dt;
+  stats = {};
+  usable = std::isfinite(dt) && dt > 0.0;
+  if (usable) {
+    advect();
+    add_forces();
+  }
+  stats.advect = stats.total = timer.seconds();
+}
+
+void Fluid::State::meet(const HandRaster& raster) {
   const StageTimer total;
   StageTimer stage;
-  const bool usable =
-      std::isfinite(dt) && dt > 0.0 && raster.grid == grid && fluid::is_finite(raster);
+  usable = usable && raster.grid == grid && fluid::is_finite(raster);
   if (usable) {
-    advect(dt);
-    add_forces(dt);
-    stats.advect = stage.lap();
     place_hands(raster);
     stats.hand = stage.lap();
-    project(dt, stats);
+    project();
     stats.solve = stage.lap();
+    usable = check();
   }
-  if (!usable || !publish(dt, stats)) {
+  if (usable) {
+    publish();
+  } else {
     reset();
-    stats = FluidStats{};
+  }
+  stats.total += total.seconds();
+}
+
+FluidStats Fluid::State::settle() {
+  const StageTimer timer;
+  const double before = stats.total;
+  if (usable) {
+    measure();
+    pool.run(3, [&](int axis) {
+      fluid::extend_into_hands(solver.fine(), axis, velocity[axis], layer[axis]);
+    });
+  } else {
+    stats = {};
     stats.reset = true;
   }
   stats.solid_cells = obstacle.closed_cells();
-  stats.total = total.seconds();
+  stats.total = before + timer.seconds();
   return stats;
 }
 
-void Fluid::State::advect(double dt) {
+void Fluid::State::advect() {
   const int n = padded.n;
   const auto scale = static_cast<float>(dt / grid.cell);
   const fluid::AdvectionKernels& kernels = fluid::fast_advection_kernels();
@@ -134,7 +163,7 @@ void Fluid::State::advect(double dt) {
   surroundings.set_floor(velocity[2]);
 }
 
-void Fluid::State::add_forces(double dt) {
+void Fluid::State::add_forces() {
   const auto decay = static_cast<float>(std::exp(-settings.dissipation * dt));
   const auto lift = static_cast<float>(dt * settings.buoyancy);
   if (settings.dissipation > 0.0) {
@@ -147,10 +176,10 @@ void Fluid::State::add_forces(double dt) {
       for (int k = k0; k < k1; ++k) fluid::add_buoyancy(padded, smoke, lift, velocity[2], k);
     });
   }
-  if (settings.vorticity > 0.0) confine_vorticity(dt);
+  if (settings.vorticity > 0.0) confine_vorticity();
 }
 
-void Fluid::State::confine_vorticity(double dt) {
+void Fluid::State::confine_vorticity() {
   Field& magnitude = next_smoke;
   const auto epsilon = static_cast<float>(settings.vorticity);
   const auto step = static_cast<float>(dt);
@@ -222,7 +251,7 @@ void Fluid::State::mark_fluid_cells(const HandRaster& raster) {
   }
 }
 
-void Fluid::State::project(double dt, FluidStats& stats) {
+void Fluid::State::project() {
   const fluid::PressureLevel& level = solver.fine();
   const double pressure_per_velocity = settings.density * grid.cell / dt;  // ρh/dt [Pa s/m]
   const auto scale = static_cast<float>(-pressure_per_velocity);
@@ -232,8 +261,8 @@ void Fluid::State::project(double dt, FluidStats& stats) {
           fluid::divergence(level, obstacle, velocity, k, scale, solver.right_side().data());
     }
   });
-  double before = 0.0;
-  for (const PlaneSums& sum : sums) before += sum.divergence.squares;
+  divergence_before = 0.0;
+  for (const PlaneSums& sum : sums) divergence_before += sum.divergence.squares;
 
   if (settings.solver == "multigrid") {
     solver.v_cycles(settings.cycles);
@@ -246,13 +275,11 @@ void Fluid::State::project(double dt, FluidStats& stats) {
       fluid::subtract_gradient(level, obstacle, solver.pressure().data(), factor, velocity, k);
     }
   });
-  stats.divergence_rms = before;  // publish() divides by it
 }
 
-bool Fluid::State::publish(double dt, FluidStats& stats) {
-  const int n = padded.n;
-  const fluid::PressureLevel& level = solver.fine();
-  // what is not a number would trap below, so it is looked for first
+/// Whether the state is one: looks for what is not a number, which would trap in later comparisons,
+/// and for what is absurd.
+bool Fluid::State::check() {
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
       PlaneSums& sum = sums[static_cast<std::size_t>(k)];
@@ -268,11 +295,14 @@ bool Fluid::State::publish(double dt, FluidStats& stats) {
   for (const PlaneSums& sum : sums) fastest = std::max(fastest, sum.fastest);
   if (fastest > std::bit_cast<std::int32_t>(kAbsurd)) return false;
   stats.max_speed = static_cast<double>(std::bit_cast<float>(fastest)) * dt / grid.cell;
+  return true;
+}
 
+/// Copies what others read.
+void Fluid::State::publish() {
+  const int n = padded.n;
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
-      sums[static_cast<std::size_t>(k)].divergence =
-          fluid::divergence(level, obstacle, velocity, k, 1.0F, nullptr);
       for (int j = 0; j < n; ++j) {
         const Index c = padded.index(0, j, k);
         std::copy_n(solver.pressure().data() + c, n,
@@ -281,18 +311,24 @@ bool Fluid::State::publish(double dt, FluidStats& stats) {
       }
     }
   });
+}
+
+/// The divergence that is left.
+void Fluid::State::measure() {
+  over_planes([&](int k0, int k1) {
+    for (int k = k0; k < k1; ++k) {
+      sums[static_cast<std::size_t>(k)].divergence =
+          fluid::divergence(solver.fine(), obstacle, velocity, k, 1.0F, nullptr);
+    }
+  });
   // totals in the order of planes
-  const double before = stats.divergence_rms;
   double after = 0.0;
   for (const PlaneSums& sum : sums) {
     after += sum.divergence.squares;
     stats.divergence_max = std::max(stats.divergence_max,
                                     static_cast<double>(sum.divergence.largest) * dt / grid.cell);
   }
-  stats.divergence_rms = before > 0.0 ? std::sqrt(after / before) : 0.0;
-  pool.run(3,
-           [&](int axis) { fluid::extend_into_hands(level, axis, velocity[axis], layer[axis]); });
-  return true;
+  stats.divergence_rms = divergence_before > 0.0 ? std::sqrt(after / divergence_before) : 0.0;
 }
 
 Fluid::Fluid(const FluidSettings& settings, const Scene& scene, WorkerPool& pool)
@@ -306,7 +342,18 @@ const FluidSettings& Fluid::settings() const {
   return state_->settings;
 }
 FluidStats Fluid::step(double dt, const HandRaster& raster) noexcept {
-  return state_->step(dt, raster);
+  prepare(dt);
+  meet(raster);
+  return settle();
+}
+void Fluid::prepare(double dt) noexcept {
+  state_->prepare(dt);
+}
+void Fluid::meet(const HandRaster& raster) noexcept {
+  state_->meet(raster);
+}
+FluidStats Fluid::settle() noexcept {
+  return state_->settle();
 }
 std::span<const float> Fluid::pressure() const {
   return state_->pressure_out;

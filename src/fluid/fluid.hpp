@@ -31,8 +31,8 @@ struct Scene {
                             ///< side need not draw each other in [m/s]
 };
 
-/// "one-plume", "four-plumes", "still-air". @throws std::invalid_argument that lists the names for
-/// any other.
+/// "one-plume" (wide), "two-plumes", "three-plumes", "four-plumes" (thin), "still-air".
+/// @throws std::invalid_argument that lists the names for any other.
 Scene scene_from_name(const std::string& name);
 
 struct FluidSettings {
@@ -43,6 +43,7 @@ struct FluidSettings {
   int cycles = 2;            ///< V-cycles a step
   int jacobi_sweeps = 40;    ///< sweeps a step of the paper's solver
   bool jacobi_warm = false;  ///< start from the last pressure
+  double jet_speed = 1.0;    ///< factor on the speed of the scene's jets, 0 to 3
   double buoyancy = 0.0;     ///< upward acceleration of undiluted smoke [m/s²]
   double vorticity = 0.0;    ///< ε of vorticity confinement [1/s]; 0 = off
   double density = 1.2;      ///< of air ρ [kg/m³]
@@ -79,6 +80,15 @@ class Fluid {
   /// finite, resets like a non-finite state.
   FluidStats step(double dt, const HandRaster& raster) noexcept;
 
+  /// The same step in three parts, so that the hands may come late and their pressure is there
+  /// early: to the bit what step() does, which calls them one after the other. prepare() does what
+  /// needs no hand (advection and forces); meet() places the hands and projects, after which
+  /// pressure(), fluid_cells() and smoke() are of this step; settle() leaves the state for the next
+  /// step and measures. @pre called in this order.
+  void prepare(double dt) noexcept;
+  void meet(const HandRaster& raster) noexcept;
+  FluidStats settle() noexcept;
+
   /// Fluid pressure at cell centres [Pa], 0 in cells without fluid; cell_count() values, index as
   /// in GridShape.
   std::span<const float> pressure() const;
@@ -90,7 +100,7 @@ class Fluid {
   Vec3 velocity(int i, int j, int k) const;
 
   /// Takes over velocity, smoke and pressure of another fluid, to compare solvers from the same
-  /// state.
+  /// state. @pre both are between steps.
   /// @throws std::invalid_argument if the grids differ.
   void copy_state(const Fluid& other);
 

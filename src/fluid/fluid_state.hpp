@@ -18,16 +18,22 @@ struct Fluid::State {
 
   /// Everything at rest, without smoke.
   void reset();
-  FluidStats step(double dt, const HandRaster& raster);
+
+  // a step, see Fluid
+  void prepare(double step_dt);
+  void meet(const HandRaster& raster);
+  FluidStats settle();
 
   // parts of a step, in order
-  void advect(double dt);
-  void add_forces(double dt);
+  void advect();
+  void add_forces();
   void place_hands(const HandRaster& raster);
-  void project(double dt, FluidStats& stats);
-  bool publish(double dt, FluidStats& stats);
+  void project();
+  bool check();
+  void publish();
+  void measure();
 
-  void confine_vorticity(double dt);
+  void confine_vorticity();
   void push_swept(const HandRaster& raster);
   void mark_fluid_cells(const HandRaster& raster);
   /// Runs f(k0, k1) over all planes.
@@ -45,6 +51,12 @@ struct Fluid::State {
   fluid::Field smoke;        // at cells, 0..1; the halo holds what would flow in
   fluid::Obstacle obstacle;
   fluid::PressureSolver solver;
+
+  // of the step that is being made
+  double dt = 0.0;                 // [s]
+  bool usable = false;             // nothing came up that resets
+  double divergence_before = 0.0;  // Σ of squares, before the projection
+  FluidStats stats;
 
   // scratch
   fluid::Field next_velocity[3], next_smoke;

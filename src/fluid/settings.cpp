@@ -25,6 +25,7 @@ void FluidSettings::visit(SettingsVisitor& v) {
   v.field("cycles", cycles);
   v.field("jacobi_sweeps", jacobi_sweeps);
   v.field("jacobi_warm", jacobi_warm);
+  v.field("jet_speed", jet_speed);
   v.field("buoyancy", buoyancy);
   v.field("vorticity", vorticity);
   v.field("density", density);
@@ -42,6 +43,7 @@ void validate(const FluidSettings& s) {
   require_between("cycles", s.cycles, 1, 100);
   require_between("jacobi_sweeps", s.jacobi_sweeps, 1, 100000);
   require_between("width", s.width, 0.05, 5.0, "m");
+  require_between("jet_speed", s.jet_speed, 0.0, 3.0);
   require_between("buoyancy", s.buoyancy, 0.0, 100.0, "m/s²");
   require_between("vorticity", s.vorticity, 0.0, 100.0, "1/s");
   require_between("density", s.density, 0.01, 2000.0, "kg/m³");

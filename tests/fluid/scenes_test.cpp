@@ -65,9 +65,9 @@ struct PalmPressure {
   }
 };
 
-PalmPressure pressure_on_palm(const std::string& scene) {
+PalmPressure pressure_on_palm(const std::string& scene, const FluidSettings& settings = {}) {
   WorkerPool pool(2);
-  Fluid fluid(FluidSettings{}, scene_from_name(scene), pool);
+  Fluid fluid(settings, scene_from_name(scene), pool);
   const GridShape& grid = fluid.grid();
   const HandRaster plate = plate_on(grid);
   const auto index = [&](double x) {
@@ -134,8 +134,27 @@ TEST(Scenes, FourPlumesAreFourPlaces) {
   const PalmPressure palm = pressure_on_palm("four-plumes");
   EXPECT_NEAR(palm.area() * 1e4, 64.0, 15.0);
   EXPECT_EQ(places(palm), 4);
+  EXPECT_NEAR(palm.largest() / scene_from_name("four-plumes").full_scale_pressure, 0.97, 0.05);
   // in the middle between them there is less
   EXPECT_LT(palm.at(palm.nx / 2, palm.ny / 2), 0.75 * palm.largest());
+}
+
+TEST(Scenes, FewerThinPlumesAreFewerPlacesAndReachFullScaleAlike) {
+  const std::pair<const char*, int> cases[] = {{"two-plumes", 2}, {"three-plumes", 3}};
+  for (const auto& [scene, count] : cases) {
+    SCOPED_TRACE(scene);
+    const PalmPressure palm = pressure_on_palm(scene);
+    EXPECT_EQ(places(palm), count);
+    EXPECT_NEAR(palm.largest() / scene_from_name(scene).full_scale_pressure, 0.97, 0.05);
+  }
+}
+
+TEST(Scenes, PressureGoesWithTheSquareOfTheJetsSpeed) {
+  FluidSettings slow;
+  slow.jet_speed = 0.5;
+  const double ratio =
+      pressure_on_palm("one-plume", slow).largest() / pressure_on_palm("one-plume").largest();
+  EXPECT_NEAR(ratio, 0.25, 0.08);
 }
 
 }  // namespace
