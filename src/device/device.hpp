@@ -24,7 +24,7 @@ struct DeviceStats {
   std::int64_t blocks = 0;         ///< filled
   std::int64_t late_blocks = 0;    ///< filled after their deadline
   std::int64_t missed_blocks = 0;  ///< block times at which the queue had run dry
-  int queue_blocks = 0;            ///< depth of the queue
+  int queue_blocks = 0;            ///< depth of the queue now
 };
 
 enum class DeviceStatus : std::uint8_t {

@@ -64,6 +64,7 @@ const SimulatedArraySettings& validated(const SimulatedArraySettings& s) {
   require_between("block_samples", s.block_samples, 1, 4096);
   require_between("max_foci", s.max_foci, 1, kMostFoci);
   require_between("queue_blocks", s.queue_blocks, 1, 10);
+  require_between("most_queue_blocks", s.most_queue_blocks, 1, 10);
   require_between("history", s.history, 0.0, 600.0, "s");
   live_method(s.solver);
   return s;
@@ -90,6 +91,7 @@ void SimulatedArraySettings::visit(SettingsVisitor& v) {
   v.field("block_samples", block_samples);
   v.field("max_foci", max_foci);
   v.field("queue_blocks", queue_blocks);
+  v.field("most_queue_blocks", most_queue_blocks);
   v.field("history", history);
   v.field("realtime", realtime);
   v.field("solver", solver);
@@ -105,6 +107,7 @@ struct SimulatedArray::Impl {
   const Medium medium;
   DeviceInfo info;
   const std::int64_t history_samples;
+  const int most_queue;  // blocks
 
   // faults
   std::atomic<double> delay{0.0};
@@ -131,6 +134,7 @@ struct SimulatedArray::Impl {
   bool pull_block();
   void publish();
   std::int64_t played() const;
+  double time_of(std::int64_t sample, bool played) const;
 };
 
 SimulatedArray::Impl::Impl(const SimulatedArraySettings& s, const TransducerArray& a,
@@ -139,7 +143,8 @@ SimulatedArray::Impl::Impl(const SimulatedArraySettings& s, const TransducerArra
       array(a),
       medium(m),
       info{"simulated " + a.name, s.sample_rate, s.block_samples, s.max_foci, true, true, true},
-      history_samples(static_cast<std::int64_t>(std::ceil(s.history * s.sample_rate))) {
+      history_samples(static_cast<std::int64_t>(std::ceil(s.history * s.sample_rate))),
+      most_queue(std::max(s.queue_blocks, s.most_queue_blocks)) {
   stats.queue_blocks = s.queue_blocks;
 }
 
@@ -160,14 +165,15 @@ DeviceStatus SimulatedArray::Impl::begin(SampleSource& s) {
   stream.waiting.resize(static_cast<std::size_t>(kMostWaiting * settings.block_samples) * width);
   if (settings.realtime) {
     const double period = settings.block_samples / settings.sample_rate;
-    stream.clock.emplace(SteadyClock::now(), to_duration(period), settings.queue_blocks);
+    stream.clock.emplace(SteadyClock::now(), to_duration(period), settings.queue_blocks,
+                         settings.most_queue_blocks);
   }
   {
     const std::lock_guard lock(mutex);
     foci = s.foci();
     // what is queued is filled and not yet played, so it comes on top of the history
-    const auto capacity = static_cast<std::size_t>(
-        history_samples + std::int64_t{settings.queue_blocks + 1} * settings.block_samples);
+    const auto capacity = static_cast<std::size_t>(history_samples + std::int64_t{most_queue + 1} *
+                                                                         settings.block_samples);
     ring.assign(capacity * width, FocusSample());
     status = DeviceStatus::Running;
     problem.clear();
@@ -212,6 +218,7 @@ bool SimulatedArray::Impl::pull_block() {
     const BlockClock::Filled result = stream.clock->fill(stream.stats.blocks, SteadyClock::now());
     stream.stats.late_blocks += result.late ? 1 : 0;
     stream.stats.missed_blocks += result.missed;
+    stream.stats.queue_blocks = stream.clock->queue_blocks();
   }
   ++stream.stats.blocks;
 
@@ -249,7 +256,7 @@ std::int64_t SimulatedArray::Impl::played() const {
   if (!clock) return filled;
   // the block that plays now is among those still queued or the next one
   const auto now = SteadyClock::now();
-  const std::int64_t oldest = std::max<std::int64_t>(0, stats.blocks - settings.queue_blocks - 1);
+  const std::int64_t oldest = std::max<std::int64_t>(0, stats.blocks - most_queue - 1);
   for (std::int64_t block_index = stats.blocks - 1; block_index >= oldest; --block_index) {
     const double age = Seconds(now - clock->play_time(block_index)).count();
     if (age < 0.0) continue;
@@ -332,13 +339,22 @@ DeviceStats SimulatedArray::stats() const {
   return impl_->stats;
 }
 
-double SimulatedArray::play_time(std::int64_t sample) const {
-  const SimulatedArraySettings& s = impl_->settings;
-  const std::lock_guard lock(impl_->mutex);
-  if (!impl_->clock) return static_cast<double>(sample) / s.sample_rate;
+double SimulatedArray::Impl::time_of(std::int64_t sample, bool played) const {
+  const SimulatedArraySettings& s = settings;
+  const std::lock_guard lock(mutex);
+  if (!clock) return static_cast<double>(sample) / s.sample_rate;
   const std::int64_t block = sample / s.block_samples;
-  const double start = Seconds(impl_->clock->play_time(block).time_since_epoch()).count();
-  return start + static_cast<double>(sample % s.block_samples) / s.sample_rate;
+  const SteadyClock::time_point start = played ? clock->play_time(block) : clock->ask_time(block);
+  return Seconds(start.time_since_epoch()).count() +
+         static_cast<double>(sample % s.block_samples) / s.sample_rate;
+}
+
+double SimulatedArray::play_time(std::int64_t sample) const {
+  return impl_->time_of(sample, true);
+}
+
+double SimulatedArray::ask_time(std::int64_t sample) const {
+  return impl_->time_of(sample, false);
 }
 
 void SimulatedArray::set_faults(const SimulatedFaults& faults) {

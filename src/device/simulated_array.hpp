@@ -12,12 +12,14 @@
 namespace prostm {
 
 struct SimulatedArraySettings {
-  double sample_rate = 40e3;  ///< [Hz], 1 kHz to 1 MHz
-  int block_samples = 40;     ///< a block is 1 ms; 1..4096
-  int max_foci = 8;           ///< 1..8
-  int queue_blocks = 10;      ///< 1..10; each costs a block of latency and covers for one of delay
-  double history = 4.0;       ///< kept for reading back [s], up to 600
-  bool realtime = true;       ///< false: no thread and no clock, pull() is called by hand
+  double sample_rate = 40e3;   ///< [Hz], 1 kHz to 1 MHz
+  int block_samples = 40;      ///< a block is 1 ms; 1..4096
+  int max_foci = 8;            ///< 1..8
+  int queue_blocks = 3;        ///< 1..10; each costs a block of latency and covers for one of delay
+  int most_queue_blocks = 10;  ///< 1..10; that the queue grows to where it runs dry; it does not
+                               ///< grow when this is not above queue_blocks
+  double history = 4.0;        ///< kept for reading back [s], up to 600
+  bool realtime = true;        ///< false: no thread and no clock, pull() is called by hand
   std::string solver = "weighted";  ///< of `output`: or superposition, gs-pat
   bool memoryless = false;          ///< transducers follow their drives at once, against (A9)
 
@@ -55,6 +57,9 @@ class SimulatedArray final : public Device {
   DeviceStats stats() const override;
   /// Without a clock (realtime = false): seconds since the first sample.
   double play_time(std::int64_t sample) const override;
+  /// When the block of a sample was asked for, likewise: play_time less the queue, for the first
+  /// sample of a block. Without a clock the same as play_time.
+  double ask_time(std::int64_t sample) const;
 
   void set_faults(const SimulatedFaults& faults);
   /// Pulls n blocks now, fewer when it vanishes. @pre settings.realtime is false, started.

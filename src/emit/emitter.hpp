@@ -50,6 +50,7 @@ double even_share(int paths, double power_limit);
 /// Something that the pipeline wants to know of the emission, in sample counts.
 struct TakeOver {
   std::int64_t plan = 0;             ///< id of the plan
+  std::int64_t arrival_sample = 0;   ///< first sample that was made after it had arrived
   std::int64_t first_sample = 0;     ///< first sample that follows it
   std::int64_t redrawn_sample = -1;  ///< when 90 % of its path length was drawn; −1: never
 };

@@ -76,7 +76,7 @@ struct FocusEmitter::Impl {
 
   std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
 
-  void receive();
+  void receive(std::int64_t sample);
   void take_over(std::int64_t sample);
   void place(const LiftedPlan& plan);
   void limit_power();
@@ -85,7 +85,7 @@ struct FocusEmitter::Impl {
 };
 
 /// Takes the newest message, if one came.
-void FocusEmitter::Impl::receive() {
+void FocusEmitter::Impl::receive(std::int64_t sample) {
   if (!exchange.inbox.refresh()) return;
   const Message& message = exchange.inbox.value();
   fed = !message.lost;
@@ -94,7 +94,7 @@ void FocusEmitter::Impl::receive() {
   if (message.lost) {
     stats.refused_plans += message.refused ? 1 : 0;
   } else {
-    exchange.log.arrive(message.plan.id, 1.0);
+    exchange.log.arrive(message.plan.id, 1.0, sample);
   }
 }
 
@@ -191,7 +191,7 @@ void FocusEmitter::fill(std::int64_t first, std::span<FocusSample> out) noexcept
   Impl& impl = *impl_;
   const auto foci = static_cast<std::size_t>(impl.settings.foci);
   const std::size_t samples = out.size() / foci;
-  impl.receive();
+  impl.receive(first);
   for (std::size_t i = 0; i < samples; ++i) {
     impl.emit(first + static_cast<std::int64_t>(i), out.subspan(i * foci, foci));
   }

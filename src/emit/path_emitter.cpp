@@ -64,7 +64,7 @@ struct PathEmitter::Impl {
   bool waits(const Focus& f) const { return !at_once && f.motion.lap_samples() <= longest_lap; }
 
   void receive(std::int64_t sample);
-  void assign();
+  void assign(std::int64_t sample);
   double cost(const Focus& f, const LiftedPath& path) const;
   void release();
   bool join(Focus& f, std::int64_t sample);
@@ -104,7 +104,7 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   }
   fed = true;
   since_plan = 0;
-  assign();
+  assign(sample);
 
   // who fades already goes over at once if it can, and so does who need not wait
   for (std::size_t i = 0; i < foci().size(); ++i) {
@@ -130,7 +130,7 @@ double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path) const {
 }
 
 /// Gives each focal point its part in the newest plan.
-void PathEmitter::Impl::assign() {
+void PathEmitter::Impl::assign(std::int64_t sample) {
   const std::size_t paths = std::min(plan().paths.size(), foci().size());
   stats.dropped_paths += static_cast<std::int64_t>(plan().paths.size() - paths);
 
@@ -146,7 +146,7 @@ void PathEmitter::Impl::assign() {
     focus[i].has_next = true;
     focus[i].next = match[i];
   }
-  exchange.log.arrive(plan().id, total_length);
+  exchange.log.arrive(plan().id, total_length, sample);
 }
 
 /// Lets every focal point fade out and rest.

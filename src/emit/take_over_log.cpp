@@ -4,9 +4,10 @@ namespace prostm {
 
 TakeOverLog::TakeOverLog() : reports_(kReports) {}
 
-void TakeOverLog::arrive(std::int64_t plan, double total_length) noexcept {
+void TakeOverLog::arrive(std::int64_t plan, double total_length, std::int64_t sample) noexcept {
   ++serial_;
   plan_ = plan;
+  arrival_ = sample;
   total_length_ = total_length;
 }
 
@@ -25,7 +26,7 @@ TakeOverLog::Entry TakeOverLog::follow(std::int64_t sample) noexcept {
   Plan& plan = plans_[static_cast<std::size_t>(entry)];
   if (plan.followers == 0) {
     plan = {};
-    plan.report = {plan_, sample, -1};
+    plan.report = {plan_, arrival_, sample, -1};
     plan.serial = serial_;
     plan.length = total_length_;
   }

@@ -18,9 +18,9 @@ class TakeOverLog {
   static constexpr Entry kNone = -1;
 
   TakeOverLog();
-  /// A plan arrived, whose paths have this length in all [m]; earlier ones can no longer be taken
-  /// over.
-  void arrive(std::int64_t plan, double total_length) noexcept;
+  /// A plan arrived before this sample, whose paths have this length in all [m]; earlier ones can
+  /// no longer be taken over.
+  void arrive(std::int64_t plan, double total_length, std::int64_t sample) noexcept;
   /// A focal point takes the newest plan over at this sample.
   Entry follow(std::int64_t sample) noexcept;
   /// A focal point has drawn this length of the plan [m], none of it twice.
@@ -46,7 +46,7 @@ class TakeOverLog {
   void report(Plan& plan, std::int64_t redrawn_sample) noexcept;
 
   std::array<Plan, kMaxPaths + 1> plans_{};  // each focal point follows one, and one can be new
-  std::int64_t serial_ = 0, plan_ = 0;
+  std::int64_t serial_ = 0, plan_ = 0, arrival_ = 0;
   double total_length_ = 0.0;
   SpscRing<TakeOver> reports_;
 };

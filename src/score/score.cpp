@@ -147,11 +147,12 @@ std::vector<double> blur_within_skin(const TargetField& target, const std::vecto
   return masked;
 }
 
-/// Share of Σ p* within σ of a path (Q3).
-double coverage(const TargetField& target, const Plan& plan, int patch, double sigma,
-                double maximum) {
+}  // namespace
+
+double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma) {
   PathSegments segments(plan, patch);
-  if (segments.empty()) return 0.0;
+  const double maximum = max_pressure(target);
+  if (segments.empty() || !(maximum > 0.0)) return 0.0;
   double covered = 0.0, all = 0.0;
   for (int row = 0; row < target.rows; ++row) {
     for (int col = 0; col < target.cols; ++col) {
@@ -164,8 +165,6 @@ double coverage(const TargetField& target, const Plan& plan, int patch, double s
   }
   return covered / all;
 }
-
-}  // namespace
 
 Metrics score_field(const TargetField& target, const std::vector<double>& rendered,
                     double coverage) {
@@ -194,11 +193,10 @@ Metrics score_field(const TargetField& target, const std::vector<double>& render
 
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
                    const GainLaw& gain) {
-  const double maximum = max_pressure(target);
-  if (!(maximum > 0.0)) return {};
+  if (!(max_pressure(target) > 0.0)) return {};
   std::vector<double> rendered(target.size());
   quasi_static_field(plan, patch, target, sigma, gain, rendered);
-  return score_field(target, rendered, coverage(target, plan, patch, sigma, maximum));
+  return score_field(target, rendered, plan_coverage(target, plan, patch, sigma));
 }
 
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,

@@ -29,6 +29,10 @@ struct Metrics {
 Metrics score_field(const TargetField& target, const std::vector<double>& rendered,
                     double coverage);
 
+/// (Q3): the share of Σ p* within σ [m] of a path or focus of the patch; 0 for a target without
+/// pressure.
+double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma);
+
 /// Scores a plan on one patch through Eq. (1) with σ [m] and the γ of each path; all zeros for a
 /// target without pressure.
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,

@@ -72,7 +72,7 @@ TEST(SimulatedArray, PullsByHandAndReadsBack) {
   EXPECT_EQ(array.foci(), 3);
   EXPECT_EQ(array.stats().blocks, 100);
   EXPECT_EQ(array.stats().late_blocks, 0);
-  EXPECT_EQ(array.stats().queue_blocks, 10);
+  EXPECT_EQ(array.stats().queue_blocks, 3);
   const auto samples = array.read_back(1234, 100);
   ASSERT_EQ(samples.size(), 300u);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -221,7 +221,9 @@ TEST(SimulatedArray, KeepsRealTime) {
 }
 
 TEST(SimulatedArray, DelayMakesBlocksLateAndThenMissed) {
-  SimulatedArray array = make(SimulatedArraySettings());
+  SimulatedArraySettings settings;
+  settings.queue_blocks = 10;  // as long as it gets
+  SimulatedArray array = make(settings);
   SimulatedFaults faults;
   faults.delay = 3e-3;
   array.set_faults(faults);
@@ -231,7 +233,7 @@ TEST(SimulatedArray, DelayMakesBlocksLateAndThenMissed) {
   array.stop();
   EXPECT_EQ(array.stats().late_blocks, array.stats().blocks);
 
-  faults.delay = 30e-3;  // longer than the queue of 10 ms
+  faults.delay = 30e-3;  // longer than any queue
   array.set_faults(faults);
   Counter again;
   array.start(again);

@@ -142,6 +142,7 @@ TEST(PathEmitter, FarPathIsReachedBySilenceAtTheLapsEnd) {
   EXPECT_NEAR(static_cast<double>(first.redrawn_sample), 40 + 720, 2.0);
   ASSERT_TRUE(player.emitter.next_take_over(second));
   EXPECT_EQ(second.plan, 2);
+  EXPECT_EQ(second.arrival_sample, 400);
   EXPECT_EQ(second.first_sample, 841);
   EXPECT_NEAR(static_cast<double>(second.redrawn_sample), 881 + 720, 2.0);
   EXPECT_FALSE(player.emitter.next_take_over(second));
