@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "core/require.hpp"
@@ -11,17 +12,25 @@
 namespace prostm {
 namespace {
 
-Pose tracker_pose(const std::string& name) {
-  if (name == "centre") return default_tracker_pose();
-  if (name == "ultraleap-kit") return ultraleap_kit_pose();
-  throw std::invalid_argument("unknown tracker pose \"" + name +
-                              "\"; known are centre and ultraleap-kit");
-}
-
 const PipelineSettings& checked(const PipelineSettings& settings) {
   require_between("fluid_rate", settings.fluid_rate, 10.0, 1000.0, "Hz");
   require_between("fluid_steps_per_plan", settings.fluid_steps_per_plan, 0, 100);
+  require_between("frame_wait", settings.frame_wait, 0.0, 0.1, "s");
+  if (!settings.X_DT.matrix().allFinite() || !settings.X_DT.linear().isUnitary(1e-6) ||
+      settings.X_DT.linear().determinant() < 0.0) {
+    throw std::invalid_argument(
+        "X_DT is no pose; it must be a rotation and a place that is finite");
+  }
   return settings;
+}
+
+/// Hands as they were so long before [s].
+void put_back(double time, HandFrame& frame) {
+  if (time == 0.0) return;
+  frame.time -= time;
+  for (Hand& hand : frame.hands) {
+    for (std::size_t j = 0; j < kJointCount; ++j) hand.position[j] -= time * hand.velocity[j];
+  }
 }
 
 /// γ belongs to full scale: a target at the scene's full-scale pressure is rendered γ times as
@@ -31,6 +40,54 @@ EmitSettings with_full_scale(const PipelineSettings& settings, double scene_full
   if (emit.full_scale_pressure == 0.0)
     emit.full_scale_pressure = settings.plan.gain * scene_full_scale;
   return emit;
+}
+
+/// Settings as a text, to see whether they differ.
+class SettingsText final : public SettingsVisitor {
+ public:
+  void field(const char* name, double& value) override { put(name, value); }
+  void field(const char* name, int& value) override { put(name, value); }
+  void field(const char* name, bool& value) override { put(name, value); }
+  void field(const char* name, std::string& value) override { put(name, value); }
+  std::string text() const { return text_.str(); }
+
+ private:
+  template <class T>
+  void put(const char* name, const T& value) {
+    text_ << name << '=' << value << '\n';
+  }
+  std::ostringstream text_;
+};
+
+/// What the smoke's stage is built from.
+std::string smoke_text(PipelineSettings s) {
+  SettingsText text;
+  s.track.visit(text);
+  s.fluid.visit(text);
+  s.contact.visit(text);
+  return text.text() + s.scene;
+}
+
+/// What the planner's stage is built from.
+std::string plan_text(PipelineSettings s) {
+  SettingsText text;
+  s.plan.visit(text);
+  s.am.visit(text);
+  s.emit.visit(text);
+  return text.text() + s.scene + s.method + (s.plan.widths.empty() ? "" : "widths");
+}
+
+void add(const EmitStats& more, EmitStats& sum) {
+  sum.samples += more.samples;
+  sum.saturated += more.saturated;
+  sum.limited += more.limited;
+  sum.faded += more.faded;
+  sum.laps_started += more.laps_started;
+  sum.laps_cut += more.laps_cut;
+  sum.stalls += more.stalls;
+  sum.refused_plans += more.refused_plans;
+  sum.dropped_paths += more.dropped_paths;
+  sum.max_focus_step = std::max(sum.max_focus_step, more.max_focus_step);
 }
 
 /// The planner of the method.
@@ -45,7 +102,7 @@ std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
 SmokeStage::SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands)
     : hands_(std::move(hands)),
       filter_(checked(settings).track),
-      X_DT_(tracker_pose(settings.tracker)),
+      X_DT_(settings.X_DT),
       scene_(scene_from_name(settings.scene)),
       pool_(settings.threads),
       fluid_(settings.fluid, scene_, pool_),
@@ -54,11 +111,39 @@ SmokeStage::SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSou
       steps_per_plan_(settings.steps_per_plan()),
       side_view_(settings.side_view) {}
 
+void SmokeStage::adopt(SmokeStage& other) {
+  hands_ = std::move(other.hands_);
+  X_DT_ = other.X_DT_;
+  if (fluid_.grid() == other.fluid_.grid()) fluid_.copy_state(other.fluid_);
+}
+
 void SmokeStage::run(std::int64_t step, double time, double dt, ContactFrame& out) {
+  prepare(dt);
+  take(time, out);
+  meet(step, time, dt, out);
+  settle();
+}
+
+void SmokeStage::prepare(double dt) {
+  const StageTimer timer;
+  fluid_.prepare(dt);
+  const double time = timer.seconds();
+  fluid_time_ += time;
+  since_taken_ += time;
+}
+
+void SmokeStage::take(double time, ContactFrame& out) {
+  hands_->sample(time, out.hands);
+  out.taken = time;
+  out.arrival = time - out.hands.age;
+  since_taken_ = 0.0;
+}
+
+void SmokeStage::meet(std::int64_t step, double due, double dt, ContactFrame& out) {
   StageTimer timer;
   out.step = step;
-  out.arrival = time;
-  hands_->sample(time, out.hands);
+  out.due = due;
+  put_back(out.taken - due, out.hands);
   to_device(X_DT_, out.hands);
   filter_.apply(dt, out.hands);
   out.track_time = timer.lap();
@@ -66,16 +151,25 @@ void SmokeStage::run(std::int64_t step, double time, double dt, ContactFrame& ou
   rasteriser_.rasterise(out.hands, pool_);
   out.hand_time = timer.lap();
 
-  out.fluid = fluid_.step(dt, rasteriser_.raster());
-  out.fluid_time = timer.lap();
+  fluid_.meet(rasteriser_.raster());
+  const double meeting = timer.lap();
+  out.meet_time = since_taken_ + meeting;
+  out.fluid_time = fluid_time_ + meeting;
+  fluid_time_ = 0.0;
 
-  out.targeted = step % steps_per_plan_ == 0;
+  out.targeted = targets(step);
   if (out.targeted) {
     const double since_last = dt * steps_per_plan_;
     out.contact = contact_.extract(fluid_, rasteriser_.raster(), out.hands, since_last, out.target);
   }
   out.contact_time = timer.lap();
   if (out.targeted && side_view_) view_from_side(out.side);
+}
+
+void SmokeStage::settle() {
+  const StageTimer timer;
+  fluid_stats_ = fluid_.settle();
+  fluid_time_ += timer.seconds();
 }
 
 void SmokeStage::view_from_side(SideView& out) const {
@@ -104,11 +198,13 @@ PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, do
                             settings.simulated_array.sample_rate)) {}
 
 void PlanStage::run(const ContactFrame& contact, PlanFrame& out) noexcept {
+  StageTimer timer;
   out.id = ++updates_;
+  out.start = contact.taken;
   out.max_skin_length = 0.0;
   out.status = std::visit(
       [&](auto& planner) { return planner.plan(contact.target, out.plan, out.stats); }, planner_);
-  StageTimer timer;
+  out.plan_time = timer.lap();
   if (out.status != PlanStatus::Planned) {
     emitter_->lose();
   } else {
@@ -121,7 +217,7 @@ void PlanStage::run(const ContactFrame& contact, PlanFrame& out) noexcept {
       out.max_skin_length = std::max(out.max_skin_length, path.length);
     emitter_->submit();
   }
-  out.lift_time = timer.seconds();
+  out.lift_time = timer.lap();
 }
 
 void play_until(SimulatedArray& device, double time) {
@@ -131,11 +227,62 @@ void play_until(SimulatedArray& device, double time) {
 }
 
 Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands)
-    : smoke_(settings, std::move(hands)),
-      plans_(settings, smoke_.max_cells(), smoke_.scene().full_scale_pressure),
+    : settings_(settings),
+      smoke_(std::make_unique<SmokeStage>(settings, std::move(hands))),
+      plans_(std::make_unique<PlanStage>(settings, smoke_->max_cells(),
+                                         smoke_->scene().full_scale_pressure)),
       device_(settings.simulated_array, settings.transducers, Medium{}) {
-  if (device_.start(plans_.emitter()) != DeviceStatus::Running)
+  if (device_.start(plans_->emitter()) != DeviceStatus::Running)
     throw std::invalid_argument(device_.problem());
+}
+
+void Pipeline::reconfigure(const PipelineSettings& settings) {
+  std::unique_ptr<SmokeStage> smoke;
+  if (smoke_text(settings) != smoke_text(settings_))
+    smoke = std::make_unique<SmokeStage>(settings, nullptr);
+  const SmokeStage& next = smoke ? *smoke : *smoke_;
+  std::unique_ptr<PlanStage> plans;
+  if (plan_text(settings) != plan_text(settings_) || next.max_cells() != smoke_->max_cells()) {
+    plans =
+        std::make_unique<PlanStage>(settings, next.max_cells(), next.scene().full_scale_pressure);
+    plans->continue_from(*plans_);
+    const std::string problem = restart(plans->emitter());
+    if (!problem.empty()) throw std::invalid_argument(problem);
+  }
+  // nothing fails from here on
+  if (smoke) {
+    smoke->adopt(*smoke_);
+    smoke_ = std::move(smoke);
+  }
+  if (plans) plans_ = std::move(plans);
+  smoke_->set_steps_per_plan(settings.steps_per_plan());
+  settings_ = settings;
+}
+
+std::string Pipeline::restart(Emitter& emitter) {
+  device_.stop();
+  device_before_ = device_stats();
+  if (device_.start(emitter) == DeviceStatus::Running) {
+    add(plans_->emitter().stats(), emit_before_);
+    return {};
+  }
+  std::string problem = device_.problem();
+  device_.start(plans_->emitter());
+  return problem;
+}
+
+DeviceStats Pipeline::device_stats() const {
+  DeviceStats sum = device_.stats();
+  sum.blocks += device_before_.blocks;
+  sum.late_blocks += device_before_.late_blocks;
+  sum.missed_blocks += device_before_.missed_blocks;
+  return sum;
+}
+
+EmitStats Pipeline::emit_stats() const {
+  EmitStats sum = emit_before_;
+  add(plans_->emitter().stats(), sum);
+  return sum;
 }
 
 bool Pipeline::step(double dt) {
@@ -143,8 +290,8 @@ bool Pipeline::step(double dt) {
   time_ += dt;
   // what was planned before plays up to the moment that these hands were seen
   play_until(device_, time_);
-  smoke_.run(steps_, time_, dt, contact_frame_);
-  if (contact_frame_.targeted) plans_.run(contact_frame_, plan_frame_);
+  smoke_->run(steps_, time_, dt, contact_frame_);
+  if (contact_frame_.targeted) plans_->run(contact_frame_, plan_frame_);
   return contact_frame_.targeted;
 }
 

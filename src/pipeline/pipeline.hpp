@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -27,14 +28,16 @@ struct SideView {
 /// What one fluid step left behind: everything that a plan, a recording or a picture needs.
 struct ContactFrame {
   std::int64_t step = 0;  ///< fluid steps so far, from 1
-  double arrival = 0.0;   ///< of its hands: run time, or the steady clock in a real-time run [s]
+  double arrival = 0.0;   ///< of the tracker's frame; run time [s]
+  double due = 0.0;       ///< when the step was to take the hands; run time [s]
+  double taken = 0.0;     ///< when it took them; run time [s]
   HandFrame hands;        ///< filtered, in D
   bool targeted = false;  ///< a plan update follows this step: `target` and `contact` are of now
   TargetFrame target;
   SideView side;  ///< when settings.side_view
-  FluidStats fluid;
   ContactStats contact;
-  double track_time = 0, hand_time = 0, fluid_time = 0, contact_time = 0;  ///< [s]
+  double track_time = 0, hand_time = 0, meet_time = 0, contact_time = 0;  ///< [s]
+  double fluid_time = 0;  ///< of the whole fluid step; meet_time is what came after the hands [s]
 };
 
 /// Hand, smoke and skin: the stages that run at the fluid's rate.
@@ -44,9 +47,31 @@ class SmokeStage {
   SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands);
 
   /// Fluid step `step` (from 1) with the hands at run time `time` [s], dt after the last one; makes
-  /// targets on every `steps_per_plan`th. Writes `arrival` = time.
+  /// targets on every `steps_per_plan`th. Writes `due` = `taken` = time.
   void run(std::int64_t step, double time, double dt, ContactFrame& out);
 
+  /// The same in parts, to the bit: what needs no hands; the hands as they are at run time `time`
+  /// [s], which may be taken again while newer ones are hoped for; from the hands to the targets,
+  /// where the hands are put back along their velocities to where they were when the step was due,
+  /// so that the fluid's steps stay even; and what nobody waits for. @pre called in this order, or
+  /// take() before prepare(); dt the same.
+  void prepare(double dt);
+  void take(double time, ContactFrame& out);
+  void meet(std::int64_t step, double due, double dt, ContactFrame& out);
+  void settle();
+
+  /// Whether a step makes targets.
+  bool targets(std::int64_t step) const { return step % steps_per_plan_ == 0; }
+
+  // between steps of a run that is steered
+  /// Goes on with the hands of another stage, and with its smoke where the boxes are alike.
+  void adopt(SmokeStage& other);
+  void set_hands(std::unique_ptr<HandSource> hands) { hands_ = std::move(hands); }
+  void set_tracker_pose(const Pose& X_DT) { X_DT_ = X_DT; }
+  const Pose& tracker_pose() const { return X_DT_; }
+  void set_steps_per_plan(int steps) { steps_per_plan_ = steps; }
+
+  const FluidStats& fluid_stats() const { return fluid_stats_; }  ///< of the last whole step
   const Fluid& fluid() const { return fluid_; }
   const Scene& scene() const { return scene_; }
   std::size_t max_cells() const { return contact_.max_cells(); }
@@ -61,6 +86,9 @@ class SmokeStage {
   Fluid fluid_;
   HandRasteriser rasteriser_;
   SkinContact contact_;
+  FluidStats fluid_stats_;
+  double fluid_time_ = 0.0;   // of the fluid, since the last meet() [s]
+  double since_taken_ = 0.0;  // of the fluid, since the hands were taken [s]
   void view_from_side(SideView& out) const;
   int steps_per_plan_;
   bool side_view_;
@@ -72,8 +100,9 @@ struct PlanFrame {
   PlanStatus status = PlanStatus::EmptyTarget;
   Plan plan;
   PlanStats stats;
-  double lift_time = 0.0;        ///< [s]
-  double max_skin_length = 0.0;  ///< longest path on the skin [m]
+  double start = 0.0;                       ///< of the update; run time [s]
+  double plan_time = 0.0, lift_time = 0.0;  ///< [s]
+  double max_skin_length = 0.0;             ///< longest path on the skin [m]
 };
 
 /// Paths or foci from targets: the stages that run at the planner's rate.
@@ -84,8 +113,12 @@ class PlanStage {
   /// @throws std::invalid_argument with a sentence.
   PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale);
 
-  /// Plans a target and hands the result to the emitter; without a plan the output fades.
+  /// Plans a target and hands the result to the emitter; without a plan the output fades. Writes
+  /// `start` = `taken` of the target.
   void run(const ContactFrame& contact, PlanFrame& out) noexcept;
+
+  /// Counts on from the updates of a stage that this one stands in for.
+  void continue_from(const PlanStage& other) { updates_ = other.updates_; }
 
   Emitter& emitter() { return *emitter_; }
   double full_scale_pressure() const {
@@ -115,14 +148,28 @@ class Pipeline {
   const PlanFrame& plan() const { return plan_frame_; }
   double time() const { return time_; }  ///< run time [s]
 
-  SmokeStage& smoke() { return smoke_; }
-  PlanStage& plans() { return plans_; }
+  /// Takes other settings between two steps, and rebuilds what they concern: hands stay, and so
+  /// does the smoke where the box is the same. Where plans or their emission change the device
+  /// starts anew, so that its samples count from 0. Not taken: another fluid_rate, array or device.
+  /// @throws std::invalid_argument with a sentence; then everything is as it was.
+  void reconfigure(const PipelineSettings& settings);
+
+  SmokeStage& smoke() { return *smoke_; }
+  PlanStage& plans() { return *plans_; }
   SimulatedArray& device() { return device_; }
+  DeviceStats device_stats() const;  ///< over all starts of the device
+  EmitStats emit_stats() const;      ///< of all emitters that there were
 
  private:
-  SmokeStage smoke_;
-  PlanStage plans_;
+  /// The device plays another emitter. @return why it cannot, and plays the one before; or nothing.
+  std::string restart(Emitter& emitter);
+
+  PipelineSettings settings_;
+  std::unique_ptr<SmokeStage> smoke_;
+  std::unique_ptr<PlanStage> plans_;
   SimulatedArray device_;
+  DeviceStats device_before_;
+  EmitStats emit_before_;
   ContactFrame contact_frame_;
   PlanFrame plan_frame_;
   std::int64_t steps_ = 0;

@@ -1,13 +1,16 @@
 #pragma once
 /// Runs a pipeline for a while, in steps or on threads, and tells how it went.
 
+#include <array>
 #include <cstdint>
-#include <stop_token>
 
 #include "core/distribution.hpp"
+#include "pipeline/latency.hpp"
 #include "pipeline/pipeline.hpp"
 
 namespace prostm {
+
+struct LiveLink;
 
 enum class RunMode : std::uint8_t {
   RealTime,  ///< fluid, planner and device on threads, paced by the clock; what cannot be kept up
@@ -20,17 +23,11 @@ enum class RunMode : std::uint8_t {
 struct RunOptions {
   double seconds = 60.0;  ///< of run time
   RunMode mode = RunMode::RealTime;
-};
-
-/// Sees every plan update on the thread that called run(). Slow observers delay nothing in real
-/// time: what they miss is counted in RunSummary::unobserved.
-class RunObserver {
- public:
-  virtual ~RunObserver() = default;
-  /// @return false to stop the run.
-  virtual bool on_plan(const ContactFrame& contact, const PlanFrame& plan) = 0;
-  /// Now and then, with the run time so far [s]. @return false to stop the run.
-  virtual bool on_progress(double time) = 0;
+  /// In real time, what a fluid step does without the hands is done before they are taken; false:
+  /// after that, as the paper does, to compare.
+  bool prepare_early = true;
+  LiveLink* live = nullptr;  ///< lets onlookers see and steer a run in real time
+  bool stay = false;         ///< goes on after `seconds`, until the observer stops it
 };
 
 /// The numbers of a run; times in seconds, lengths in metres.
@@ -49,11 +46,27 @@ struct RunSummary {
   std::int64_t fluid_resets = 0;
   double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
   Summary latency, redraw;
-  Summary track, hand, fluid, contact, plan, lift;  ///< of the stages
+  std::array<Summary, kLatencyParts> latency_parts;  ///< by LatencyPart; their means add up to the
+                                                     ///< mean latency
+  Summary track, hand, fluid, contact, plan, lift;   ///< of the stages
 };
 
-/// Runs `pipeline` from its beginning. @pre not run or stepped before;
-/// settings.simulated_array.realtime as the mode asks.
+/// Sees every plan update on the thread that called run(). Slow observers delay nothing in real
+/// time: what they miss is counted in RunSummary::unobserved.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  /// @return false to stop the run.
+  virtual bool on_plan(const ContactFrame& contact, const PlanFrame& plan) = 0;
+  /// Now and then, with the run time so far [s]. @return false to stop the run.
+  virtual bool on_progress(double time) = 0;
+  /// The run's seconds are over, and it goes on (RunOptions::stay).
+  virtual void on_summary(const RunSummary& summary) { static_cast<void>(summary); }
+};
+
+/// Runs `pipeline` from its beginning. @return the summary of options.seconds, or of less when it
+/// was stopped. @pre not run or stepped before; settings.simulated_array.realtime as the mode asks;
+/// options.live and options.stay only in real time.
 RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
                RunObserver& observer);
 

@@ -13,6 +13,7 @@ void PipelineSettings::visit(SettingsVisitor& v) {
   v.field("tracker", tracker);
   v.field("fluid_rate", fluid_rate);
   v.field("fluid_steps_per_plan", fluid_steps_per_plan);
+  v.field("frame_wait", frame_wait);
   v.field("side_view", side_view);
   v.field("threads", threads);
 }

@@ -17,16 +17,21 @@
 
 namespace prostm {
 
+inline constexpr double kLiveBudget = 2e-3;  ///< for a plan of preset best in real time [s]
+
 struct PipelineSettings {
   std::string scene = "one-plume";  ///< see scene_from_name
   std::string method = "pro-stm";   ///< see method_from_name
   std::string array = "usx";        ///< what `transducers` are, by name: usx, autd3 or a file
   /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
   bool array_width = false;
-  std::string tracker = "centre";  ///< pose of the tracker: "centre", or "ultraleap-kit"
+  std::string tracker = "centre";  ///< what `X_DT` is, by name: centre, ultraleap-kit or a file
   double fluid_rate = 50.0;        ///< fluid steps a second [Hz]
   int fluid_steps_per_plan = 0;    ///< a plan every so many fluid steps; 0: as the method asks, 2
                                    ///< (25 Hz) of pro-stm, 1 (50 Hz) of am
+  /// In real time, a step that makes targets waits so long at most for a tracker's frame that comes
+  /// in after the step was due [s]; 0 to 0.1, at most half a step.
+  double frame_wait = 0.010;
   bool side_view = false;  ///< keep a picture of the box from the side with every plan update
   int threads = 2;         ///< of the fluid, the stepping thread included
 
@@ -39,6 +44,7 @@ struct PipelineSettings {
   EmitSettings emit;
   SimulatedArraySettings simulated_array;
   TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
+  Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
   /// fluid_steps_per_plan, where 0 stands for what the method asks. @throws std::invalid_argument
   /// for a method that is unknown.

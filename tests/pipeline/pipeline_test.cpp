@@ -233,7 +233,7 @@ TEST(Pipeline, RejectsBadSettings) {
   s.scene = "five-plumes";
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
   s = small_settings(false);
-  s.tracker = "ceiling";
+  s.X_DT.linear() *= 2.0;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
   s = small_settings(false);
   s.fluid_rate = 0.0;

@@ -1,0 +1,177 @@
+/// From the tracker's frame to the first sample planned from it, in real time, in turns: prostm
+/// with switches at lap ends and at once, and the paper's arrangement of the same stages.
+///
+/// usage: latency_bench [--json FILE] [--hand FILE] [--scene S] [--seconds S] [--rounds N]
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/hand_file.hpp"
+#include "pipeline/runner.hpp"
+#include "program.hpp"
+
+namespace prostm {
+namespace {
+
+struct Options {
+  std::string hand = "../shared/data/hands/flapping.hands.jsonl", scene = "one-plume";
+  double seconds = 15.0;  // of each run
+  int rounds = 3;
+};
+
+/// One way to arrange the stages, and what its runs gave.
+struct Arrangement {
+  std::string name;
+  PipelineSettings settings;
+  RunOptions options;
+  std::vector<RunSummary> runs;
+};
+
+Arrangement ours(const Options& given, const std::string& switch_at) {
+  Arrangement a;
+  a.name = "switch " + switch_at;
+  a.settings.scene = given.scene;
+  a.settings.emit.switch_at = switch_at;
+  a.settings.plan.budget = kLiveBudget;
+  a.options.seconds = given.seconds;
+  return a;
+}
+
+/// The paper's: the fluid at 50 Hz, each step as a whole after its hands, which are those that are
+/// there; 40 Jacobi sweeps; plans at 25 Hz that take 24 ms, for which preset best stands in with
+/// that budget; switches at lap ends; the whole queue.
+Arrangement papers(const Options& given) {
+  Arrangement a = ours(given, "lap");
+  a.name = "the paper's";
+  a.settings.fluid.solver = "jacobi";
+  a.settings.plan.budget = 24e-3;
+  a.settings.frame_wait = 0.0;
+  a.settings.simulated_array.queue_blocks = 10;
+  a.options.prepare_early = false;
+  return a;
+}
+
+class NoObserver final : public RunObserver {
+ public:
+  bool on_plan(const ContactFrame&, const PlanFrame&) override { return true; }
+  bool on_progress(double) override { return true; }
+};
+
+RunSummary run_once(const Arrangement& a, const Options& given) {
+  auto hands = given.hand == "scripted"
+                   ? make_scripted_hand(a.settings.scripted_hand, a.settings.track)
+                   : make_replayed_hand(read_hand_recording(given.hand), a.settings.track, true,
+                                        1.0 / a.settings.fluid_rate);
+  Pipeline pipeline(a.settings, std::move(hands));
+  NoObserver observer;
+  return run(pipeline, a.settings, a.options, observer);
+}
+
+/// The median over the runs.
+double middle(const Arrangement& a, const std::function<double(const RunSummary&)>& figure) {
+  std::vector<double> values;
+  values.reserve(a.runs.size());
+  for (const RunSummary& run : a.runs) values.push_back(figure(run));
+  return bench::quantile(values, 0.5);
+}
+
+double laps_completed(const RunSummary& run) {
+  return 1.0 - static_cast<double>(run.emit.laps_cut) /
+                   static_cast<double>(std::max<std::int64_t>(1, run.emit.laps_started));
+}
+
+/// A distribution over the runs: medians of their quantiles, and the largest value of all [ms].
+Summary over_runs(const Arrangement& a,
+                  const std::function<const Summary&(const RunSummary&)>& of) {
+  Summary all;
+  for (const RunSummary& run : a.runs) {
+    all.n += of(run).n;
+    all.max = std::max(all.max, 1e3 * of(run).max);
+  }
+  all.mean = middle(a, [&](const RunSummary& run) { return 1e3 * of(run).mean; });
+  all.p50 = middle(a, [&](const RunSummary& run) { return 1e3 * of(run).p50; });
+  all.p99 = middle(a, [&](const RunSummary& run) { return 1e3 * of(run).p99; });
+  return all;
+}
+
+void print_runs(const Arrangement& a) {
+  for (const RunSummary& run : a.runs) {
+    fmt::print("{:<14} {:>7.1f} {:>7.1f} {:>7.1f} {:>9.1f} {:>7.1f} {:>9.1f} {:>6} {:>7} {:>8}\n",
+               a.name, 1e3 * run.latency.p50, 1e3 * run.latency.p99, 1e3 * run.latency.max,
+               1e3 * run.redraw.p50, 1e3 * run.redraw.p99, 100.0 * laps_completed(run),
+               run.device.late_blocks, run.device.missed_blocks, run.skipped_fluid_steps);
+  }
+}
+
+void print_parts(const std::vector<Arrangement>& arrangements) {
+  fmt::print("\nmean of each part [ms]\n{:<14}", "");
+  for (int part = 0; part < kLatencyParts; ++part) fmt::print(" {:>9}", latency_part_name(part));
+  fmt::print("\n");
+  for (const Arrangement& a : arrangements) {
+    fmt::print("{:<14}", a.name);
+    for (std::size_t part = 0; part < kLatencyParts; ++part) {
+      fmt::print(" {:>9.2f}",
+                 middle(a, [&](const RunSummary& r) { return 1e3 * r.latency_parts[part].mean; }));
+    }
+    fmt::print("\n");
+  }
+}
+
+std::vector<bench::Row> measure_latency(Options given) {
+  if (given.hand != "scripted" && !std::filesystem::exists(given.hand)) {
+    fmt::print("{} is not there: the scripted hand instead\n", given.hand);
+    given.hand = "scripted";
+  }
+  std::vector<Arrangement> arrangements = {ours(given, "lap"), ours(given, "now"), papers(given)};
+  for (int round = 0; round < given.rounds; ++round) {
+    for (Arrangement& a : arrangements) a.runs.push_back(run_once(a, given));
+  }
+
+  fmt::print("{:<14} {:>23} {:>17} {:>9} {:>14} {:>8}\n", "", "latency [ms]", "redraw [ms]", "laps",
+             "blocks", "steps");
+  fmt::print("{:<14} {:>7} {:>7} {:>7} {:>9} {:>7} {:>9} {:>6} {:>7} {:>8}\n", "", "p50", "p99",
+             "max", "p50", "p99", "whole %", "late", "missed", "skipped");
+  for (const Arrangement& a : arrangements) print_runs(a);
+  print_parts(arrangements);
+
+  std::vector<bench::Row> rows;
+  const Arrangement& other = arrangements.back();
+  const auto latency = [](const RunSummary& r) -> const Summary& { return r.latency; };
+  const auto redraw = [](const RunSummary& r) -> const Summary& { return r.redraw; };
+  for (const Arrangement& a : arrangements) {
+    const bool beside = &a != &other;
+    const std::string baseline = beside ? other.name : "";
+    rows.push_back({"latency, " + a.name, "ms", over_runs(a, latency), baseline,
+                    beside ? over_runs(other, latency).p50 : 0.0});
+    rows.push_back({"redraw, " + a.name, "ms", over_runs(a, redraw), baseline,
+                    beside ? over_runs(other, redraw).p50 : 0.0});
+    Distribution laps, missed;
+    for (const RunSummary& run : a.runs) {
+      laps.add(100.0 * laps_completed(run));
+      missed.add(static_cast<double>(run.device.missed_blocks));
+    }
+    rows.push_back({"laps completed, " + a.name, "%", laps.summary(), "", 0.0});
+    rows.push_back({"missed blocks, " + a.name, "", missed.summary(), "", 0.0});
+  }
+  return rows;
+}
+
+}  // namespace
+}  // namespace prostm
+
+int main(int argc, char** argv) {
+  CLI::App app("The latency from a tracker's frame to the first sample planned from it.");
+  prostm::Options given;
+  app.add_option("--hand", given.hand, "a recording, or scripted")->capture_default_str();
+  app.add_option("--scene", given.scene, "of the fluid")->capture_default_str();
+  app.add_option("--seconds", given.seconds, "of each run")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--rounds", given.rounds, "of all three in turn")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  return prostm::bench::run(app, argc, argv, [&] { return prostm::measure_latency(given); });
+}

@@ -1,0 +1,111 @@
+#include "pipeline/snapshot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plan/quasi_static.hpp"
+
+namespace prostm {
+namespace {
+
+/// σ that a patch was planned with [m].
+double sigma_of(const PipelineSettings& settings, const TargetField& target) {
+  return method_from_name(settings.method) == Method::Am ? settings.am.sigma
+                                                         : settings.plan.sigma_on(target);
+}
+
+double total_pressure(const TargetField& target) {
+  double sum = 0.0;
+  for (const double p : target.pressure) sum += p;
+  return sum;
+}
+
+}  // namespace
+
+void view_smoke(const Fluid& fluid, SmokeView& out) {
+  const GridShape& grid = fluid.grid();
+  // whole blocks: the cells along an edge are a multiple of 16
+  int block = 1;
+  while (grid.nx / block > kSmokeViewCells || grid.nx % block != 0) ++block;
+  out.n = grid.nx / block;
+  out.p_DF = grid.p_DF;
+  out.edge = grid.cell * grid.nx;
+  const auto n = static_cast<std::size_t>(out.n), b = static_cast<std::size_t>(block);
+  out.density.resize(n * n * n);
+  const auto smoke = fluid.smoke();
+  const float scale = 255.0F / static_cast<float>(b * b * b);
+  const auto width = n * b;
+  std::array<float, 128> row;  // sums over the rows that a row of blocks takes together
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t j = 0; j < n; ++j) {
+      row.fill(0.0F);
+      for (std::size_t z = k * b; z < (k + 1) * b; ++z) {
+        for (std::size_t y = j * b; y < (j + 1) * b; ++y) {
+          const float* cells =
+              smoke.data() + grid.cell_index(0, static_cast<int>(y), static_cast<int>(z));
+          for (std::size_t x = 0; x < width; ++x) row[x] += cells[x];
+        }
+      }
+      std::uint8_t* to = out.density.data() + (k * n + j) * n;
+      for (std::size_t i = 0; i < n; ++i) {
+        float sum = 0.0F;
+        for (std::size_t x = i * b; x < (i + 1) * b; ++x) sum += row[x];
+        to[i] = static_cast<std::uint8_t>(std::clamp(sum * scale + 0.5F, 0.0F, 255.0F));
+      }
+    }
+  }
+}
+
+void Snapshots::step(const ContactFrame& frame, const HandSource& hands) {
+  StepSnapshot& s = step_.draft();
+  s.step = frame.step;
+  s.hands = frame.hands;
+  s.recording_time = hands.recording_time();
+  s.track_time = frame.track_time;
+  s.hand_time = frame.hand_time;
+  s.fluid_time = frame.fluid_time;
+  step_.publish();
+}
+
+void Snapshots::smoke(const Fluid& fluid) {
+  if (!watched()) return;
+  view_smoke(fluid, smoke_.draft());
+  smoke_.publish();
+}
+
+void Snapshots::plan(const ContactFrame& contact, const PlanFrame& plan, double latency) {
+  PlanSnapshot& s = plan_.draft();
+  s.id = plan.id;
+  s.planned = plan.status == PlanStatus::Planned;
+  s.target = contact.target;
+  s.plan = plan.plan;
+  s.settings = settings_;
+  s.contact_time = contact.contact_time;
+  s.plan_time = plan.plan_time;
+  s.lift_time = plan.lift_time;
+  s.latency = latency;
+  if (std::isfinite(latency)) latencies_.push(latency);
+  plan_.publish();
+}
+
+void render(const PlanSnapshot& plan, RenderedPlan& out) {
+  out.metrics = {};
+  out.max_target = 0.0;
+  double most = 0.0;
+  for (std::size_t i = 0; i < plan.target.patches.size(); ++i) {
+    const TargetField& target = plan.target.patches[i];
+    const int patch = static_cast<int>(i);
+    out.field[i].assign(target.size(), 0.0);
+    out.max_target = std::max(out.max_target, max_pressure(target));
+    if (!plan.planned) continue;
+    const double sigma = sigma_of(*plan.settings, target);
+    const GainLaw gain = plan.settings->plan.gain_law();
+    quasi_static_field(plan.plan, patch, target, sigma, gain, out.field[i]);
+    const double pressure = total_pressure(target);
+    if (!(pressure > most)) continue;
+    most = pressure;
+    out.metrics = score_field(target, out.field[i], plan_coverage(target, plan.plan, patch, sigma));
+  }
+}
+
+}  // namespace prostm

@@ -1,0 +1,191 @@
+/// The table of controls, and pipelines that take other settings between their steps.
+
+#include "pipeline/controls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "core/input_error.hpp"
+#include "pipeline/pipeline.hpp"
+#include "pipeline/snapshot.hpp"
+
+namespace prostm {
+namespace {
+
+LiveSettings small_settings() {
+  LiveSettings s;
+  s.pipeline.fluid.cells = 32;
+  s.pipeline.simulated_array.realtime = false;
+  s.pipeline.simulated_array.history = 0.1;
+  s.pipeline.scripted_hand.still = true;
+  s.source = "scripted";
+  s.sources = {"scripted", "page"};
+  return s;
+}
+
+Pipeline pipeline_of(const LiveSettings& s) {
+  return Pipeline(s.pipeline, make_scripted_hand(s.pipeline.scripted_hand, s.pipeline.track));
+}
+
+TEST(Controls, HaveIdsOfTheirOwnAndSayWhatTheyDo) {
+  std::set<std::string_view> ids;
+  for (const RunControl& c : run_controls()) {
+    SCOPED_TRACE(c.id);
+    EXPECT_TRUE(ids.insert(c.id).second);
+    EXPECT_FALSE(c.group.empty() || c.label.empty() || c.help.empty());
+    EXPECT_LT(c.low, c.high);
+    EXPECT_GT(c.step, 0.0);
+    EXPECT_EQ(c.choices.empty(), c.kind != ControlKind::Choice);
+    EXPECT_EQ(&run_controls()[static_cast<std::size_t>(control_index(c.id))], &c);
+  }
+  EXPECT_EQ(control_index("no such"), -1);
+}
+
+// what is set is got back, and what the defaults are lies within the bounds
+TEST(Controls, GetWhatWasSet) {
+  for (const RunControl& c : run_controls()) {
+    SCOPED_TRACE(c.id);
+    LiveSettings s = small_settings();
+    EXPECT_GE(c.get(s), c.low);
+    EXPECT_LE(c.get(s), c.high);
+    for (const double value : {c.low, c.high}) {
+      const auto place = static_cast<std::size_t>(value);
+      if (c.available != nullptr && !c.available(s, place)) continue;
+      c.set(s, value);
+      EXPECT_NEAR(c.get(s), value, 1e-9);
+    }
+  }
+}
+
+TEST(Controls, TakeTheRightKindOfValueWithinBounds) {
+  const LiveSettings s = small_settings();
+  const auto number_of = [&](const char* id, const ControlValue& value) {
+    return control_number(run_controls()[static_cast<std::size_t>(control_index(id))], value, s);
+  };
+  EXPECT_EQ(number_of("gain", 2.0), 2.0);
+  EXPECT_EQ(number_of("prediction", true), 1.0);
+  EXPECT_EQ(number_of("method", std::string("am")), 1.0);
+  EXPECT_THROW(number_of("gain", 99.0), InputError);
+  EXPECT_THROW(number_of("gain", true), InputError);
+  EXPECT_THROW(number_of("gain", std::string("2")), InputError);
+  EXPECT_THROW(number_of("paths", 2.5), InputError);
+  EXPECT_THROW(number_of("prediction", 1.0), InputError);
+  EXPECT_THROW(number_of("method", std::string("AM")), InputError);
+  EXPECT_THROW(number_of("method", 1.0), InputError);
+  EXPECT_NO_THROW(number_of("source", std::string("page")));
+  EXPECT_THROW(number_of("source", std::string("leap")), InputError) << "there is no tracker";
+}
+
+// every control at both its bounds, from a run that goes on
+TEST(Controls, APipelineTakesEveryOneBetweenSteps) {
+  LiveSettings s = small_settings();
+  Pipeline pipeline = pipeline_of(s);
+  for (int i = 0; i < 4; ++i) pipeline.step(0.02);
+  for (const RunControl& c : run_controls()) {
+    SCOPED_TRACE(c.id);
+    for (const double value : {c.low, c.high}) {
+      LiveSettings wanted = s;
+      c.set(wanted, value);
+      ASSERT_NO_THROW(pipeline.reconfigure(wanted.pipeline));
+    }
+    ASSERT_NO_THROW(pipeline.reconfigure(s.pipeline));
+  }
+  pipeline.step(0.02);
+  EXPECT_EQ(pipeline.contact().step, 5);
+}
+
+TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
+  LiveSettings s = small_settings();
+  Pipeline pipeline = pipeline_of(s);
+  for (int i = 0; i < 60; ++i) pipeline.step(0.02);
+  ASSERT_EQ(pipeline.plan().status, PlanStatus::Planned);
+  ASSERT_GT(pipeline.plan().plan.paths.size(), 2U);
+  const std::int64_t blocks = pipeline.device_stats().blocks;
+  const std::int64_t updates = pipeline.plan().id;
+  const auto smoke = pipeline.smoke().fluid().smoke();
+  const std::vector<float> before(smoke.begin(), smoke.end());
+
+  s.pipeline.plan.paths = 2;
+  s.pipeline.fluid.jet_speed = 0.5;
+  pipeline.reconfigure(s.pipeline);
+  const auto after = pipeline.smoke().fluid().smoke();
+  EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
+  while (!pipeline.step(0.02)) {
+  }
+  EXPECT_EQ(pipeline.plan().id, updates + 1);
+  EXPECT_LE(pipeline.plan().plan.paths.size(), 2U);
+  EXPECT_GE(pipeline.device_stats().blocks, blocks) << "counters go on";
+
+  s.pipeline.method = "am";
+  pipeline.reconfigure(s.pipeline);
+  pipeline.step(0.02);
+  EXPECT_FALSE(pipeline.plan().plan.foci.empty());
+}
+
+TEST(Reconfigure, WhatIsRefusedLeavesEverythingAsItWas) {
+  const LiveSettings s = small_settings();
+  Pipeline pipeline = pipeline_of(s);
+  for (int i = 0; i < 40; ++i) pipeline.step(0.02);
+  PipelineSettings bad = s.pipeline;
+  bad.plan.speed = 1000.0;
+  EXPECT_THROW(pipeline.reconfigure(bad), std::invalid_argument);
+  bad = s.pipeline;
+  bad.scene = "no such";
+  EXPECT_THROW(pipeline.reconfigure(bad), std::invalid_argument);
+  SimulatedFaults faults;
+  faults.refuse = true;
+  pipeline.device().set_faults(faults);
+  EXPECT_EQ(pipeline.device().status(), DeviceStatus::Running);
+  pipeline.device().set_faults({});
+  bool planned = false;
+  for (int i = 0; i < 4; ++i) planned = pipeline.step(0.02) || planned;
+  EXPECT_TRUE(planned);
+  EXPECT_EQ(pipeline.plan().status, PlanStatus::Planned);
+  EXPECT_EQ(pipeline.device().status(), DeviceStatus::Running);
+}
+
+TEST(SmokeView, IsTheMeanOfWholeBlocks) {
+  for (const int cells : {32, 48, 64, 80, 96}) {
+    SCOPED_TRACE(cells);
+    WorkerPool pool(1);
+    FluidSettings settings;
+    settings.cells = cells;
+    Fluid fluid(settings, scene_from_name("four-plumes"), pool);
+    HandRasteriser hands(fluid.grid());
+    hands.rasterise({}, pool);
+    for (int i = 0; i < 10; ++i) fluid.step(0.02, hands.raster());
+    SmokeView view;
+    view_smoke(fluid, view);
+    ASSERT_LE(view.n, kSmokeViewCells);
+    ASSERT_EQ(cells % view.n, 0);
+    EXPECT_NEAR(view.edge, settings.width, 1e-12);
+    const int b = cells / view.n;
+    const auto cell_mean = [&](int i, int j, int k) {
+      double sum = 0.0;
+      for (int z = 0; z < b; ++z)
+        for (int y = 0; y < b; ++y)
+          for (int x = 0; x < b; ++x)
+            sum += static_cast<double>(
+                fluid.smoke()[fluid.grid().cell_index(i * b + x, j * b + y, k * b + z)]);
+      return 255.0 * sum / (b * b * b);
+    };
+    int brightest = 0;
+    for (int k = 0; k < view.n; k += 3) {
+      for (int j = 0; j < view.n; ++j) {
+        for (int i = 0; i < view.n; ++i) {
+          const int value = view.density[static_cast<std::size_t>((k * view.n + j) * view.n + i)];
+          EXPECT_NEAR(value, std::min(cell_mean(i, j, k), 255.0), 0.51);
+          brightest = std::max(brightest, value);
+        }
+      }
+    }
+    EXPECT_GT(brightest, 50);
+  }
+}
+
+}  // namespace
+}  // namespace prostm
