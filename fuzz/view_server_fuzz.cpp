@@ -1,0 +1,125 @@
+/// The whole server over loopback: any bytes as a request, as WebSocket frames, or as a page's
+/// messages. It must live on, and answer the next request.
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/write.hpp>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "viewer/server.hpp"
+
+namespace {
+
+using namespace prostm;
+namespace asio = boost::asio;
+
+/// A run with nothing in it.
+class Nothing final : public ViewSource {
+ public:
+  void watch(bool) override {}
+  void refresh(ViewFrame& frame, ViewNews& news) override {
+    frame.hand_count = 1;
+    ++news.fields;
+  }
+  std::string hello() override { return "{}"; }
+  bool refresh_state(std::string& state) override {
+    state = "{}";
+    return true;
+  }
+  std::string take(std::uint32_t, const PageMessage&) override { return "it cannot be done"; }
+  bool next_refusal(std::uint32_t&, std::string&) override { return false; }
+  void forget(std::uint32_t) override {}
+};
+
+ViewServer& server() {
+  static Nothing source;
+  static const unsigned char kText[] = "page";
+  static const std::array<PageFile, 1> kFiles = {PageFile{"/", "text/html", kText}};
+  static ViewSettings settings = [] {
+    ViewSettings s;
+    s.port = 0;
+    s.request_time = 1.0;
+    return s;
+  }();
+  static ViewServer server(settings, source, kFiles);
+  return server;
+}
+
+const std::string& handshake() {
+  static const std::string kText =
+      "GET /live HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
+  return kText;
+}
+
+/// The bytes as one masked text frame, with a mask of zeros.
+std::string as_message(const std::string& text) {
+  std::string out = "\x81";
+  out += static_cast<char>(0x80 | 126);
+  out += static_cast<char>(text.size() >> 8 & 0xFF);
+  out += static_cast<char>(text.size() & 0xFF);
+  return out + std::string(4, '\0') + text;
+}
+
+/// Sends the bytes and reads until the server closes.
+std::string exchange(const std::string& bytes) {
+  asio::io_context io;
+  asio::ip::tcp::socket socket(io);
+  const asio::ip::tcp::endpoint there(asio::ip::address_v4::loopback(),
+                                      static_cast<std::uint16_t>(server().port()));
+  boost::system::error_code wrong;
+  socket.connect(there, wrong);
+  // thousands of connections a second may use up the ports of this side for a while
+  for (int tries = 0; wrong.value() == EADDRNOTAVAIL && tries < 600; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    socket.close(wrong);
+    socket.connect(there, wrong);
+  }
+  if (wrong) {
+    std::fprintf(stderr, "cannot connect: %s\n", wrong.message().c_str());
+    std::abort();
+  }
+  // ends at once: a connection that waits to be closed would use up ports
+  socket.set_option(asio::socket_base::linger(true, 0), wrong);
+  asio::write(socket, asio::buffer(bytes), wrong);
+  socket.shutdown(asio::ip::tcp::socket::shutdown_send, wrong);
+  std::string answer;
+  std::array<char, 4096> some{};
+  wrong = {};
+  while (!wrong) answer.append(some.data(), socket.read_some(asio::buffer(some), wrong));
+  return answer;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  switch (data[0] % 4) {
+    case 0:
+      exchange(bytes);
+      break;
+    case 1:
+      exchange("GET " + bytes + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+      break;
+    case 2:
+      exchange(handshake() + bytes);
+      break;
+    default:
+      exchange(handshake() + as_message(bytes.substr(0, 65535)));
+  }
+  static int inputs = 0;
+  if (++inputs % 64 == 0) {
+    const std::string answer =
+        exchange("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    if (answer.find("200 OK") == std::string::npos) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,134 @@
+#pragma once
+/// The binary frames that a page reads: docs/wire.md in C++. web/src/wire.ts is its counterpart;
+/// web/fixtures holds the two together.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace prostm {
+
+inline constexpr int kWireVersion = 1;
+
+/// The numbers of a frame, in the order of the wire, which only ever grows at its end.
+enum ViewNumber : int {
+  kTrackMs,
+  kHandMs,
+  kFluidMs,
+  kContactMs,
+  kPlanMs,
+  kLiftMs,
+  kStepMs,
+  kFluidHz,
+  kPlanHz,
+  kLatencyMs,
+  kLatencyP50Ms,
+  kLatencyP99Ms,
+  kLatencyMaxMs,
+  kBlocks,
+  kLateBlocks,
+  kMissedBlocks,
+  kQueueBlocks,
+  kRmse,
+  kCorrelation,
+  kCoverage,
+  kSkill0,
+  kSkill8,
+  kOverlap,
+  kSpill,
+  kMaxTargetPa,
+  kFullScalePa,
+  kLapsCompleted,
+  kTrackerAgeMs,
+  kIntensity,
+  kSaturated,
+  kViewNumberCount
+};
+
+/// Their names in /numbers.json, in the same order.
+std::span<const std::string_view> view_number_names();
+
+/// Flags of ViewRun.
+enum ViewFlag : std::uint32_t {
+  kViewPaused = 1,
+  kViewPageHand = 2,  ///< the page's hand is in charge
+  kViewHandInSight = 4,
+  kViewFading = 8  ///< output fades for want of plans
+};
+
+struct ViewRun {
+  double time = 0.0;            ///< of the run [s]
+  double recording_time = 0.0;  ///< in the hand's recording [s], NaN without one
+  std::uint32_t fluid_steps = 0, plan_updates = 0;
+  std::uint32_t flags = 0;  ///< of ViewFlag
+};
+
+/// Position in D [m], orientation as x, y, z, w, radius [m].
+using ViewJoint = std::array<float, 8>;
+
+struct ViewHand {
+  std::uint32_t id = 0;
+  std::uint32_t side = 0;   ///< 0 left, 1 right
+  float confidence = 1.0F;  ///< 0..1
+  std::array<ViewJoint, 26> joints{};
+};
+
+/// n³ values, x fastest, then y, then z: 0 clear to 255.
+struct ViewSmoke {
+  std::uint32_t n = 0;
+  std::array<float, 3> corner{};  ///< of the box in D [m]
+  float edge = 0.0F;              ///< of the box [m]
+  std::vector<std::uint8_t> density;
+};
+
+/// One patch of skin, rows·cols of each array, row-major. Pressures are in parts of `scale`/65535.
+struct ViewField {
+  std::uint32_t rows = 0, cols = 0;
+  float cell = 0.0F;              ///< [m]
+  std::array<float, 2> origin{};  ///< centre of cell (0, 0) in P [m]
+  std::array<float, 12> X_DP{};   ///< rows of the upper 3 × 4 matrix
+  float scale = 1.0F;             ///< the pressure of 65535 [Pa]
+  float height_scale = 1.0F;      ///< the height of 1 [m]
+  std::vector<std::uint16_t> target, rendered;
+  std::vector<std::int16_t> height;
+  std::vector<std::uint8_t> skin;
+};
+
+/// x, y in P [m], rendered pressure [Pa], position on the skin in D [m].
+using ViewPoint = std::array<float, 6>;
+
+/// A closed path, or a focus of one point.
+struct ViewPath {
+  std::uint32_t kind = 0;   ///< 0 closed path, 1 focus
+  std::uint32_t patch = 0;  ///< index of the field that it lies on
+  float length = 0.0F;      ///< in the plane [m]
+  float speed = 0.0F;       ///< [m/s]
+  float period = 0.0F;      ///< [s]
+  std::vector<ViewPoint> points;
+};
+
+/// What a page sees at one moment. Vectors keep their room from frame to frame: the first *_count
+/// of them hold.
+struct ViewFrame {
+  std::uint32_t sequence = 0;
+  ViewRun run;
+  std::array<float, kViewNumberCount> numbers{};  ///< NaN where there is none
+  std::uint32_t hand_count = 0;
+  std::array<ViewHand, 2> hands;
+  ViewSmoke smoke;
+  std::uint32_t field_count = 0;
+  std::vector<ViewField> fields;
+  std::uint32_t path_count = 0;
+  std::vector<ViewPath> paths;
+};
+
+/// Writes the frame as one message into `out`, whose old contents go and whose room is used again.
+/// Allocates only while `out` grows. @param with_smoke, with_fields whether the large sections are
+/// in it. @pre the counts are within the vectors, and every array of a field or of the smoke has
+/// the size that its shape says.
+void encode(const ViewFrame& frame, bool with_smoke, bool with_fields,
+            std::vector<std::uint8_t>& out);
+
+}  // namespace prostm

@@ -1,0 +1,119 @@
+/// Every message of a page, good and bad.
+
+#include "viewer/page_message.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/units.hpp"
+#include "support/input_errors.hpp"
+
+namespace prostm {
+namespace {
+
+std::string problem_of(const std::string& text) {
+  const test::WithoutTraps without;  // numbers like 1e999
+  PageMessage message;
+  std::string problem;
+  return read_page_message(text, message, problem) ? "" : problem;
+}
+
+template <class T>
+T read(const std::string& text) {
+  PageMessage message;
+  std::string problem;
+  EXPECT_TRUE(read_page_message(text, message, problem)) << problem;
+  return std::get<T>(message);
+}
+
+TEST(PageMessage, SetTakesNumbersSwitchesAndNames) {
+  EXPECT_EQ(std::get<double>(read<SetMessage>(R"({"type":"set","id":"gain","value":2})").value), 2);
+  EXPECT_EQ(std::get<bool>(read<SetMessage>(R"({"type":"set","id":"a","value":true})").value),
+            true);
+  const auto set = read<SetMessage>(R"({"type":"set","id":"scene","value":"still-air"})");
+  EXPECT_EQ(set.id, "scene");
+  EXPECT_EQ(std::get<std::string>(set.value), "still-air");
+}
+
+TEST(PageMessage, TransportKnowsFourWords) {
+  using Do = TransportMessage::Do;
+  EXPECT_EQ(read<TransportMessage>(R"({"type":"transport","do":"play"})").what, Do::Play);
+  EXPECT_EQ(read<TransportMessage>(R"({"type":"transport","do":"pause"})").what, Do::Pause);
+  EXPECT_EQ(read<TransportMessage>(R"({"type":"transport","do":"step"})").what, Do::Step);
+  const auto seek = read<TransportMessage>(R"({"type":"transport","do":"seek","time_s":1.5})");
+  EXPECT_EQ(seek.what, Do::Seek);
+  EXPECT_EQ(seek.time, 1.5);
+}
+
+TEST(PageMessage, HandIsInMetresAndRadians) {
+  const auto hand = read<HandMessage>(
+      R"({"type":"hand","palm_mm":[10,-20,200],"yaw_deg":90,"pitch_deg":0,"roll_deg":-45,)"
+      R"("closure":0.25,"side":"left"})");
+  EXPECT_FALSE(hand.release);
+  EXPECT_DOUBLE_EQ(hand.palm[0], 0.010);
+  EXPECT_DOUBLE_EQ(hand.palm[1], -0.020);
+  EXPECT_DOUBLE_EQ(hand.palm[2], 0.200);
+  EXPECT_DOUBLE_EQ(hand.yaw, kPi / 2);
+  EXPECT_DOUBLE_EQ(hand.roll, -kPi / 4);
+  EXPECT_EQ(hand.closure, 0.25);
+  EXPECT_TRUE(hand.left);
+  EXPECT_TRUE(read<HandMessage>(R"({"type":"hand","release":true})").release);
+}
+
+TEST(PageMessage, CalibrationAndRate) {
+  using Do = CalibrationMessage::Do;
+  EXPECT_EQ(read<CalibrationMessage>(R"({"type":"calibration","do":"begin"})").what, Do::Begin);
+  const auto take = read<CalibrationMessage>(R"({"type":"calibration","do":"take","mark":2})");
+  EXPECT_EQ(take.what, Do::Take);
+  EXPECT_EQ(take.mark, 2);
+  EXPECT_EQ(read<CalibrationMessage>(R"({"type":"calibration","do":"cancel"})").what, Do::Cancel);
+  EXPECT_EQ(read<RateMessage>(R"({"type":"rate","hz":60})").rate, 60.0);
+}
+
+TEST(PageMessage, WhatIsNoneIsToldInASentence) {
+  const char* const hand =
+      R"({"type":"hand","palm_mm":[0,0,200],"yaw_deg":0,"pitch_deg":0,"roll_deg":0,"closure":0,)";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "JSON object"},
+      {"[]", "JSON object"},
+      {"{", "JSON object"},
+      {"\xff\xfe", "JSON object"},
+      {std::string(4097, ' '), "4096 bytes"},
+      {"{}", "lacks \"type\""},
+      {R"({"type":7})", "\"type\" must be a text"},
+      {R"({"type":"reset"})", "set, transport, hand, calibration or rate"},
+      {R"({"type":"set","value":1})", "lacks \"id\""},
+      {R"({"type":"set","id":"gain"})", "lacks \"value\""},
+      {R"({"type":"set","id":"gain","value":null})", "\"value\" must be a number"},
+      {R"({"type":"set","id":"gain","value":1e999})", "JSON object"},
+      {R"({"type":"set","id":"gain","value":[1]})", "\"value\" must be a number"},
+      {R"({"type":"transport","do":"rewind"})", "play, pause, step or seek"},
+      {R"({"type":"transport","do":"seek"})", "lacks \"time_s\""},
+      {R"({"type":"transport","do":"seek","time_s":-1})", "\"time_s\" must be a number between 0"},
+      {hand + std::string(R"("side":"up"})"), "left or right"},
+      {hand + std::string("\"x\":0}"), "lacks \"side\""},
+      {R"({"type":"hand"})", "lacks \"palm_mm\""},
+      {R"({"type":"hand","palm_mm":[0,0]})", "three numbers"},
+      {R"({"type":"hand","palm_mm":[0,0,"a"]})", "\"palm_mm\" must be a number"},
+      {R"({"type":"hand","palm_mm":[0,0,2000]})", "between -500 and 500"},
+      {R"({"type":"hand","release":1})", "true or false"},
+      {R"({"type":"calibration","do":"undo"})", "begin, take, solve, save or cancel"},
+      {R"({"type":"calibration","do":"take"})", "lacks \"mark\""},
+      {R"({"type":"calibration","do":"take","mark":0.5})", "whole number"},
+      {R"({"type":"calibration","do":"take","mark":-1})", "between 0 and 100"},
+      {R"({"type":"rate","hz":0})", "between 1 and 60"},
+      {R"({"type":"rate","hz":"fast"})", "between 1 and 60"}};
+  for (const auto& [text, expected] : cases) {
+    SCOPED_TRACE(text.substr(0, 100));
+    EXPECT_NE(problem_of(text).find(expected), std::string::npos) << problem_of(text);
+  }
+}
+
+TEST(PageMessage, DeepNestingIsJustNoMessage) {
+  EXPECT_FALSE(problem_of(std::string(4000, '[')).empty());
+  EXPECT_FALSE(problem_of(std::string(2000, '[') + std::string(2000, ']')).empty());
+}
+
+}  // namespace
+}  // namespace prostm

@@ -1,0 +1,206 @@
+#pragma once
+/// A page, and something to look at, for tests of the server.
+
+#include <atomic>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <deque>
+#include <limits>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "viewer/server.hpp"
+
+namespace prostm::test {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+using Json = nlohmann::json;
+
+/// A run that nobody runs: frames count up, and what pages ask is kept.
+class StandIn final : public ViewSource {
+ public:
+  explicit StandIn(std::uint32_t smoke_cells = 32) { smoke_cells_ = smoke_cells; }
+  void watch(bool somebody) override { watched = somebody; }
+  void refresh(ViewFrame& frame, ViewNews& news) override {
+    frame.run.fluid_steps = static_cast<std::uint32_t>(++refreshed);
+    frame.numbers.fill(std::numeric_limits<float>::quiet_NaN());
+    frame.numbers[kFluidMs] = 7.25F;
+    frame.hand_count = 2;
+    frame.smoke.n = smoke_cells_;
+    frame.smoke.density.assign(std::size_t{smoke_cells_} * smoke_cells_ * smoke_cells_, 7);
+    if (new_smoke) ++news.smoke;
+    if (news.fields == 0) ++news.fields;
+  }
+  std::string hello() override { return R"({"type":"hello","version":1})"; }
+  bool refresh_state(std::string& state) override {
+    const int version = state_version;
+    if (version == told_) return false;
+    told_ = version;
+    state = R"({"type":"state","version":)" + std::to_string(version) + "}";
+    return true;
+  }
+  std::string take(std::uint32_t page, const PageMessage& message) override {
+    const std::lock_guard lock(mutex_);
+    taken_.emplace_back(page, message);
+    const auto* set = std::get_if<SetMessage>(&message);
+    return set != nullptr && set->id == "refused" ? "it cannot be done" : "";
+  }
+  bool next_refusal(std::uint32_t& page, std::string& sentence) override {
+    const std::lock_guard lock(mutex_);
+    if (refusals_.empty()) return false;
+    std::tie(page, sentence) = refusals_.front();
+    refusals_.pop_front();
+    return true;
+  }
+  void forget(std::uint32_t) override { ++forgotten; }
+
+  void refuse_later(std::uint32_t page, std::string sentence) {
+    const std::lock_guard lock(mutex_);
+    refusals_.emplace_back(page, std::move(sentence));
+  }
+  std::vector<std::pair<std::uint32_t, PageMessage>> taken() {
+    const std::lock_guard lock(mutex_);
+    return taken_;
+  }
+
+  std::atomic<bool> watched{false}, new_smoke{true};
+  std::atomic<int> state_version{1}, forgotten{0};
+  std::atomic<std::int64_t> refreshed{0};
+
+ private:
+  std::uint32_t smoke_cells_ = 0;
+  int told_ = 0;
+  std::mutex mutex_;
+  std::vector<std::pair<std::uint32_t, PageMessage>> taken_;
+  std::deque<std::pair<std::uint32_t, std::string>> refusals_;
+};
+
+/// Waits for something that happens on another thread; false when it does not within a minute.
+template <class Condition>
+bool eventually(Condition&& condition) {
+  for (int i = 0; i < 6000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+/// What a connection answers to raw bytes, until it closes (or, with `enough`, until that many
+/// bytes have come).
+inline std::string raw_exchange(int port, const std::string& bytes,
+                                std::size_t enough = std::string::npos) {
+  asio::io_context io;
+  asio::ip::tcp::socket socket(io);
+  socket.connect({asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(port)});
+  boost::system::error_code wrong;
+  asio::write(socket, asio::buffer(bytes), wrong);
+  std::string answer;
+  while (!wrong && answer.size() < enough) {
+    char some[4096];
+    const std::size_t n = socket.read_some(asio::buffer(some), wrong);
+    answer.append(some, n);
+  }
+  return answer;
+}
+
+/// Status of the answer to one request; 0 when there is none.
+inline int status_of(const std::string& answer) {
+  return answer.rfind("HTTP/1.1 ", 0) == 0 ? std::stoi(answer.substr(9, 3)) : 0;
+}
+
+/// GET of a target with "Connection: close".
+inline std::string get(int port, const std::string& target, const std::string& headers = "",
+                       const std::string& method = "GET") {
+  return raw_exchange(port, method + " " + target + " HTTP/1.1\r\n" +
+                                (headers.find("Host:") == std::string::npos
+                                     ? "Host: 127.0.0.1:" + std::to_string(port) + "\r\n"
+                                     : "") +
+                                headers + "Connection: close\r\n\r\n");
+}
+
+/// A page without a browser. Reads block; a test that waits in vain is ended by its time limit.
+class Page {
+ public:
+  using Socket = beast::websocket::stream<asio::ip::tcp::socket>;
+
+  /// @throws boost::system::system_error when it is refused.
+  explicit Page(int port, const std::string& origin = "", const std::string& host = "",
+                const std::string& target = "/live")
+      : socket_(io_) {
+    socket_.next_layer().connect(
+        {asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(port)});
+    if (!origin.empty()) {
+      socket_.set_option(beast::websocket::stream_base::decorator(
+          [origin](beast::websocket::request_type& request) {
+            request.set(beast::http::field::origin, origin);
+          }));
+    }
+    socket_.handshake(host.empty() ? "127.0.0.1:" + std::to_string(port) : host, target);
+  }
+
+  void say(const std::string& text) {
+    socket_.text(true);
+    socket_.write(asio::buffer(text));
+  }
+  /// The next message of a kind; those of the other kind go. @throws when the connection closes.
+  std::string next(bool text) {
+    for (;;) {
+      beast::flat_buffer buffer;
+      socket_.read(buffer);
+      if (socket_.got_text() == text) return beast::buffers_to_string(buffer.data());
+    }
+  }
+  std::string next_frame() { return next(false); }
+  Json next_text() { return Json::parse(next(true)); }
+  /// The next text of a type.
+  Json next_text(const std::string& type) {
+    for (;;) {
+      Json json = next_text();
+      if (json.at("type") == type) return json;
+    }
+  }
+  /// Reads on until the server closes; nothing else ends it.
+  void read_to_the_end() {
+    boost::system::error_code wrong;
+    while (!wrong) {
+      beast::flat_buffer buffer;
+      socket_.read(buffer, wrong);
+    }
+  }
+  Socket& socket() { return socket_; }
+
+ private:
+  asio::io_context io_;
+  Socket socket_;
+};
+
+/// A little-endian number in a frame.
+inline std::uint32_t u32_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 4; i-- > 0;)
+    value = value << 8 | static_cast<unsigned char>(bytes.at(at + i));
+  return value;
+}
+
+/// Whether a frame has a section.
+inline bool has_section(const std::string& bytes, unsigned id) {
+  std::size_t at = 16;
+  while (at < bytes.size()) {
+    if ((u32_at(bytes, at) & 0xFFFFU) == id) return true;
+    at += 8 + (u32_at(bytes, at + 4) + 7) / 8 * 8;
+  }
+  return false;
+}
+
+}  // namespace prostm::test
