@@ -1,0 +1,7 @@
+#!/bin/bash
+# Takes the pictures of the page that the README and docs show, with the release build in Chromium: tools/page_pictures.sh
+set -euo pipefail
+root=$(dirname "$(dirname "$(readlink -f "$0")")")
+export PROSTM=$root/build/release/prostm
+cd "$root/web"
+npm run --silent pictures -- "$root/docs/pictures"

@@ -1,0 +1,94 @@
+/// The WebSocket to the program: what it last said, and new attempts when it is gone.
+
+import { parseMessage, type Hello, type PageMessage, type State } from "./messages";
+import { Decoder, WireError, type Frame } from "./wire";
+
+export type Link = "connecting" | "open" | "lost";
+
+export interface Listeners {
+  frame(frame: Frame): void;
+  hello(hello: Hello): void;
+  state(state: State): void;
+  error(sentence: string): void;
+  /// what to tell whoever looks at the page; "" when all is well
+  link(link: Link, sentence: string): void;
+}
+
+const kFirstWait = 250, kLongestWait = 4000; // [ms]
+
+export class Connection {
+  frame: Frame | null = null;
+  hello: Hello | null = null;
+  state: State | null = null;
+  frames = 0; // read, since the page was opened
+  refused = 0; // frames that were not read
+  opened = 0; // connections, since the page was opened
+  private socket: WebSocket | null = null;
+  private wait = kFirstWait;
+
+  constructor(private readonly address: string, private readonly listeners: Listeners) {}
+
+  open(): void {
+    const decoder = new Decoder();
+    const socket = new WebSocket(this.address);
+    this.socket = socket;
+    socket.binaryType = "arraybuffer";
+    if (this.opened === 0) this.listeners.link("connecting", "Connecting to the program…");
+    socket.onopen = () => {
+      ++this.opened;
+      this.wait = kFirstWait;
+      this.listeners.link("open", "");
+      this.sendRate();
+    };
+    socket.onmessage = (event: MessageEvent<ArrayBuffer | string>) => {
+      if (typeof event.data === "string") this.readText(event.data);
+      else this.readFrame(decoder, event.data);
+    };
+    socket.onclose = () => {
+      if (this.socket !== socket) return;
+      this.socket = null;
+      const seconds = this.wait / 1000;
+      this.listeners.link("lost", `The program does not answer; what you see has stopped. Trying again ${seconds < 1 ? "at once" : `in ${seconds} s`}…`);
+      window.setTimeout(() => this.open(), this.wait);
+      this.wait = Math.min(kLongestWait, 2 * this.wait);
+    };
+  }
+
+  get isOpen(): boolean { return this.socket?.readyState === WebSocket.OPEN; }
+
+  /// @return whether it went out.
+  send(message: PageMessage): boolean {
+    if (!this.isOpen) return false;
+    this.socket?.send(JSON.stringify(message));
+    return true;
+  }
+
+  /// A page that nobody sees asks for little.
+  sendRate(): void { this.send({ type: "rate", hz: document.hidden ? 1 : 30 }); }
+
+  private readFrame(decoder: Decoder, data: ArrayBuffer): void {
+    try {
+      this.frame = decoder.decode(data);
+    } catch (error) {
+      if (!(error instanceof WireError)) throw error;
+      ++this.refused;
+      this.listeners.link("open", `A frame was not read: ${error.message}.`);
+      return;
+    }
+    ++this.frames;
+    this.listeners.frame(this.frame);
+  }
+
+  private readText(text: string): void {
+    const message = parseMessage(text);
+    if (message?.type === "hello") {
+      this.hello = message;
+      this.listeners.hello(message);
+    } else if (message?.type === "state") {
+      this.state = message;
+      this.listeners.state(message);
+    } else if (message?.type === "error") {
+      this.listeners.error(message.sentence);
+    }
+  }
+}

@@ -1,0 +1,140 @@
+/// The text messages of docs/wire.md, as types, and the check of those that come from the program.
+
+export interface Hello {
+  type: "hello";
+  version: number;
+  prostm: string;
+  array: { name: string; transducers_mm: [number, number, number][] };
+  box_mm: { origin: [number, number, number]; edge: number };
+}
+
+interface ControlBase {
+  id: string;
+  group: string;
+  label: string;
+  help: string;
+  unit?: string;
+  enabled: boolean;
+}
+export interface ChoiceControl extends ControlBase {
+  kind: "choice";
+  value: string;
+  choices: { value: string; label: string }[];
+}
+export interface NumberControl extends ControlBase {
+  kind: "number";
+  value: number;
+  min: number;
+  max: number;
+  step: number;
+}
+export interface SwitchControl extends ControlBase {
+  kind: "switch";
+  value: boolean;
+}
+export type Control = ChoiceControl | NumberControl | SwitchControl;
+
+export interface Transport {
+  playing: boolean;
+  recording: null | { length_s: number; seekable: boolean };
+  source: string;
+  base: string;
+}
+export interface Tracker {
+  connected: boolean;
+  sentence: string;
+  frames: number;
+  dropped: number;
+}
+export interface Mark {
+  name: string;
+  p_mm: [number, number, number];
+  taken: boolean;
+  spread_mm: number | null;
+}
+export interface Calibration {
+  marks: Mark[];
+  residual_mm: number | null;
+  file: string | null;
+  saved: boolean;
+  sentence: string;
+}
+export interface State {
+  type: "state";
+  controls: Control[];
+  transport: Transport;
+  tracker: Tracker | null;
+  calibration: Calibration | null;
+}
+export interface ErrorMessage {
+  type: "error";
+  sentence: string;
+}
+export type ServerMessage = Hello | State | ErrorMessage;
+
+export interface HandPose {
+  palm_mm: [number, number, number];
+  yaw_deg: number;
+  pitch_deg: number;
+  roll_deg: number;
+  closure: number;
+  side: "left" | "right";
+}
+export type PageMessage =
+  | { type: "set"; id: string; value: string | number | boolean }
+  | { type: "transport"; do: "play" | "pause" | "step" }
+  | { type: "transport"; do: "seek"; time_s: number }
+  | ({ type: "hand" } & HandPose)
+  | { type: "hand"; release: true }
+  | { type: "calibration"; do: "begin" | "solve" | "save" | "cancel" }
+  | { type: "calibration"; do: "take"; mark: number }
+  | { type: "rate"; hz: number };
+
+type Json = Record<string, unknown>;
+const isObject = (x: unknown): x is Json => typeof x === "object" && x !== null && !Array.isArray(x);
+const isPoint = (x: unknown): boolean => Array.isArray(x) && x.length === 3 && x.every((v) => Number.isFinite(v));
+const isText = (x: unknown): x is string => typeof x === "string";
+
+function isControl(x: unknown): boolean {
+  if (!isObject(x) || !isText(x.id) || !isText(x.group) || !isText(x.label) || typeof x.enabled !== "boolean") return false;
+  if (x.kind === "choice") {
+    return isText(x.value) && Array.isArray(x.choices) && x.choices.every((c) => isObject(c) && isText(c.value) && isText(c.label));
+  }
+  if (x.kind === "number") return [x.value, x.min, x.max, x.step].every((v) => Number.isFinite(v));
+  return x.kind === "switch" && typeof x.value === "boolean";
+}
+
+function isTransport(x: unknown): boolean {
+  if (!isObject(x) || typeof x.playing !== "boolean" || !isText(x.source) || !isText(x.base)) return false;
+  return x.recording === null || (isObject(x.recording) && Number.isFinite(x.recording.length_s));
+}
+
+function isCalibration(x: unknown): boolean {
+  if (!isObject(x) || !Array.isArray(x.marks)) return false;
+  return x.marks.every((m) => isObject(m) && isText(m.name) && isPoint(m.p_mm));
+}
+
+/// @return the message, or null when it is not one that this page knows.
+export function parseMessage(text: string): ServerMessage | null {
+  let message: unknown;
+  try {
+    message = JSON.parse(text);
+  } catch {
+    return null;
+  }
+  if (!isObject(message)) return null;
+  let known = false;
+  if (message.type === "hello") {
+    const { array, box_mm: box } = message;
+    known = isObject(array) && isText(array.name) && Array.isArray(array.transducers_mm) && array.transducers_mm.every(isPoint) &&
+      isObject(box) && isPoint(box.origin) && Number.isFinite(box.edge);
+  } else if (message.type === "state") {
+    message.tracker ??= null;
+    message.calibration ??= null;
+    known = Array.isArray(message.controls) && message.controls.every(isControl) && isTransport(message.transport) &&
+      (message.calibration === null || isCalibration(message.calibration)) && (message.tracker === null || isObject(message.tracker));
+  } else if (message.type === "error") {
+    known = isText(message.sentence);
+  }
+  return known ? (message as unknown as ServerMessage) : null;
+}

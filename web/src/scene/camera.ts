@@ -1,0 +1,124 @@
+/// The eye: it goes round a point on a sphere, by mouse, touch and keyboard; z is up.
+
+import { MathUtils, PerspectiveCamera, Vector3 } from "three";
+
+export interface Place {
+  azimuth: number; // [rad], 0 looks along +y
+  elevation: number; // [rad]
+  distance: number; // [m]
+  target: Vector3;
+}
+const degrees = Math.PI / 180;
+
+export const kViews: { id: string; label: string; azimuth: number; elevation: number; distance: number; z: number }[] = [
+  { id: "front", label: "Front", azimuth: -32, elevation: 38, distance: 0.7, z: 0.125 },
+  { id: "side", label: "Side", azimuth: 90, elevation: 3, distance: 0.78, z: 0.165 },
+  { id: "above", label: "Above", azimuth: 0, elevation: 86, distance: 0.72, z: 0.16 },
+  { id: "below", label: "Palm", azimuth: -18, elevation: -34, distance: 0.46, z: 0.2 },
+];
+
+export class OrbitCamera {
+  readonly camera = new PerspectiveCamera(34, 1, 0.02, 6);
+  private wanted: Place;
+  private now: Place;
+  /// whether the eye glides to where it is sent
+  smooth = true;
+  /// when true, the primary button and single touches are somebody else's
+  primaryTaken = false;
+  private readonly pointers = new Map<number, { x: number; y: number; button: number }>();
+
+  constructor(private readonly element: HTMLElement) {
+    this.camera.up.set(0, 0, 1);
+    this.wanted = this.placeOf("front");
+    this.now = this.placeOf("front");
+    element.addEventListener("pointerdown", (e) => this.down(e));
+    element.addEventListener("pointermove", (e) => this.move(e));
+    for (const end of ["pointerup", "pointercancel"] as const) element.addEventListener(end, (e) => this.pointers.delete(e.pointerId));
+    element.addEventListener("contextmenu", (e) => e.preventDefault());
+  }
+
+  private placeOf(id: string): Place {
+    const view = kViews.find((v) => v.id === id) ?? kViews[0]!;
+    return { azimuth: view.azimuth * degrees, elevation: view.elevation * degrees, distance: view.distance, target: new Vector3(0, 0, view.z) };
+  }
+  go(view: string): void { this.wanted = this.placeOf(view); }
+
+  turn(azimuth: number, elevation: number): void {
+    this.wanted.azimuth += azimuth;
+    this.wanted.elevation = MathUtils.clamp(this.wanted.elevation + elevation, -89 * degrees, 89 * degrees);
+  }
+  zoom(factor: number): void { this.wanted.distance = MathUtils.clamp(this.wanted.distance * factor, 0.15, 2.5); }
+  /// By shares of the height of the picture.
+  pan(right: number, up: number): void {
+    const scale = 2 * this.wanted.distance * Math.tan((this.camera.fov * degrees) / 2);
+    const x = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), y = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+    this.wanted.target.addScaledVector(x, right * scale).addScaledVector(y, up * scale);
+    this.wanted.target.clampScalar(-0.5, 0.8);
+  }
+
+  private down(event: PointerEvent): void {
+    this.element.setPointerCapture(event.pointerId);
+    this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, button: event.button });
+  }
+  private move(event: PointerEvent): void {
+    const pointer = this.pointers.get(event.pointerId);
+    if (pointer === undefined) return;
+    const dx = event.clientX - pointer.x, dy = event.clientY - pointer.y;
+    const others = [...this.pointers].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
+    const height = this.element.clientHeight || 1;
+    if (others.length > 0) {
+      // two fingers: apart is nearer, together they push
+      const other = others[0]!;
+      const before = Math.hypot(pointer.x - other.x, pointer.y - other.y), after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
+      this.zoom(before / Math.max(1, after));
+      this.pan(-dx / (2 * height), dy / (2 * height));
+    } else if (this.primaryTaken && pointer.button === 0) {
+      // the page's hand is being moved
+    } else if ((pointer.button === 2 && !this.primaryTaken) || event.shiftKey) {
+      this.pan(-dx / height, dy / height);
+    } else {
+      this.turn((-dx / height) * 3, (dy / height) * 3);
+    }
+    pointer.x = event.clientX;
+    pointer.y = event.clientY;
+  }
+
+  /// @return whether the key is one of the eye's.
+  key(event: KeyboardEvent): boolean {
+    const step = event.shiftKey ? 0.04 : 0.1;
+    if (event.key === "ArrowLeft") this.turn(-step, 0);
+    else if (event.key === "ArrowRight") this.turn(step, 0);
+    else if (event.key === "ArrowUp") this.turn(0, step);
+    else if (event.key === "ArrowDown") this.turn(0, -step);
+    else if (event.key === "+" || event.key === "=") this.zoom(0.9);
+    else if (event.key === "-") this.zoom(1 / 0.9);
+    else if (event.key === "Home" || event.key === "0") this.go("front");
+    else return false;
+    return true;
+  }
+
+  /// Goes on by dt [s]. @return whether the eye moves.
+  update(dt: number, aspect: number): boolean {
+    const share = this.smooth ? 1 - Math.exp(-dt / 0.07) : 1;
+    const go = (from: number, to: number) => from + share * (to - from);
+    const moved = Math.abs(this.now.azimuth - this.wanted.azimuth) + Math.abs(this.now.elevation - this.wanted.elevation) +
+      Math.abs(this.now.distance - this.wanted.distance) + this.now.target.distanceTo(this.wanted.target) > 1e-5;
+    this.now.azimuth = go(this.now.azimuth, this.wanted.azimuth);
+    this.now.elevation = go(this.now.elevation, this.wanted.elevation);
+    this.now.distance = go(this.now.distance, this.wanted.distance);
+    this.now.target.lerp(this.wanted.target, share);
+    const { azimuth, elevation, distance, target } = this.now;
+    // a narrow picture stands further off, so that the box stays in it
+    const far = distance * Math.max(1, 0.95 / aspect);
+    this.camera.position.set(
+      target.x + far * Math.cos(elevation) * Math.sin(azimuth),
+      target.y - far * Math.cos(elevation) * Math.cos(azimuth),
+      target.z + far * Math.sin(elevation),
+    );
+    this.camera.aspect = aspect;
+    this.camera.lookAt(target);
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+    return moved;
+  }
+}

@@ -1,0 +1,101 @@
+/// The program under test, a recording for it, and pages on it.
+
+import { spawn, type ChildProcess } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium, type Browser, type Page } from "playwright-core";
+import { Matrix4 } from "three";
+import { skeleton } from "../support/skeleton";
+
+export const kProgram = process.env.PROSTM ?? "";
+export const kBrowser = process.env.CHROMIUM ?? "/usr/bin/chromium";
+export const folder = mkdtempSync(join(tmpdir(), "prostm-page-"));
+
+/// A hand that comes down over the array and tilts, as a recording in the frame of a tracker: (x, y, z) of D is (x, z, −y) there.
+export function writeRecording(seconds: number): string {
+  const file = join(folder, "hand.hands.jsonl");
+  const toTracker = new Matrix4().set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+  const lines = ['{"format":"hand-frames","version":1,"units":"m"}'];
+  for (let t = 0; t < seconds; t += 0.02) {
+    const pose = new Matrix4().makeRotationX(Math.PI / 2 + 0.1 * Math.sin(2 * t)).setPosition(0.02 * Math.sin(t), -0.01, 0.19 + 0.015 * Math.cos(t));
+    const hand = skeleton(toTracker.clone().multiply(pose), 0.1, "right");
+    const rows = (from: number, to: number) => Array.from({ length: 26 }, (_, j) => [...hand.joints.subarray(8 * j + from, 8 * j + to)]).flat();
+    lines.push(JSON.stringify({ t, hands: [{ id: 1, side: "R", conf: 1, p: rows(0, 3), q: rows(3, 7), r: rows(7, 8) }] }));
+  }
+  writeFileSync(file, lines.join("\n"));
+  return file;
+}
+
+export class Program {
+  address = "";
+  private output = "";
+  private child: ChildProcess | null = null;
+
+  constructor(private readonly options: string[]) {}
+
+  /// Starts it, and waits until it says where its page is.
+  async start(port = 0): Promise<void> {
+    const child = spawn(kProgram, ["run", "--view", "--view-port", String(port), ...this.options], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+    this.child = child;
+    this.output = "";
+    this.address = await new Promise((resolve, reject) => {
+      const read = (data: Buffer) => {
+        this.output += data.toString();
+        const found = /http:\/\/127\.0\.0\.1:\d+/.exec(this.output);
+        if (found !== null) resolve(found[0]);
+      };
+      child.stdout.on("data", read);
+      child.stderr.on("data", read);
+      child.on("error", reject);
+      child.on("exit", () => reject(new Error(`the program ended before it said where its page is:\n${this.output}`)));
+    });
+  }
+  get port(): number { return Number(new URL(this.address).port); }
+
+  async stop(signal: NodeJS.Signals = "SIGKILL"): Promise<void> {
+    const child = this.child;
+    if (child === null || child.exitCode !== null || child.signalCode !== null) return;
+    const gone = new Promise((resolve) => child.once("exit", resolve));
+    child.kill(signal);
+    await gone;
+  }
+
+  async numbers(): Promise<Json> { return (await fetch(`${this.address}/numbers.json`)).json() as Promise<Json>; }
+}
+export type Json = Record<string, unknown>;
+
+export function clean(): void { rmSync(folder, { recursive: true, force: true }); }
+
+export async function openBrowser(): Promise<Browser> {
+  if (!existsSync(kProgram)) throw new Error(`PROSTM names no program: "${kProgram}"`);
+  return chromium.launch({
+    executablePath: kBrowser,
+    args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+}
+
+/// What a page did that it should not.
+export class Watch {
+  readonly complaints: string[] = [];
+  readonly requests: string[] = [];
+  constructor(page: Page) {
+    page.on("console", (message) => message.type() === "error" && this.complaints.push(message.text()));
+    page.on("pageerror", (error) => this.complaints.push(String(error.stack ?? error)));
+    page.on("request", (request) => this.requests.push(request.url()));
+    page.on("websocket", (socket) => this.requests.push(socket.url()));
+  }
+}
+
+/// Waits until a condition holds in the page.
+export async function until<A>(page: Page, condition: (argument: A) => boolean, argument: A, what: string, timeout = 30_000): Promise<void> {
+  try {
+    await page.waitForFunction(condition as never, argument as never, { polling: 50, timeout });
+  } catch (error) {
+    const state = await page.evaluate(() => JSON.stringify({
+      link: document.getElementById("link")?.textContent, frames: window.prostm.frames, pictures: window.prostm.pictures, transport: window.prostm.state?.transport, run: window.prostm.frame?.run,
+      errors: [...document.querySelectorAll(".error, #notice")].map((e) => e.textContent).filter((t) => t),
+    }));
+    throw new Error(`never happened: ${what}; the page: ${state}`, { cause: error });
+  }
+}
