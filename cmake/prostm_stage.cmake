@@ -1,6 +1,6 @@
-# One static library per folder of src/. Which folder may include which is held by tools/check_layers.py.
+# One static library per folder of src/, with what is in folders of it. Which folder may include which is held by tools/check_layers.py.
 function(prostm_stage name)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
   if(sources)
     add_library(prostm_${name} STATIC ${sources})
     target_include_directories(prostm_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)

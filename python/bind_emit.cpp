@@ -200,6 +200,8 @@ void bind_emitter(py::module_& m) {
       .done();
   Record<TakeOver>(m, "TakeOver", "When a plan took over, in counts of samples.")
       .field("plan", &TakeOver::plan, "Its id.")
+      .field("arrival_sample", &TakeOver::arrival_sample,
+             "The first sample that was made after it had arrived.")
       .field("first_sample", &TakeOver::first_sample, "The first sample that follows it.")
       .field("redrawn_sample", &TakeOver::redrawn_sample,
              "When 90 % of its path length was drawn; -1: never.")

@@ -13,6 +13,10 @@
 #include "figure/figures.hpp"
 #include "io/array_file.hpp"
 #include "io/hand_file.hpp"
+#include "io/pose_file.hpp"
+#include "track/live/leap_client.hpp"
+#include "track/live/openxr_hands.hpp"
+#include "track/live/page_hand.hpp"
 
 namespace prostm::app {
 namespace {
@@ -41,6 +45,8 @@ PipelineSettings make_settings(const CommonOptions& options,
     settings.array_width = true;
   }
   settings.transducers = array_from_name(settings.array);
+  if (options.tracker) settings.tracker = *options.tracker;
+  settings.X_DT = tracker_pose_from_name(settings.tracker);
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = *options.method;
   if (options.preset) settings.plan.preset = *options.preset;
@@ -73,12 +79,21 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
     duration = std::numeric_limits<double>::infinity();
     return make_scripted_hand(settings.scripted_hand, settings.track);
   }
-  if (name == "openxr" || name.rfind("leap://", 0) == 0) {
-    throw InputError("--hand " + name +
-                     " is not built yet in this version; give a recording or scripted");
+  if (name == "page" || name == "openxr" || name.rfind("leap:", 0) == 0) {
+    if (!settings.simulated_array.realtime) {
+      throw InputError("--hand " + name +
+                       " is live, so it needs prostm run in real time, without "
+                       "--as-fast-as-possible and --stepped");
+    }
+    duration = std::numeric_limits<double>::infinity();
+    if (name == "page") return make_absent_hand();
+    return make_live_hand(
+        name == "openxr" ? make_openxr_tracker() : make_leap_tracker(leap_address(name)),
+        settings.track);
   }
-  auto hands = make_recorded_hand(read_hand_recording(name), settings.track, true,
-                                  1.0 / settings.fluid_rate);
+  // with a clock a recording stands in for a tracker, of which only the past is known
+  const auto make = settings.simulated_array.realtime ? make_replayed_hand : make_recorded_hand;
+  auto hands = make(read_hand_recording(name), settings.track, true, 1.0 / settings.fluid_rate);
   duration = hands->duration();
   return hands;
 }

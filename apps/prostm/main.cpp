@@ -48,9 +48,17 @@ void add_common(CLI::App& command, CommonOptions& o) {
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand) {
   add_common(command, common);
-  command.add_option("--scene", scene, "one-plume (default), four-plumes, or still-air");
-  command.add_option("--hand", hand, "a recording (.hands.jsonl, or Leap JSON), or scripted")
+  command.add_option("--scene", scene,
+                     "one-plume (default), two-plumes, three-plumes, four-plumes, or still-air");
+  command
+      .add_option(
+          "--hand", hand,
+          "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
+          "page (docs/hands.md)")
       ->capture_default_str();
+  command.add_option(
+      "--tracker", common.tracker,
+      "where the tracker is: centre (default), ultraleap-kit, or a pose file (.json)");
   command.add_option("--grid", common.grid,
                      "cells along each edge of the fluid's box, a multiple of 16");
   command.add_option("--array", common.array, "usx (default), autd3, or an array file (.json)");
@@ -73,11 +81,23 @@ void add_run(CLI::App& app, int& status) {
   auto* stepped = command->add_flag("--stepped", o->stepped, "the same on one thread");
   realtime->excludes(fast)->excludes(stepped);
   fast->excludes(stepped);
+  command->add_option(
+      "--switch", o->switch_at,
+      "when a new plan takes over: lap (default), at the end of each path's lap, or "
+      "now, at the next block");
   command->add_option("--record", o->record,
                       "record targets, hands and plans (.h5, docs/recordings.md)");
-  command->add_flag_callback(
-      "--view", [] { throw prostm::InputError("--view is not built yet in this version"); },
-      "the page (not built yet)");
+  command->add_flag("--view", o->view,
+                    "serve the page that shows and steers the run (docs/viewing.md)");
+  command->add_flag("--stay", o->stay, "go on after --seconds, until Ctrl-C; needs --view");
+  command->add_option("--view-port", o->view_port,
+                      "port of the page, 0 for any; default: 8470, or the next free one");
+  command->add_option("--view-address", o->view_address,
+                      "address to serve the page on; default: 127.0.0.1, this machine alone");
+  command
+      ->add_option("--tracker-file", o->tracker_file,
+                   "where the page's calibration saves the tracker's pose, for --tracker")
+      ->capture_default_str();
   command->footer(
       "Example:\n  prostm run --scene four-plumes --hand me.hands.jsonl --seconds 60 --json "
       "summary.json");

@@ -14,7 +14,7 @@ struct CommonOptions {
   std::string json;  ///< file, "-" for standard output, empty for none
   std::string figure;
   std::optional<int> seed;
-  std::optional<std::string> method, preset, array;
+  std::optional<std::string> method, preset, array, tracker;
   std::optional<int> paths;
   std::optional<double> budget_ms;
   std::optional<int> grid;
@@ -27,6 +27,11 @@ struct RunOptionsGiven {
   std::optional<double> seconds, figure_at;
   bool as_fast_as_possible = false, stepped = false;
   std::string record;
+  std::optional<std::string> switch_at;
+  bool view = false, stay = false;
+  std::optional<std::string> view_address;
+  std::optional<int> view_port;
+  std::string tracker_file = "prostm-tracker.json";  ///< that the page's calibration writes
 };
 
 struct PlanOptionsGiven {

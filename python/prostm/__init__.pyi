@@ -264,6 +264,7 @@ class EmitStats:
 
 class TakeOver:
     plan: int
+    arrival_sample: int
     first_sample: int
     redrawn_sample: int
     def as_dict(self) -> dict[str, int]: ...

@@ -129,8 +129,14 @@ def test_bad_recordings(refuses, tmp_path, fault):
         (["run", "--method", "am", "--preset", "best"], ["--preset", "pro-stm"]),
         (["run", "--method", "am", "--budget-ms", "3"], ["--budget-ms", "pro-stm"]),
         (["run", "--method", "am", "--paths", "9"], ["foci = 9", "between 1 and 8"]),
-        (["run", "--view"], ["not built yet"]),
-        (["run", "--hand", "openxr"], ["not built yet"]),
+        (["run", "--hand", "leap://"], ["names no host", "leap://127.0.0.1:6437"]),
+        (["run", "--hand", "leap://127.0.0.1:many"], ["port", "1 to 65535"]),
+        (["run", "--hand", "leap://nonsense.invalid"], ["no host", "nonsense.invalid"]),
+        (["run", "--hand", "leap://127.0.0.1:6437", "--stepped"], ["real time", "--stepped"]),
+        (["capture", "--hand", "openxr", "--out", "x.h5"], ["real time"]),
+        (["run", "--hand", "page"], ["--hand page", "--view"]),
+        (["run", "--tracker", "roof"], ["roof", "centre", "ultraleap-kit", ".json"]),
+        (["run", "--tracker", "none.json"], ["none.json"]),
         (["run", "--hand", "/nowhere/hand.jsonl"], ["/nowhere/hand.jsonl"]),
         (["run", "--seconds", "-1"], ["seconds"]),
         (["run", "--seconds", "9", "--figure-at", "-3", "--figure", "f.png"], ["--figure-at", "9 s"]),
@@ -170,6 +176,34 @@ def test_bad_settings(refuses, tmp_path, text, words):
     field = tmp_path / "field.json"
     field.write_text(changed())
     refuses("plan", field, "--settings", tmp_path / "s.toml", words=[*words])
+
+
+def test_openxr_without_a_runtime(refuses, prostm, monkeypatch, tmp_path):
+    monkeypatch.setenv("XR_RUNTIME_JSON", str(tmp_path / "none.json"))
+    refuses("run", "--hand", "openxr", words=["no OpenXR runtime", "XR_RUNTIME_JSON"])
+    kinds = {row["kind"]: row for row in json.loads(prostm("devices", "--json", "-").stdout)}
+    assert not kinds["openxr"]["available"] and "no OpenXR runtime" in kinds["openxr"]["detail"]
+
+
+@pytest.mark.parametrize(
+    "changes, words",
+    [
+        ({}, None),
+        ({"format": "prostm-plan/1"}, ["prostm-pose/1"]),
+        ({"position_mm": [0, 0]}, ["position_mm", "3"]),
+        ({"position_mm": [0, 0, 1e6]}, ["position_mm", "5000"]),
+        ({"quaternion": [0, 0, 0, 0.5]}, ["quaternion", "length 0.5"]),
+        ({"quaternion": [0, 0, 0, None]}, ["quaternion", "number"]),
+    ],
+)
+def test_pose_files(refuses, prostm, tmp_path, changes, words):
+    pose = {"format": "prostm-pose/1", "position_mm": [0, 121, 0], "quaternion": [1, 0, 0, 0]}
+    (tmp_path / "pose.json").write_text(json.dumps({**pose, **changes}))
+    arguments = ("run", "--grid", "32", "--seconds", "0.2", "--stepped", "--tracker", "pose.json")
+    if words is None:
+        prostm(*arguments)
+    else:
+        refuses(*arguments, words=["pose.json", *words])
 
 
 def test_unwritable_output(refuses, tmp_path):

@@ -245,6 +245,9 @@ def test_devices_says_what_was_not_tried(prostm):
     kinds = {row["kind"]: row for row in json.loads(done.stdout)}
     assert kinds["sim"]["available"] and not kinds["autd3"]["available"] and not kinds["ultraleap"]["available"]
     assert "never tried" in kinds["ultraleap"]["detail"]
+    assert {"scripted", "recording", "page", "leap", "openxr"} <= set(kinds)
+    for kind in ("leap", "openxr"):
+        assert kinds[kind]["role"] == "hand" and "never with" in kinds[kind]["detail"]
 
 
 def test_settings_file_reaches_every_stage(prostm, field, tmp_path):

@@ -1,0 +1,92 @@
+#include "view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common.hpp"
+#include "core/input_error.hpp"
+#include "io/pose_file.hpp"
+#include "viewer/page_files.hpp"
+
+namespace prostm::app {
+namespace {
+
+/// What kind of hands `--hand` names.
+std::string source_of(const std::string& hand) {
+  if (hand == "scripted" || hand == "openxr" || hand == "page") return hand;
+  return hand.rfind("leap:", 0) == 0 ? "leap" : "recording";
+}
+
+}  // namespace
+
+void check_view(const RunOptionsGiven& given, bool realtime) {
+  if (!given.view) {
+    if (given.stay) throw InputError("--stay keeps the page up; it needs --view");
+    if (given.view_address || given.view_port)
+      throw InputError("--view-address and --view-port belong to --view");
+    if (given.hand == "page")
+      throw InputError("--hand page is moved on the page, so it needs --view");
+    return;
+  }
+  if (!realtime) {
+    throw InputError(
+        "--view shows a run in real time; leave out --as-fast-as-possible and --stepped");
+  }
+}
+
+View::View(const RunOptionsGiven& given, const PipelineSettings& settings) : given_(given) {
+  link_.settings.pipeline = settings;
+  // the widths of the array's focus once, not at every change
+  link_.settings.pipeline.plan = plan_settings(settings);
+  link_.settings.pipeline.array_width = false;
+  const std::string source = source_of(given.hand);
+  link_.settings.source = source;
+  link_.settings.sources = {source};
+  for (const char* other : {"scripted", "page"})
+    if (source != other) link_.settings.sources.emplace_back(other);
+  link_.page_hand = std::make_shared<PageHand>(settings.track);
+  link_.make_hands = [this, source](const std::string& wanted, const PipelineSettings& s) {
+    double duration = 0.0;
+    auto base = make_hands(wanted == source ? given_.hand : wanted, s, duration);
+    return std::make_unique<HandSwitch>(std::move(base), link_.page_hand, Pose::Identity());
+  };
+  link_.pose_file = given.tracker_file;
+  link_.save_pose = [file = given.tracker_file](const Calibration& pose) {
+    write_pose(file, pose);
+  };
+}
+
+std::unique_ptr<HandSource> View::behind_the_page(std::unique_ptr<HandSource> base) {
+  auto hands = std::make_unique<HandSwitch>(std::move(base), link_.page_hand, Pose::Identity());
+  link_.hands = hands.get();
+  return hands;
+}
+
+void View::serve(Pipeline& pipeline, std::FILE* out) {
+  link_.hands->set_tracker_pose(pipeline.smoke().tracker_pose());
+  const GridShape& grid = pipeline.smoke().fluid().grid();
+  const PipelineSettings& s = settings();
+  source_ = std::make_unique<PipelineView>(
+      link_, ViewHello{PROSTM_VERSION, s.transducers.name, s.transducers.position, grid.p_DF,
+                       grid.cell * grid.nx});
+  ViewSettings settings;
+  if (given_.view_address) settings.address = *given_.view_address;
+  settings.port = given_.view_port;
+  server_ = std::make_unique<ViewServer>(settings, *source_, page_files());
+  fmt::print(out, "page: {}\n", server_->url());
+  if (!server_->loopback()) {
+    fmt::print(out,
+               "The page listens on {}: anyone who reaches that address can see and steer this "
+               "run.\n",
+               settings.address);
+  }
+  std::fflush(out);
+}
+
+void View::announce(std::FILE* out) const {
+  fmt::print(out, "The run goes on at {} until Ctrl-C.\n", server_->url());
+  std::fflush(out);
+}
+
+}  // namespace prostm::app

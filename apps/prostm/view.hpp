@@ -1,0 +1,40 @@
+#pragma once
+/// The page of `prostm run --view`.
+
+#include <cstdio>
+#include <memory>
+
+#include "options.hpp"
+#include "pipeline/live.hpp"
+#include "pipeline/pipeline.hpp"
+#include "viewer/pipeline_view.hpp"
+#include "viewer/server.hpp"
+
+namespace prostm::app {
+
+/// @throws InputError for options of the page that do not go together.
+void check_view(const RunOptionsGiven& given, bool realtime);
+
+/// What a page needs, from before the pipeline is made until after it has run.
+class View {
+ public:
+  View(const RunOptionsGiven& given, const PipelineSettings& settings);
+
+  /// Those to make the pipeline with: all that the page can change is in them.
+  const PipelineSettings& settings() const { return link_.settings.pipeline; }
+  LiveLink& link() { return link_; }
+  /// The hands that the page's own takes over from.
+  std::unique_ptr<HandSource> behind_the_page(std::unique_ptr<HandSource> base);
+  /// Starts the server, and prints where it is.
+  void serve(Pipeline& pipeline, std::FILE* out);
+  /// Says that the run goes on, and where.
+  void announce(std::FILE* out) const;
+
+ private:
+  const RunOptionsGiven& given_;
+  LiveLink link_;
+  std::unique_ptr<PipelineView> source_;
+  std::unique_ptr<ViewServer> server_;
+};
+
+}  // namespace prostm::app

@@ -1,0 +1,112 @@
+"""prostm run --view: its options, and a run that is looked at and ended from outside."""
+
+import json
+import signal
+import socket
+import subprocess
+import time
+import urllib.error
+import urllib.request
+
+import pytest
+
+
+def start(program, folder, *arguments, port="0"):
+    """A run with a page, on any free port unless told; gives the process and the page's address."""
+    process = subprocess.Popen([str(program), "run", "--view", "--view-port", port, "--grid", "32", *arguments], cwd=folder,
+                               text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    line = process.stdout.readline()
+    assert line.startswith("page: http://127.0.0.1:"), line + process.stderr.read()
+    address = line.split()[1]
+    wait_for(lambda: numbers(address)["run"]["fluid_steps"] > 0)
+    return process, address
+
+
+def end(process):
+    """Ctrl-C; gives the exit status and what was printed since."""
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=60)
+    return process.returncode, out
+
+
+def numbers(address):
+    with urllib.request.urlopen(address + "numbers.json", timeout=60) as answer:
+        return json.load(answer)
+
+
+def wait_for(condition):
+    for _ in range(600):
+        if condition():
+            return
+        time.sleep(0.1)
+    raise AssertionError("it did not happen within a minute")
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["--stay"], ["--stay", "--view"]),
+    (["--view-port", "0"], ["--view-port", "--view"]),
+    (["--view", "--stepped"], ["--view", "real time"]),
+    (["--view", "--as-fast-as-possible"], ["--view", "real time"]),
+    (["--view", "--view-port", "70000"], ["70000", "65535"]),
+    (["--view", "--view-address", "localhost"], ["localhost", "127.0.0.1"]),
+])
+def test_bad_options_are_refused_in_a_sentence(refuses, arguments, words):
+    refuses("run", "--seconds", "1", *arguments, words=words)
+
+
+def test_a_port_in_use_is_refused_in_a_sentence(refuses):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        refuses("run", "--seconds", "1", "--view", "--view-port", str(port), words=[str(port), "in use"])
+
+
+def test_listens_on_this_machine_alone(program, tmp_path):
+    process, address = start(program, tmp_path)
+    try:
+        assert numbers(address)["sequence"] >= 1
+        port = int(address.rstrip("/").rsplit(":", 1)[1])
+        # 127.0.0.2 is this machine too, but not the address that was asked for
+        with pytest.raises(OSError):
+            socket.create_connection(("127.0.0.2", port), timeout=5)
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            urllib.request.urlopen(urllib.request.Request(address, headers={"Host": "elsewhere.example"}), timeout=60)
+        assert refused.value.code == 403
+    finally:
+        status, _ = end(process)
+    assert status == 130
+
+
+def test_ctrl_c_leaves_whole_files(program, tmp_path):
+    process, address = start(program, tmp_path, "--seconds", "600", "--json", "summary.json", "--record", "run.h5")
+    wait_for(lambda: numbers(address)["run"]["plan_updates"] > 5)
+    status, out = end(process)
+    assert status == 130
+    assert "fluid steps" in out
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["stopped"] is True and summary["plans"] + summary["empty_updates"] > 0
+    assert (tmp_path / "run.h5").exists() and not (tmp_path / "run.part.h5").exists()
+
+
+def test_stays_after_its_seconds(program, tmp_path):
+    process, address = start(program, tmp_path, "--seconds", "2", "--stay", "--json", "summary.json")
+    wait_for(lambda: (tmp_path / "summary.json").exists())
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["stopped"] is False and summary["seconds"] == pytest.approx(2.0, abs=0.1)
+    before = numbers(address)["run"]["fluid_steps"]
+    wait_for(lambda: numbers(address)["run"]["fluid_steps"] > before + 10)
+    status, out = end(process)
+    assert status == 0
+    assert "goes on at " + address in out
+
+
+def test_the_same_port_at_once_again(program, tmp_path):
+    process, address = start(program, tmp_path)
+    port = address.rstrip("/").rsplit(":", 1)[1]
+    numbers(address)
+    assert end(process)[0] == 130
+    process, again = start(program, tmp_path, port=port)
+    assert again == address
+    numbers(again)
+    end(process)
