@@ -1,12 +1,15 @@
 /// From the tracker's frame to the first sample planned from it, in real time, in turns: prostm
-/// with switches at lap ends and at once, and the paper's arrangement of the same stages.
+/// with switches at lap ends and at once, and the paper's arrangement of the same stages. Beside
+/// them, how late the machine wakes a thread that has nothing to do.
 ///
 /// usage: latency_bench [--json FILE] [--hand FILE] [--scene S] [--seconds S] [--rounds N]
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "io/hand_file.hpp"
@@ -42,14 +45,13 @@ Arrangement ours(const Options& given, const std::string& switch_at) {
 
 /// The paper's: the fluid at 50 Hz, each step as a whole after its hands, which are those that are
 /// there; 40 Jacobi sweeps; plans at 25 Hz that take 24 ms, for which preset best stands in with
-/// that budget; switches at lap ends; the whole queue.
+/// that budget; switches at lap ends; the same queue.
 Arrangement papers(const Options& given) {
   Arrangement a = ours(given, "lap");
   a.name = "the paper's";
   a.settings.fluid.solver = "jacobi";
   a.settings.plan.budget = 24e-3;
   a.settings.frame_wait = 0.0;
-  a.settings.simulated_array.queue_blocks = 10;
   a.options.prepare_early = false;
   return a;
 }
@@ -68,6 +70,18 @@ RunSummary run_once(const Arrangement& a, const Options& given) {
   Pipeline pipeline(a.settings, std::move(hands));
   NoObserver observer;
   return run(pipeline, a.settings, a.options, observer);
+}
+
+/// How late a thread wakes that sleeps until every next millisecond, alone on the machine: what no
+/// arrangement can be below [ms].
+void add_wake_ups(double seconds, Distribution& late) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kPeriod{1};
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  for (auto due = Clock::now() + kPeriod; due < end; due = std::max(due + kPeriod, Clock::now())) {
+    std::this_thread::sleep_until(due);
+    late.add(std::chrono::duration<double, std::milli>(Clock::now() - due).count());
+  }
 }
 
 /// The median over the runs.
@@ -126,7 +140,9 @@ std::vector<bench::Row> measure_latency(Options given) {
     given.hand = "scripted";
   }
   std::vector<Arrangement> arrangements = {ours(given, "lap"), ours(given, "now"), papers(given)};
+  Distribution wake_ups;
   for (int round = 0; round < given.rounds; ++round) {
+    add_wake_ups(0.2 * given.seconds, wake_ups);
     for (Arrangement& a : arrangements) a.runs.push_back(run_once(a, given));
   }
 
@@ -156,6 +172,7 @@ std::vector<bench::Row> measure_latency(Options given) {
     rows.push_back({"laps completed, " + a.name, "%", laps.summary(), "", 0.0});
     rows.push_back({"missed blocks, " + a.name, "", missed.summary(), "", 0.0});
   }
+  rows.push_back({"an idle machine's wake-ups, late by", "ms", wake_ups.summary(), "", 0.0});
   return rows;
 }
 
