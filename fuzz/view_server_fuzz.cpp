@@ -5,13 +5,10 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
-#include <cerrno>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
-#include <thread>
 
 #include "viewer/server.hpp"
 
@@ -68,26 +65,26 @@ std::string as_message(const std::string& text) {
   return out + std::string(4, '\0') + text;
 }
 
+/// Another of the addresses of this machine each time: a connection that has ended keeps its port
+/// for a minute, and one address has too few for thousands of connections a second.
+asio::ip::address_v4 next_address() {
+  static std::uint32_t n = 0;
+  return asio::ip::address_v4(0x7F000100U + n++ % 4096U);
+}
+
 /// Sends the bytes and reads until the server closes.
 std::string exchange(const std::string& bytes) {
   asio::io_context io;
-  asio::ip::tcp::socket socket(io);
+  const asio::ip::tcp::endpoint here(next_address(), 0);
   const asio::ip::tcp::endpoint there(asio::ip::address_v4::loopback(),
                                       static_cast<std::uint16_t>(server().port()));
+  asio::ip::tcp::socket socket(io, here);
   boost::system::error_code wrong;
   socket.connect(there, wrong);
-  // thousands of connections a second may use up the ports of this side for a while
-  for (int tries = 0; wrong.value() == EADDRNOTAVAIL && tries < 600; ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    socket.close(wrong);
-    socket.connect(there, wrong);
-  }
   if (wrong) {
     std::fprintf(stderr, "cannot connect: %s\n", wrong.message().c_str());
     std::abort();
   }
-  // ends at once: a connection that waits to be closed would use up ports
-  socket.set_option(asio::socket_base::linger(true, 0), wrong);
   asio::write(socket, asio::buffer(bytes), wrong);
   socket.shutdown(asio::ip::tcp::socket::shutdown_send, wrong);
   std::string answer;
