@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
+#include "core/stage_timer.hpp"
 #include "figure/figures.hpp"
 #include "io/array_file.hpp"
 #include "io/hand_file.hpp"
@@ -109,8 +109,7 @@ bool Interrupt::requested() const {
 
 void Progress::show(double done, double all, const char* unit) {
   if (isatty(STDERR_FILENO) == 0) return;
-  const double t =
-      std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  const double t = steady_now();
   if (t - last_ < 0.2) return;
   last_ = t;
   shown_ = true;

@@ -1,9 +1,14 @@
 #pragma once
-/// The only clock of the stages: how long a piece of work took.
+/// The only clock of the stages: when it is, and how long a piece of work took.
 
 #include <chrono>
 
 namespace prostm {
+
+/// The steady clock [s].
+inline double steady_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 /// Runs from construction or restart(). Monotonic.
 class StageTimer {

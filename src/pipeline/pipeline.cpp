@@ -1,9 +1,11 @@
 #include "pipeline/pipeline.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "core/require.hpp"
 #include "core/stage_timer.hpp"
@@ -260,6 +262,7 @@ void Pipeline::reconfigure(const PipelineSettings& settings) {
 }
 
 std::string Pipeline::restart(Emitter& emitter) {
+  fade_out();
   device_.stop();
   device_before_ = device_stats();
   if (device_.start(emitter) == DeviceStatus::Running) {
@@ -269,6 +272,17 @@ std::string Pipeline::restart(Emitter& emitter) {
   std::string problem = device_.problem();
   device_.start(plans_->emitter());
   return problem;
+}
+
+/// Until what was asked for before has been played, and the fade after it.
+void Pipeline::fade_out() {
+  const SimulatedArraySettings& device = settings_.simulated_array;
+  if (!device.realtime) return;
+  plans_->emitter().lose();
+  const int blocks = device_.stats().queue_blocks + 1;  // and the one that is being filled
+  const double queue = blocks * device.block_samples / device.sample_rate;
+  std::this_thread::sleep_for(
+      std::chrono::duration<double>(queue + settings_.emit.stall_fade_time));
 }
 
 DeviceStats Pipeline::device_stats() const {

@@ -161,7 +161,10 @@ class Pipeline {
   EmitStats emit_stats() const;      ///< of all emitters that there were
 
  private:
-  /// The device plays another emitter. @return why it cannot, and plays the one before; or nothing.
+  /// Fades in real time, so that nothing clicks when the device stops.
+  void fade_out();
+  /// The device plays another emitter, after the fade of the one before. @return why it cannot, and
+  /// plays the one before; or nothing.
   std::string restart(Emitter& emitter);
 
   PipelineSettings settings_;

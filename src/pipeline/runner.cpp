@@ -10,6 +10,7 @@
 
 #include "core/latest.hpp"
 #include "core/spsc_ring.hpp"
+#include "core/stage_timer.hpp"
 #include "pipeline/run_log.hpp"
 #include "pipeline/steering.hpp"
 
@@ -21,10 +22,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kLatestPrepare = 0.8;  // of a step, after which the next one is prepared anyway
 constexpr std::chrono::microseconds kPoll{200};
 constexpr std::chrono::milliseconds kPausePoll{4};
-
-double now() {
-  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
 
 void sleep_until(double time) {
   std::this_thread::sleep_until(Clock::time_point(
@@ -49,7 +46,7 @@ class Run {
         dt_(1.0 / settings.fluid_rate),
         steps_(std::llround(options.seconds * settings.fluid_rate)),
         frame_wait_(std::min(settings.frame_wait, 0.5 * dt_)),
-        start_(realtime_ ? now() : 0.0),
+        start_(realtime_ ? steady_now() : 0.0),
         stall_time_(settings.emit.stall_time),
         stay_(options.stay),
         plan_log_(realtime_) {
@@ -111,7 +108,7 @@ class Run {
       summary_waits_ = true;
     }
     if (!steering_) {
-      start_ = now() - static_cast<double>(slot_) * dt_;
+      start_ = steady_now() - static_cast<double>(slot_) * dt_;
       return true;
     }
     steering_->attend();
@@ -126,7 +123,7 @@ class Run {
       if (steering_->pending()) steering_->attend();
     }
     // run time goes on from where it was
-    start_ = now() - static_cast<double>(slot_) * dt_;
+    start_ = steady_now() - static_cast<double>(slot_) * dt_;
     return !stop_;
   }
 
@@ -138,7 +135,7 @@ class Run {
       smoke.prepare(dt_);
       ++slot_;
       const double time = static_cast<double>(slot_) * dt_;
-      start_ = now() - time;
+      start_ = steady_now() - time;
       ContactFrame& frame = newest_.draft();
       smoke.take(time, frame);
       targeted = meet(time, frame);
@@ -157,7 +154,7 @@ class Run {
     if (!steering_) return;
     const double stall = stall_time_;
     steering_->show(run_time_.load(std::memory_order_relaxed),
-                    now() - planned_at_.load(std::memory_order_relaxed) > stall);
+                    steady_now() - planned_at_.load(std::memory_order_relaxed) > stall);
     if (steering_->pending()) halt_ = true;
     // somebody who has just come sees the smoke of a run that is paused
     const bool watched = steering_->snapshots().watched();
@@ -168,7 +165,7 @@ class Run {
 
   // ---- real time: the newest target wins ----
 
-  double run_time() const { return now() - start_; }
+  double run_time() const { return steady_now() - start_; }
 
   void smoke_in_real_time() {
     SmokeStage& smoke = pipeline_.smoke();
@@ -298,7 +295,7 @@ class Run {
     frame.start = start;
     plan_log_.add(contact, frame, start_);
     follow();
-    if (frame.status == PlanStatus::Planned) planned_at_ = now();
+    if (frame.status == PlanStatus::Planned) planned_at_ = steady_now();
     if (steering_) steering_->snapshots().plan(contact, frame, plan_log_.latency().last_total());
     if (update != nullptr) {
       update->contact = contact;

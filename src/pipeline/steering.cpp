@@ -1,20 +1,16 @@
 #include "pipeline/steering.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
-#include <thread>
+
+#include "core/stage_timer.hpp"
 
 namespace prostm {
 namespace {
 
 constexpr double kShowPeriod = 0.015, kTellPeriod = 0.25;  // [s]
 constexpr double kLookBack = 5e-3;                         // a period of AM at 200 Hz [s]
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 
@@ -92,7 +88,6 @@ void Steering::change(const LiveSettings& wanted) {
     const double at = smoke->hands().recording_time();
     if (wanted.source == held.source && std::isfinite(at)) hands->seek(at);
   }
-  quieten();
   pipeline_.reconfigure(wanted.pipeline);
   if (hands) {
     link_.hands = hands.get();
@@ -103,26 +98,17 @@ void Steering::change(const LiveSettings& wanted) {
   link_.snapshots.use(planned_with_);
 }
 
-/// The output fades before the device stops, so that nothing clicks.
-void Steering::quieten() {
-  const SimulatedArraySettings& device = state_.settings.pipeline.simulated_array;
-  const double queue = device.queue_blocks * device.block_samples / device.sample_rate;
-  pipeline_.plans().emitter().lose();
-  std::this_thread::sleep_for(
-      std::chrono::duration<double>(queue + state_.settings.pipeline.emit.stall_fade_time));
-}
-
 void Steering::publish_state() {
   const HandSource& hands = pipeline_.smoke().hands();
   state_.recording_length = hands.recording_length();
   state_.tracker = hands.tracker_status();
   state_.X_DT = pipeline_.smoke().tracker_pose();
   link_.control.publish(state_);
-  told_ = now();
+  told_ = steady_now();
 }
 
 void Steering::show(double time, bool fading) {
-  const double t = now();
+  const double t = steady_now();
   if (t - shown_ < kShowPeriod) return;
   shown_ = t;
   RunSnapshot& run = link_.snapshots.run_draft();

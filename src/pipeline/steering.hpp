@@ -28,7 +28,6 @@ class Steering {
  private:
   void apply(const LiveSettings& wanted, const std::vector<std::uint32_t>& senders);
   void change(const LiveSettings& wanted);
-  void quieten();
   void publish_state();
   double intensity() const;
 

@@ -98,6 +98,48 @@ TEST(Controls, APipelineTakesEveryOneBetweenSteps) {
   EXPECT_EQ(pipeline.contact().step, 5);
 }
 
+/// What is played in the 0.1 s at whose end the clock shows 1.5 s, by a run that takes `wanted` at
+/// 1.3 s. Its device starts anew there in any case, so that samples compare.
+std::vector<FocusSample> played_after(const LiveSettings& from, LiveSettings wanted) {
+  Pipeline pipeline = pipeline_of(from);
+  for (int i = 0; i < 65; ++i) pipeline.step(0.02);
+  wanted.pipeline.emit.stall_time *= 1.01;
+  pipeline.reconfigure(wanted.pipeline);
+  for (int i = 0; i < 10; ++i) pipeline.step(0.02);
+  const SimulatedArray& device = pipeline.device();
+  return device.read_back(device.samples() - 4000, 4000);
+}
+
+/// Largest difference of two runs' samples, in intensity or in place [1, m].
+double difference(const std::vector<FocusSample>& a, const std::vector<FocusSample>& b) {
+  if (a.size() != b.size()) return 1.0;
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    most = std::max(most, std::abs(static_cast<double>(a[i].intensity - b[i].intensity)));
+    for (int axis = 0; axis < 3; ++axis)
+      most = std::max(most, std::abs(static_cast<double>(a[i].p_D[axis] - b[i].p_D[axis])));
+  }
+  return most;
+}
+
+// whatever can be turned is felt: another plan, or the same one emitted otherwise. Where hands come
+// from and their prediction are up to who makes the hands.
+TEST(Controls, EachChangesWhatIsPlayed) {
+  for (const char* method : {"pro-stm", "am"}) {
+    LiveSettings s = small_settings();
+    s.pipeline.method = method;
+    s.pipeline.scripted_hand.still = false;
+    const std::vector<FocusSample> as_it_was = played_after(s, s);
+    EXPECT_EQ(difference(as_it_was, played_after(s, s)), 0.0) << "runs must be repeatable";
+    for (const RunControl& c : run_controls()) {
+      if (c.group == "Hand" || !c.enabled(s)) continue;
+      LiveSettings wanted = s;
+      c.set(wanted, c.get(s) == c.low ? c.high : c.low);
+      EXPECT_GT(difference(as_it_was, played_after(s, wanted)), 1e-4) << method << ": " << c.id;
+    }
+  }
+}
+
 TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);

@@ -6,23 +6,13 @@
 #include <stdexcept>
 
 #include "core/random.hpp"
+#include "hands.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {
 namespace {
 
-Hand hand_at(std::int64_t id, const Vec3& p, Side side = Side::Right) {
-  Hand hand;
-  hand.id = id;
-  hand.side = side;
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    hand.position[j] = p + 0.001 * static_cast<double>(j) * Vec3::UnitX();
-    hand.orientation[j] = Quat::Identity();
-    hand.radius[j] = 0.01;
-    hand.velocity[j] = Vec3::Constant(1e9);  // must not be used
-  }
-  return hand;
-}
+using test::hand_at;
 
 HandFrame frame_at(double time, const Vec3& p, std::int64_t id = 1) {
   HandFrame frame;

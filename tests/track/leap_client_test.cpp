@@ -1,14 +1,12 @@
 #include "track/live/leap_client.hpp"
 
-#include <chrono>
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "core/file.hpp"
 #include "io/hand_file.hpp"
 #include "leap_json.hpp"
 #include "leap_server.hpp"
+#include "support/eventually.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"
 
@@ -16,6 +14,7 @@ namespace prostm {
 namespace {
 
 using nlohmann::json;
+using test::eventually;
 using test::LeapServer;
 
 /// Hands of the script at 110 frames a second, from 5 s on, when one is in sight.
@@ -40,16 +39,6 @@ std::vector<LeapServer::Message> messages_of(const std::vector<HandFrame>& frame
 
 LeapAddress address_of(const LeapServer& server) {
   return {"127.0.0.1", server.port()};
-}
-
-/// Waits until `done`; false after a time that only a failure takes.
-bool eventually(const std::function<bool()>& done) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!done()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
 }
 
 /// The next `count` frames of a tracker, or fewer where they do not come.

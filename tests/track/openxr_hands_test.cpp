@@ -1,16 +1,14 @@
 #include "track/live/openxr_hands.hpp"
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <thread>
 
 #include "core/file.hpp"
 #include "io/hand_file.hpp"
+#include "support/eventually.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"
 
@@ -18,16 +16,7 @@ namespace prostm {
 namespace {
 
 using nlohmann::json;
-
-/// Waits until `done`; false after a time that only a failure takes.
-bool eventually(const std::function<bool()>& done) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!done()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
-}
+using test::eventually;
 
 /// The environment that the loader and the replay runtime read, set back afterwards.
 class OpenXr : public testing::Test {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/random.hpp"
+#include "hands.hpp"
 #include "io/hand_file.hpp"
 #include "support/heap_guard.hpp"
 #include "support/shared.hpp"
@@ -14,17 +15,7 @@ namespace {
 
 constexpr double kStep = 0.02;
 
-Hand hand_at(std::int64_t id, const Vec3& p) {
-  Hand hand;
-  hand.id = id;
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    hand.position[j] = p + 0.001 * static_cast<double>(j) * Vec3::UnitX();
-    hand.orientation[j] = Quat::Identity();
-    hand.radius[j] = 0.01;
-    hand.velocity[j] = Vec3::Constant(1e9);  // must not be used
-  }
-  return hand;
-}
+using test::hand_at;
 
 /// A hand in linear motion, seen at irregular times.
 HandRecording linear_recording(const Vec3& start, const Vec3& velocity, int frames,

@@ -114,6 +114,7 @@ class LiveRun {
     link_.save_pose = [this](const Calibration& pose) { write_pose(pose_file, pose); };
     link_.page_hand = std::make_shared<PageHand>(settings.track);
     link_.make_hands = [this](const std::string& source, const PipelineSettings& s) {
+      prediction = s.track.prediction;
       auto base = source == "page" ? make_absent_hand()
                   : source == "recording"
                       ? make_recorded_hand(some_recording(s), s.track, true, 1.0 / s.fluid_rate)
@@ -161,7 +162,8 @@ class LiveRun {
   int plan_updates() const { return numbers().at("run").at("plan_updates"); }
   unsigned flags() const { return numbers().at("run").at("flags"); }
 
-  std::atomic<int> corner{0};  // that the finger of "leap" is on
+  std::atomic<int> corner{0};          // that the finger of "leap" is on
+  std::atomic<double> prediction{-1};  // that the hands were last made with [s]
   const std::string pose_file = testing::TempDir() + "prostm_live_test_tracker.json";
 
  private:
@@ -258,6 +260,16 @@ TEST(Live, WhatIsTurnedIsSeenInThePlan) {
   EXPECT_GE(summary.device.queue_blocks, 3);
   EXPECT_LE(summary.device.queue_blocks, 10);
   EXPECT_GE(summary.skipped_updates, 0);
+}
+
+TEST(Live, PredictionMakesTheHandsAnew) {
+  LiveRun run;
+  Page page(run.port());
+  page.next_text("state");
+  EXPECT_GT(run.prediction, 0.0);
+  set(page, "prediction", false);
+  EXPECT_EQ(control(page.next_text("state"), "prediction").at("value"), false);
+  EXPECT_EQ(run.prediction, 0.0);
 }
 
 TEST(Live, WhatCannotBeIsRefusedInASentenceAndChangesNothing) {

@@ -8,17 +8,16 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
-#include <chrono>
 #include <deque>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "support/eventually.hpp"
 #include "viewer/server.hpp"
 
 namespace prostm::test {
@@ -85,16 +84,6 @@ class StandIn final : public ViewSource {
   std::vector<std::pair<std::uint32_t, PageMessage>> taken_;
   std::deque<std::pair<std::uint32_t, std::string>> refusals_;
 };
-
-/// Waits for something that happens on another thread; false when it does not within a minute.
-template <class Condition>
-bool eventually(Condition&& condition) {
-  for (int i = 0; i < 6000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
-}
 
 /// What a connection answers to raw bytes, until it closes (or, with `enough`, until that many
 /// bytes have come).

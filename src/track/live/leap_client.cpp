@@ -18,6 +18,7 @@
 
 #include "core/input_error.hpp"
 #include "core/spsc_ring.hpp"
+#include "core/stage_timer.hpp"
 #include "track/live/leap_frame.hpp"
 
 namespace prostm {

@@ -1,9 +1,9 @@
 #include "track/live/live_tracker.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
+#include "core/stage_timer.hpp"
 #include "track/causal_track.hpp"
 
 namespace prostm {
@@ -32,10 +32,6 @@ class LiveHand final : public HandSource {
 };
 
 }  // namespace
-
-double steady_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::unique_ptr<HandSource> make_live_hand(std::unique_ptr<LiveTracker> tracker,
                                            const TrackSettings& settings) {

@@ -20,9 +20,6 @@ class LiveTracker {
   virtual TrackerStatus status() const = 0;
 };
 
-/// The steady clock [s].
-double steady_now();
-
 /// Hands of a tracker by CausalTrack, at the moment of each sample(): its argument is only passed
 /// on. Endless.
 /// @throws std::invalid_argument for a setting outside its bounds.

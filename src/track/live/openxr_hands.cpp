@@ -20,6 +20,7 @@
 
 #include "core/input_error.hpp"
 #include "core/spsc_ring.hpp"
+#include "core/stage_timer.hpp"
 #include "track/hand_json.hpp"
 
 namespace prostm {

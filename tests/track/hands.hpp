@@ -1,0 +1,22 @@
+#pragma once
+/// Hands for tests of tracks.
+
+#include "track/hand_frame.hpp"
+
+namespace prostm::test {
+
+/// Its palm at p, the other joints along x from there; it claims a velocity that nobody may use.
+inline Hand hand_at(std::int64_t id, const Vec3& p, Side side = Side::Right) {
+  Hand hand;
+  hand.id = id;
+  hand.side = side;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    hand.position[j] = p + 0.001 * static_cast<double>(j) * Vec3::UnitX();
+    hand.orientation[j] = Quat::Identity();
+    hand.radius[j] = 0.01;
+    hand.velocity[j] = Vec3::Constant(1e9);
+  }
+  return hand;
+}
+
+}  // namespace prostm::test
