@@ -1,3 +1,23 @@
+# What most sources include and what takes longest to read is read once, for libraries and for tests. Every source still
+# includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds too.
+set(prostm_slow_headers <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp>)
+
+# prostm_precompile(TARGET HOST HEADER…): HOST is the target that makes the file; it has the flags of the others, and no
+# definition that one of them lacks
+function(prostm_precompile target host)
+  if(target STREQUAL host)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${host})
+  endif()
+endfunction()
+
+# the libraries' host
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/slow_headers.cpp CONTENT "")
+add_library(prostm_slow_headers STATIC ${PROJECT_BINARY_DIR}/slow_headers.cpp)
+target_link_libraries(prostm_slow_headers PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json Threads::Threads)
+prostm_precompile(prostm_slow_headers prostm_slow_headers ${prostm_slow_headers})
+
 # One static library per folder of src/, with what is in folders of it. Which folder may include which is held by tools/check_layers.py.
 function(prostm_stage name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
@@ -5,6 +25,7 @@ function(prostm_stage name)
     add_library(prostm_${name} STATIC ${sources})
     target_include_directories(prostm_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(prostm_${name} ${ARGN})
+    prostm_precompile(prostm_${name} prostm_slow_headers)
   else()
     add_library(prostm_${name} INTERFACE)
     target_include_directories(prostm_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
@@ -19,6 +40,7 @@ function(prostm_test name)
   if(sources)
     add_executable(test_${name} ${sources})
     target_link_libraries(test_${name} PRIVATE ${ARGN} prostm_test_support GTest::gmock)
+    prostm_precompile(test_${name} test_core ${prostm_slow_headers} <gmock/gmock.h> <gtest/gtest.h>)
     gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
                          PROPERTIES TIMEOUT 900 LABELS "${name}")
   endif()

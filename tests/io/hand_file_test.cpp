@@ -129,8 +129,8 @@ TEST(HandsJsonl, ANumberThatNoDoubleHoldsIsAnError) {
 
 TEST(HandsJsonl, DeepNestingIsAnError) {
   expect_jsonl_error(jsonl({neutral_header()}) + std::string(1 << 20, '['), "nested deeper");
-  expect_error([] { hands_from_leap_json("{\"frames\":" + std::string(1 << 20, '['), "x"); },
-               "nested deeper");
+  const std::string text = std::string("{\"frames\":").append(1 << 20, '[');
+  expect_error([&] { hands_from_leap_json(text, "x"); }, "nested deeper");
 }
 
 /// A Leap frame with a right hand, palm down, as old recordings have it: without carps, bases and
