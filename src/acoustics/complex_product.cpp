@@ -14,8 +14,9 @@ void complex_product_plain(const PlanarRows& x, const PackedMatrix& y, std::size
       std::complex<double> sum = 0.0;
       for (std::size_t k = 0; k < y.rows(); ++k) {
         const float* element = column + k * 2 * kPanel;
-        sum += std::complex<double>(x.re[m * x.stride + k], x.im[m * x.stride + k]) *
-               std::complex<double>(element[0], element[kPanel]);
+        const std::complex<float> a(x.re[m * x.stride + k], x.im[m * x.stride + k]),
+            b(element[0], element[kPanel]);
+        sum += std::complex<double>(a) * std::complex<double>(b);
       }
       z_re[m * y.cols() + col] = static_cast<float>(sum.real());
       z_im[m * y.cols() + col] = static_cast<float>(sum.imag());

@@ -72,7 +72,7 @@ void add_covariance(const LoopDrives& drives, Index first, Index count, WorkerPo
     for (Index i = 0; i < rows; ++i) {
       for (Index j = top + i; j < n; ++j) {
         const std::size_t at = static_cast<std::size_t>(i) * cols + static_cast<std::size_t>(j);
-        sum(top + i, j) += std::complex<double>(block_re[at], block_im[at]);
+        sum(top + i, j) += std::complex<float>(block_re[at], block_im[at]);
       }
     }
   });

@@ -1,7 +1,9 @@
 #include "fluid/fluid.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "core/stage_timer.hpp"
@@ -105,21 +107,23 @@ void Fluid::State::meet(const HandRaster& raster) {
   if (usable) {
     place_hands(raster);
     stats.hand = stage.lap();
-    project();
+    solve();
     stats.solve = stage.lap();
-    usable = check();
+    usable = publish();
   }
-  if (usable) {
-    publish();
-  } else {
-    reset();
-  }
+  if (!usable) reset();
   stats.total += total.seconds();
 }
 
 FluidStats Fluid::State::settle() {
   const StageTimer timer;
   const double before = stats.total;
+  if (usable) {
+    project();
+    stats.solve += timer.seconds();
+    usable = check();
+    if (!usable) reset();
+  }
   if (usable) {
     measure();
     pool.run(3, [&](int axis) {
@@ -251,10 +255,14 @@ void Fluid::State::mark_fluid_cells(const HandRaster& raster) {
   }
 }
 
-void Fluid::State::project() {
+/// ρh/dt [Pa s/m].
+double Fluid::State::pressure_per_velocity() const {
+  return settings.density * grid.cell / dt;
+}
+
+void Fluid::State::solve() {
   const fluid::PressureLevel& level = solver.fine();
-  const double pressure_per_velocity = settings.density * grid.cell / dt;  // ρh/dt [Pa s/m]
-  const auto scale = static_cast<float>(-pressure_per_velocity);
+  const auto scale = static_cast<float>(-pressure_per_velocity());
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
       sums[static_cast<std::size_t>(k)].divergence =
@@ -269,12 +277,23 @@ void Fluid::State::project() {
   } else {
     solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
   }
-  const auto factor = static_cast<float>(1.0 / pressure_per_velocity);
+}
+
+void Fluid::State::project() {
+  const auto factor = static_cast<float>(1.0 / pressure_per_velocity());
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
-      fluid::subtract_gradient(level, obstacle, solver.pressure().data(), factor, velocity, k);
+      fluid::subtract_gradient(solver.fine(), obstacle, solver.pressure().data(), factor, velocity,
+                               k);
     }
   });
+}
+
+/// The largest of the planes' `largest`.
+std::int32_t Fluid::State::largest_over_planes() const {
+  std::int32_t largest = 0;
+  for (const PlaneSums& sum : sums) largest = std::max(largest, sum.largest);
+  return largest;
 }
 
 /// Whether the state is one: looks for what is not a number, which would trap in later comparisons,
@@ -282,35 +301,38 @@ void Fluid::State::project() {
 bool Fluid::State::check() {
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
-      PlaneSums& sum = sums[static_cast<std::size_t>(k)];
+      std::int32_t& largest = sums[static_cast<std::size_t>(k)].largest;
       const Index c = padded.index(0, 0, k);
-      sum.fastest = 0;
-      for (const Field& u : velocity) {
-        sum.fastest =
-            std::max(sum.fastest, largest_bits(u.data() + c, u.data() + c + padded.plane()));
-      }
+      largest = 0;
+      for (const Field& u : velocity)
+        largest = std::max(largest, largest_bits(u.data() + c, u.data() + c + padded.plane()));
     }
   });
-  std::int32_t fastest = 0;
-  for (const PlaneSums& sum : sums) fastest = std::max(fastest, sum.fastest);
+  const std::int32_t fastest = largest_over_planes();
   if (fastest > std::bit_cast<std::int32_t>(kAbsurd)) return false;
   stats.max_speed = static_cast<double>(std::bit_cast<float>(fastest)) * dt / grid.cell;
   return true;
 }
 
-/// Copies what others read.
-void Fluid::State::publish() {
+/// Copies what others read. False for pressures that are none.
+bool Fluid::State::publish() {
   const int n = padded.n;
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
+      std::int32_t& largest = sums[static_cast<std::size_t>(k)].largest;
+      largest = 0;
       for (int j = 0; j < n; ++j) {
         const Index c = padded.index(0, j, k);
-        std::copy_n(solver.pressure().data() + c, n,
-                    pressure_out.data() + grid.cell_index(0, j, k));
+        const float* pressure = solver.pressure().data() + c;
+        largest = std::max(largest, largest_bits(pressure, pressure + n));
+        std::copy_n(pressure, n, pressure_out.data() + grid.cell_index(0, j, k));
         std::copy_n(smoke.data() + c, n, smoke_out.data() + grid.cell_index(0, j, k));
       }
     }
   });
+  constexpr auto kLargest = static_cast<double>(std::numeric_limits<float>::max());
+  const double absurd = std::min(static_cast<double>(kAbsurd) * pressure_per_velocity(), kLargest);
+  return largest_over_planes() <= std::bit_cast<std::int32_t>(static_cast<float>(absurd));
 }
 
 /// The divergence that is left.

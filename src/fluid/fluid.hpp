@@ -82,9 +82,9 @@ class Fluid {
 
   /// The same step in three parts, so that the hands may come late and their pressure is there
   /// early: to the bit what step() does, which calls them one after the other. prepare() does what
-  /// needs no hand (advection and forces); meet() places the hands and projects, after which
-  /// pressure(), fluid_cells() and smoke() are of this step; settle() leaves the state for the next
-  /// step and measures. @pre called in this order.
+  /// needs no hand (advection and forces); meet() places the hands and solves for the pressure,
+  /// after which pressure(), fluid_cells() and smoke() are of this step; settle() projects the
+  /// velocity, leaves the state for the next step and measures. @pre called in this order.
   void prepare(double dt) noexcept;
   void meet(const HandRaster& raster) noexcept;
   FluidStats settle() noexcept;

@@ -28,14 +28,17 @@ struct Fluid::State {
   void advect();
   void add_forces();
   void place_hands(const HandRaster& raster);
+  void solve();
+  bool publish();
   void project();
   bool check();
-  void publish();
   void measure();
 
   void confine_vorticity();
   void push_swept(const HandRaster& raster);
   void mark_fluid_cells(const HandRaster& raster);
+  double pressure_per_velocity() const;
+  std::int32_t largest_over_planes() const;
   /// Runs f(k0, k1) over all planes.
   template <class F>
   void over_planes(F&& f);
@@ -64,7 +67,7 @@ struct Fluid::State {
   fluid::PaddedField<std::uint8_t> layer[3];
   struct PlaneSums {
     fluid::DivergenceSum divergence;
-    std::int32_t fastest = 0;  // the bits of the largest |velocity|
+    std::int32_t largest = 0;  // the bits of the largest |pressure|, then of the largest |velocity|
   };
   std::vector<PlaneSums> sums;  // one per plane, so that totals do not depend on threads
   CellBox marked;               // where fluid_cells may be 0

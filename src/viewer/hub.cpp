@@ -46,7 +46,7 @@ std::string Hub::numbers() {
                                    {"flags", frame.run.flags}}}};
   const auto names = view_number_names();
   for (std::size_t i = 0; i < names.size(); ++i)
-    json["numbers"][std::string(names[i])] = number(double{frame.numbers[i]});
+    json["numbers"][std::string(names[i])] = number(static_cast<double>(frame.numbers[i]));
   return json.dump() + "\n";
 }
 

@@ -184,16 +184,14 @@ TEST(FocusSolver, StartsAtThePhasesOfTheSolutionBefore) {
   const Propagation g = propagation_to(foci);
   const Eigen::VectorXd phases =
       before.pressure.unaryExpr([](const auto& p) { return std::arg(p); });
-  const auto largest_turn = [&](const FocusSolution& s) {
-    return s.drive.cwiseProduct(before.drive.conjugate())
-        .unaryExpr([](const auto& q) { return std::abs(std::arg(q)); })
-        .eval()
-        .maxCoeff();
+  // over all drives: one that is weak may turn by anything
+  const auto moved = [&](const FocusSolution& s) {
+    return (s.drive - before.drive).norm() / before.drive.norm();
   };
-  EXPECT_LT(largest_turn(solve_foci(g, target, with(FocusMethod::GsPat), phases)), 0.5);
+  EXPECT_LT(moved(solve_foci(g, target, with(FocusMethod::GsPat), phases)), 0.2);
   // from others they do
   const Eigen::VectorXd others = phases + Eigen::Vector4d(0.0, 2.0, -2.0, 3.0);
-  EXPECT_GT(largest_turn(solve_foci(g, target, with(FocusMethod::GsPat), others)), 1.0);
+  EXPECT_GT(moved(solve_foci(g, target, with(FocusMethod::GsPat), others)), 0.4);
 }
 
 TEST(FocusSolver, RefusesWhatCannotBe) {

@@ -107,7 +107,8 @@ TEST(LiveFocusSolver, OneFocalPointGetsWhatItAsksFor) {
     for (const float amplitude : {0.01F, 0.5F, 0.8F}) {
       const std::vector<LiveFocus> foci = {{{0.01F, -0.02F, 0.2F}, amplitude}};
       solver.solve(foci);
-      EXPECT_NEAR(shares(propagation_of(foci), drives_of(solver))[0], double{amplitude}, 1e-5);
+      EXPECT_NEAR(shares(propagation_of(foci), drives_of(solver))[0],
+                  static_cast<double>(amplitude), 1e-5);
       EXPECT_NEAR(solver.level(), 1.0F, 1e-5F);
     }
   }

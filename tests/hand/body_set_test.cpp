@@ -117,7 +117,7 @@ void compare(const Body& body, int cubes, Random& random, Errors& errors) {
       errors.distance = std::max(errors.distance, std::abs(found - expected.distance));
       // deep inside the nearest skin point jumps from side to side
       if (expected.distance < -0.002) continue;
-      const Vec3 velocity(v[0][c], v[1][c], v[2][c]);
+      const Vec3 velocity = Eigen::Vector3f(v[0][c], v[1][c], v[2][c]).cast<double>();
       errors.velocity = std::max(errors.velocity, (velocity - expected.velocity).norm());
       ++errors.velocities;
     }

@@ -77,8 +77,9 @@ TEST(HandRaster, VelocitiesAreThoseOfTheNearestSkin) {
       for (int i = 0; i < kGrid.nx; ++i) {
         const SurfacePoint point = shape.query(kGrid.cell_centre(i, j, k));
         const std::size_t cell = kGrid.cell_index(i, j, k);
-        const Vec3 v(rasteriser.raster().velocity[0][cell], rasteriser.raster().velocity[1][cell],
-                     rasteriser.raster().velocity[2][cell]);
+        const auto& moving = rasteriser.raster().velocity;
+        const Vec3 v =
+            Eigen::Vector3f(moving[0][cell], moving[1][cell], moving[2][cell]).cast<double>();
         if (std::abs(point.distance) < kGrid.cell) {
           ++cells;
           error += (v - point.velocity).norm();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -98,22 +99,38 @@ TEST(Controls, APipelineTakesEveryOneBetweenSteps) {
   EXPECT_EQ(pipeline.contact().step, 5);
 }
 
-/// What is played in the 0.1 s at whose end the clock shows 1.5 s, by a run that takes `wanted` at
-/// 1.3 s. Its device starts anew there in any case, so that samples compare.
-std::vector<FocusSample> played_after(const LiveSettings& from, LiveSettings wanted) {
+/// What comes of a run in 0.1 s: what is played, and the last plan.
+struct Outcome {
+  std::vector<FocusSample> played;
+  Plan plan;
+};
+
+/// Until the clock shows 1.5 s, of a run that takes `wanted` at 1.3 s. Its device starts anew there
+/// in any case, so that samples compare.
+Outcome outcome_of(const LiveSettings& from, LiveSettings wanted) {
   Pipeline pipeline = pipeline_of(from);
   for (int i = 0; i < 65; ++i) pipeline.step(0.02);
   wanted.pipeline.emit.stall_time *= 1.01;
   pipeline.reconfigure(wanted.pipeline);
   for (int i = 0; i < 10; ++i) pipeline.step(0.02);
   const SimulatedArray& device = pipeline.device();
-  return device.read_back(device.samples() - 4000, 4000);
+  return {device.read_back(device.samples() - 4000, 4000), pipeline.plan().plan};
 }
 
-/// Largest difference of two runs' samples, in intensity or in place [1, m].
-double difference(const std::vector<FocusSample>& a, const std::vector<FocusSample>& b) {
-  if (a.size() != b.size()) return 1.0;
+double mean_pressure(const FocalPath& path) {
+  return std::accumulate(path.pressure.begin(), path.pressure.end(), 0.0) /
+         static_cast<double>(path.pressure.size());
+}
+
+/// Largest difference of two runs: of samples in intensity or in place, and of the paths' pressures
+/// [1, m, Pa].
+double difference(const Outcome& one, const Outcome& other) {
+  const std::vector<FocusSample>&a = one.played, &b = other.played;
+  if (a.size() != b.size() || one.plan.paths.size() != other.plan.paths.size()) return 1.0;
   double most = 0.0;
+  for (std::size_t k = 0; k < one.plan.paths.size(); ++k)
+    most = std::max(
+        most, std::abs(mean_pressure(one.plan.paths[k]) - mean_pressure(other.plan.paths[k])));
   for (std::size_t i = 0; i < a.size(); ++i) {
     most = std::max(most, std::abs(static_cast<double>(a[i].intensity - b[i].intensity)));
     for (int axis = 0; axis < 3; ++axis)
@@ -122,20 +139,20 @@ double difference(const std::vector<FocusSample>& a, const std::vector<FocusSamp
   return most;
 }
 
-// whatever can be turned is felt: another plan, or the same one emitted otherwise. Where hands come
-// from and their prediction are up to who makes the hands.
-TEST(Controls, EachChangesWhatIsPlayed) {
+// whatever can be turned changes the plan or how it is emitted. Where hands come from and their
+// prediction are up to who makes the hands.
+TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
   for (const char* method : {"pro-stm", "am"}) {
     LiveSettings s = small_settings();
     s.pipeline.method = method;
     s.pipeline.scripted_hand.still = false;
-    const std::vector<FocusSample> as_it_was = played_after(s, s);
-    EXPECT_EQ(difference(as_it_was, played_after(s, s)), 0.0) << "runs must be repeatable";
+    const Outcome as_it_was = outcome_of(s, s);
+    EXPECT_EQ(difference(as_it_was, outcome_of(s, s)), 0.0) << "runs must be repeatable";
     for (const RunControl& c : run_controls()) {
       if (c.group == "Hand" || !c.enabled(s)) continue;
       LiveSettings wanted = s;
       c.set(wanted, c.get(s) == c.low ? c.high : c.low);
-      EXPECT_GT(difference(as_it_was, played_after(s, wanted)), 1e-4) << method << ": " << c.id;
+      EXPECT_GT(difference(as_it_was, outcome_of(s, wanted)), 1e-4) << method << ": " << c.id;
     }
   }
 }

@@ -137,7 +137,8 @@ Json to_json(const Fixture& fixture) {
                  {"plan_updates", f.run.plan_updates},
                  {"flags", f.run.flags}}}};
   for (std::size_t i = 0; i < f.numbers.size(); ++i)
-    json["numbers"][std::string(view_number_names()[i])] = number(double{f.numbers[i]});
+    json["numbers"][std::string(view_number_names()[i])] =
+        number(static_cast<double>(f.numbers[i]));
   json["hands"] = Json::array();
   for (std::size_t i = 0; i < f.hand_count; ++i) {
     const ViewHand& h = f.hands[i];
