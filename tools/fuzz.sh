@@ -1,17 +1,17 @@
 #!/bin/bash
-# Fuzzes one parser of the address sanitizer's build (./run test --full builds it).
+# Fuzzes one parser of the fuzz build (./run test --full builds it).
 # usage: tools/fuzz.sh NAME SECONDS          e.g. tools/fuzz.sh field_json_fuzz 600
-# Starts from fuzz/corpus/NAME where that is there; an input that breaks the parser is kept in build/asan/findings.
+# Starts from fuzz/corpus/NAME where that is there; an input that breaks the parser is kept in build/fuzz/findings.
 set -euo pipefail
 [[ $# -eq 2 ]] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 name=$1 seconds=$2
 root=$(dirname "$(readlink -f "$0")")/..
-findings=$root/build/asan/findings
+findings=$root/build/fuzz/findings
 mkdir -p "$findings"
 
 # new inputs are for this run alone: the committed corpus stays as it is
 corpus=$(mktemp -d)
 trap 'rm -rf "$corpus"' EXIT
 if [[ -d $root/fuzz/corpus/$name ]]; then cp -r "$root/fuzz/corpus/$name/." "$corpus"; fi
-"$root/build/asan/$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+"$root/build/fuzz/$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
   -artifact_prefix="$findings/$name-" "$corpus"
