@@ -70,7 +70,7 @@ class Reader {
     }
   }
   asio::io_context io_;
-  beast::websocket::stream<asio::ip::tcp::socket> socket_;
+  beast::websocket::stream<asio::ip::tcp::socket, false> socket_;
   std::thread thread_;
 };
 
@@ -167,7 +167,7 @@ void measure_hand_off(const Options& given, Distribution& step, Distribution& sm
   for (int i = 0; i < kSteps; ++i) {
     const bool planned = pipeline.step(0.02);
     StageTimer timer;
-    snapshots.step(pipeline.contact(), pipeline.smoke().hands());
+    snapshots.step(pipeline.contact(), pipeline.smoke());
     step.add(1e6 * timer.lap());
     snapshots.smoke(pipeline.smoke().fluid());
     smoke.add(1e6 * timer.lap());

@@ -76,6 +76,7 @@ class SmokeStage {
   const Scene& scene() const { return scene_; }
   std::size_t max_cells() const { return contact_.max_cells(); }
   HandSource& hands() { return *hands_; }
+  const HandSource& hands() const { return *hands_; }
 
  private:
   std::unique_ptr<HandSource> hands_;

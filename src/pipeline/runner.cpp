@@ -152,9 +152,9 @@ class Run {
     if (summary_waits_) observer_.on_summary(*summary_);
     summary_waits_ = false;
     if (!steering_) return;
-    const double stall = stall_time_;
+    const double planned_at = planned_at_.load(std::memory_order_relaxed);
     steering_->show(run_time_.load(std::memory_order_relaxed),
-                    steady_now() - planned_at_.load(std::memory_order_relaxed) > stall);
+                    steady_now() - planned_at > stall_time_);
     if (steering_->pending()) halt_ = true;
     // somebody who has just come sees the smoke of a run that is paused
     const bool watched = steering_->snapshots().watched();
@@ -206,7 +206,7 @@ class Run {
   bool meet(double due, ContactFrame& frame) {
     pipeline_.smoke().meet(smoke_log_.steps() + 1, due, dt_, frame);
     smoke_log_.meet(frame);
-    if (steering_) steering_->snapshots().step(frame, pipeline_.smoke().hands());
+    if (steering_) steering_->snapshots().step(frame, pipeline_.smoke());
     const bool targeted = frame.targeted;
     if (targeted) newest_.publish();
     return targeted;

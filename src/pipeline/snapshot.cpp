@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "plan/quasi_static.hpp"
 
@@ -20,47 +21,63 @@ double total_pressure(const TargetField& target) {
   return sum;
 }
 
-}  // namespace
-
-void view_smoke(const Fluid& fluid, SmokeView& out) {
-  const GridShape& grid = fluid.grid();
-  // whole blocks: the cells along an edge are a multiple of 16
-  int block = 1;
-  while (grid.nx / block > kSmokeViewCells || grid.nx % block != 0) ++block;
-  out.n = grid.nx / block;
-  out.p_DF = grid.p_DF;
-  out.edge = grid.cell * grid.nx;
-  const auto n = static_cast<std::size_t>(out.n), b = static_cast<std::size_t>(block);
-  out.density.resize(n * n * n);
-  const auto smoke = fluid.smoke();
-  const float scale = 255.0F / static_cast<float>(b * b * b);
-  const auto width = n * b;
-  std::array<float, 128> row;  // sums over the rows that a row of blocks takes together
+/// Means over blocks of B³ cells, of n³ blocks. Smoke is never negative.
+template <std::size_t B>
+void average(std::span<const float> smoke, std::size_t n, std::span<std::uint8_t> out) {
+  constexpr float kScale = 255.0F / static_cast<float>(B * B * B);
+  const std::size_t width = n * B;
+  std::array<float, B * kSmokeViewCells> row;  // sums over the rows that a row of blocks takes
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t j = 0; j < n; ++j) {
       row.fill(0.0F);
-      for (std::size_t z = k * b; z < (k + 1) * b; ++z) {
-        for (std::size_t y = j * b; y < (j + 1) * b; ++y) {
-          const float* cells =
-              smoke.data() + grid.cell_index(0, static_cast<int>(y), static_cast<int>(z));
+      for (std::size_t z = k * B; z < (k + 1) * B; ++z) {
+        for (std::size_t y = j * B; y < (j + 1) * B; ++y) {
+          const float* cells = smoke.data() + (z * width + y) * width;
           for (std::size_t x = 0; x < width; ++x) row[x] += cells[x];
         }
       }
-      std::uint8_t* to = out.density.data() + (k * n + j) * n;
+      std::uint8_t* to = out.data() + (k * n + j) * n;
       for (std::size_t i = 0; i < n; ++i) {
         float sum = 0.0F;
-        for (std::size_t x = i * b; x < (i + 1) * b; ++x) sum += row[x];
-        to[i] = static_cast<std::uint8_t>(std::clamp(sum * scale + 0.5F, 0.0F, 255.0F));
+        for (std::size_t x = 0; x < B; ++x) sum += row[i * B + x];
+        // by way of int, for which the machine has an instruction
+        to[i] = static_cast<std::uint8_t>(static_cast<int>(std::min(sum * kScale + 0.5F, 255.0F)));
       }
     }
   }
 }
 
-void Snapshots::step(const ContactFrame& frame, const HandSource& hands) {
+}  // namespace
+
+void view_smoke(const Fluid& fluid, SmokeView& out) {
+  const GridShape& grid = fluid.grid();
+  // whole blocks: the cells along an edge are a multiple of 16, and at most 128
+  int block = 1;
+  while (grid.nx / block > kSmokeViewCells || grid.nx % block != 0) ++block;
+  out.n = grid.nx / block;
+  out.p_DF = grid.p_DF;
+  out.edge = grid.cell * grid.nx;
+  const auto n = static_cast<std::size_t>(out.n);
+  out.density.resize(n * n * n);
+  switch (block) {
+    case 1:
+      return average<1>(fluid.smoke(), n, out.density);
+    case 2:
+      return average<2>(fluid.smoke(), n, out.density);
+    case 3:
+      return average<3>(fluid.smoke(), n, out.density);
+    default:
+      return average<4>(fluid.smoke(), n, out.density);
+  }
+}
+
+void Snapshots::step(const ContactFrame& frame, const SmokeStage& stage) {
   StepSnapshot& s = step_.draft();
   s.step = frame.step;
+  s.time = frame.taken;
   s.hands = frame.hands;
-  s.recording_time = hands.recording_time();
+  s.X_DT = stage.tracker_pose();
+  s.recording_time = stage.hands().recording_time();
   s.track_time = frame.track_time;
   s.hand_time = frame.hand_time;
   s.fluid_time = frame.fluid_time;

@@ -33,7 +33,9 @@ void view_smoke(const Fluid& fluid, SmokeView& out);
 /// One fluid step.
 struct StepSnapshot {
   std::int64_t step = 0;
+  double time = 0.0;                                                 ///< of its hands, run time [s]
   HandFrame hands;                                                   ///< filtered, in D
+  Pose X_DT = Pose::Identity();                                      ///< that put them there
   double recording_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN without one [s]
   double track_time = 0, hand_time = 0, fluid_time = 0;              ///< [s]
 };
@@ -65,7 +67,7 @@ class Snapshots {
  public:
   // ---- the fluid's thread ----
   /// A step has met its hands.
-  void step(const ContactFrame& frame, const HandSource& hands);
+  void step(const ContactFrame& frame, const SmokeStage& stage);
   /// The fluid has settled: its smoke, while somebody looks.
   void smoke(const Fluid& fluid);
 

@@ -240,9 +240,10 @@ std::string PipelineView::Impl::take(std::uint32_t page, const CalibrationMessag
 
 void PipelineView::Impl::look_at_finger() {
   if (!calibration || link.snapshots.run().page_hand) return;
-  HandFrame hands = link.snapshots.step().hands;
-  to_device(link.control.state().X_DT.inverse(), hands);  // back into T
-  calibration->watch(link.snapshots.run().time, hands);
+  const StepSnapshot& step = link.snapshots.step();
+  HandFrame hands = step.hands;
+  to_device(step.X_DT.inverse(), hands);  // back into T
+  calibration->watch(step.time, hands);
 }
 
 PipelineView::PipelineView(LiveLink& link, ViewHello hello)

@@ -381,8 +381,11 @@ TEST(Live, ATrackersPoseIsFoundFromTouches) {
 
   // a tracker's states come four times a second, whatever happens
   const auto becomes = [&](auto&& condition) {
-    for (int i = 0; i < 1000; ++i)
-      if (condition(page.next_text("state").at("calibration"))) return true;
+    for (int i = 0; i < 100; ++i) {
+      const Json text = page.next_text();
+      EXPECT_EQ(text.at("type"), "state") << text;
+      if (text.at("type") == "state" && condition(text.at("calibration"))) return true;
+    }
     return false;
   };
   const auto finger_is_at = [&](const Vec3& p) {
