@@ -27,8 +27,7 @@ std::string_view view(beast::string_view text) {
 }
 
 /// Nothing but the page's own files and its own socket may be fetched, run or framed.
-template <class Response>
-void set_headers(Response& response, const std::string& host) {
+void set_headers(http::fields& response, std::string_view host) {
   response.set(http::field::server, kServer);
   response.set(http::field::cache_control, "no-cache");
   response.set("X-Content-Type-Options", "nosniff");
@@ -37,7 +36,7 @@ void set_headers(Response& response, const std::string& host) {
   response.set("Content-Security-Policy",
                "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
                "media-src 'self' blob:; connect-src 'self'" +
-                   (host.empty() ? std::string() : " ws://" + host) +
+                   (host.empty() ? "" : " ws://" + std::string(host)) +
                    "; object-src 'none'; base-uri 'none'; form-action 'none'; "
                    "frame-ancestors 'none'");
 }
@@ -101,24 +100,18 @@ void Session::reply(const HttpAnswer& a, bool keep_alive, bool head) {
   answer_ = a.text;
   const std::string_view content = answer_.empty() ? a.body : std::string_view(answer_);
   const auto status = static_cast<http::status>(a.status);
-  const std::string host(parser_->get()[http::field::host]);
-  const auto send = [&](auto response) {
-    auto message = std::make_shared<decltype(response)>(std::move(response));
-    message->set(http::field::content_type, beast::string_view(a.type.data(), a.type.size()));
-    message->content_length(content.size());
-    message->keep_alive(keep_alive);
-    set_headers(*message, a.status == 200 ? host : std::string());
-    if (status == http::status::method_not_allowed) message->set(http::field::allow, "GET, HEAD");
-    http::async_write(stream_, *message,
-                      [self = shared_from_this(), message](beast::error_code wrong, std::size_t) {
-                        if (wrong || !message->keep_alive()) return self->close();
-                        self->read_request();
-                      });
-  };
-  if (head) return send(http::response<http::empty_body>(status, 11));
-  http::response<http::span_body<const char>> response(status, 11);
-  response.body() = {content.data(), content.size()};
-  send(std::move(response));
+  auto response = std::make_shared<http::response<http::span_body<const char>>>(status, 11);
+  if (!head) response->body() = {content.data(), content.size()};
+  response->set(http::field::content_type, beast::string_view(a.type.data(), a.type.size()));
+  response->content_length(content.size());
+  response->keep_alive(keep_alive);
+  set_headers(*response, a.status == 200 ? view(parser_->get()[http::field::host]) : "");
+  if (status == http::status::method_not_allowed) response->set(http::field::allow, "GET, HEAD");
+  http::async_write(stream_, *response,
+                    [self = shared_from_this(), response](beast::error_code wrong, std::size_t) {
+                      if (wrong || !response->keep_alive()) return self->close();
+                      self->read_request();
+                    });
 }
 
 void Session::close() {

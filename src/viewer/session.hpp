@@ -56,7 +56,7 @@ class Session : public std::enable_shared_from_this<Session> {
   beast::tcp_stream stream_;  // until the upgrade
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::string answer_;  // the text of one that is being written
-  std::optional<beast::websocket::stream<beast::tcp_stream>> socket_;
+  std::optional<beast::websocket::stream<beast::tcp_stream, false>> socket_;  // nothing deflated
 
   std::uint32_t id_ = 0;  // of the page, 0 before the upgrade
   double rate_ = kPageRate;

@@ -125,7 +125,7 @@ class LeapServer {
     }
 
     LeapServer& server;
-    boost::beast::websocket::stream<tcp::socket> stream;
+    boost::beast::websocket::stream<tcp::socket, false> stream;
     boost::asio::steady_timer timer;
     boost::beast::flat_buffer buffer;
     boost::beast::http::request<boost::beast::http::string_body> request;

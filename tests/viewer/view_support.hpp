@@ -121,7 +121,7 @@ inline std::string get(int port, const std::string& target, const std::string& h
 /// A page without a browser. Reads block; a test that waits in vain is ended by its time limit.
 class Page {
  public:
-  using Socket = beast::websocket::stream<asio::ip::tcp::socket>;
+  using Socket = beast::websocket::stream<asio::ip::tcp::socket, false>;
 
   /// @throws boost::system::system_error when it is refused.
   explicit Page(int port, const std::string& origin = "", const std::string& host = "",

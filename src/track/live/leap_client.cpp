@@ -190,7 +190,7 @@ class LeapTracker final : public LiveTracker {
   const std::vector<tcp::endpoint> endpoints_;
 
   // of the tracker's thread alone
-  std::optional<websocket::stream<beast::tcp_stream>> socket_;
+  std::optional<websocket::stream<beast::tcp_stream, false>> socket_;  // nothing deflated
   asio::steady_timer retry_;
   beast::flat_buffer buffer_;
   milliseconds wait_ = kFirstRetry;
