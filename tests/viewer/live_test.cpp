@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -186,6 +187,15 @@ Json control(const Json& state, const std::string& id) {
   return nullptr;
 }
 
+/// The next state in which a control has a value; what comes before may be of something else.
+Json state_with(Page& page, const std::string& id, const Json& value) {
+  for (int i = 0; i < 1000; ++i) {
+    Json state = page.next_text("state");
+    if (control(state, id).at("value") == value) return state;
+  }
+  throw std::runtime_error("no state has " + value.dump() + " for the control " + id);
+}
+
 /// The next state whose transport says this.
 bool transport_becomes(Page& page, const char* key, const Json& value) {
   for (int i = 0; i < 1000; ++i)
@@ -247,15 +257,14 @@ TEST(Live, WhatIsTurnedIsSeenInThePlan) {
   page.next_text("state");
   ASSERT_TRUE(plan_becomes(page, [](PlanSeen p) { return p.count > 2 && p.kind == 0; }));
   set(page, "paths", 2);
-  EXPECT_EQ(control(page.next_text("state"), "paths").at("value"), 2.0);
+  state_with(page, "paths", 2.0);
   EXPECT_TRUE(plan_becomes(page, [](PlanSeen p) { return p.count == 2 && p.kind == 0; }));
   set(page, "method", "am");
-  const Json state = page.next_text("state");
-  EXPECT_EQ(control(state, "method").at("value"), "am");
+  const Json state = state_with(page, "method", "am");
   EXPECT_EQ(control(state, "speed").at("enabled"), false);
   EXPECT_TRUE(plan_becomes(page, [](PlanSeen p) { return p.count == 2 && p.kind == 1; }));
   set(page, "scene", "four-plumes");
-  EXPECT_EQ(control(page.next_text("state"), "plumes").at("value"), 4.0);
+  state_with(page, "plumes", 4.0);
   const RunSummary summary = run.stop();
   EXPECT_GE(summary.device.queue_blocks, 3);
   EXPECT_LE(summary.device.queue_blocks, 10);
@@ -268,7 +277,7 @@ TEST(Live, PredictionMakesTheHandsAnew) {
   page.next_text("state");
   EXPECT_GT(run.prediction, 0.0);
   set(page, "prediction", false);
-  EXPECT_EQ(control(page.next_text("state"), "prediction").at("value"), false);
+  state_with(page, "prediction", false);
   EXPECT_EQ(run.prediction, 0.0);
 }
 
@@ -290,9 +299,7 @@ TEST(Live, WhatCannotBeIsRefusedInASentenceAndChangesNothing) {
   set(page, "speed", 4);
   EXPECT_THAT(refusal(), HasSubstr("speed / draw_rate"));
   set(page, "speed", 8);
-  const Json state = page.next_text("state");
-  EXPECT_EQ(control(state, "speed").at("value"), 8.0);
-  EXPECT_EQ(control(state, "gain").at("value"), 1.4);
+  EXPECT_EQ(control(state_with(page, "speed", 8.0), "gain").at("value"), 1.4);
 }
 
 TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
