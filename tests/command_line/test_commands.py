@@ -194,11 +194,13 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
         assert h5.attrs["scene"] == "one-plume"
 
 
+@pytest.mark.long
 def test_in_still_air_the_hand_feels_its_own_movement(prostm):
     still = run_summary(prostm, "--as-fast-as-possible", "--scene", "still-air")
     assert still["fluid_steps"] == 400 and still["plans"] > 50
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("array", ["autd3", "plate.json"])
 def test_run_plays_any_array(prostm, tmp_path, array):
     (tmp_path / "plate.json").write_text(json.dumps(PLATE))
@@ -209,6 +211,7 @@ def test_run_plays_any_array(prostm, tmp_path, array):
         assert pipeline["array"] == array and pipeline["array_width"] is True
 
 
+@pytest.mark.long
 def test_threaded_and_stepped_runs_record_the_same(prostm, tmp_path):
     files = [tmp_path / "threaded.h5", tmp_path / "stepped.h5"]
     run_summary(prostm, "--as-fast-as-possible", "--record", files[0])
@@ -420,6 +423,7 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     assert am["envelope"]["metrics"]["correlation"] > 0.2
 
 
+@pytest.mark.long
 def test_a_louder_full_scale_is_short(prostm, field):
     prostm("plan", field, "--json", "plan.json")
     quiet, loud = (json.loads(prostm("field", "plan.json", "--full-scale-pa", p, "--json", "-").stdout) for p in (100, 1e5))
