@@ -21,7 +21,8 @@ double total_pressure(const TargetField& target) {
   return sum;
 }
 
-/// Means over blocks of B³ cells, of n³ blocks. Smoke is never negative.
+/// Means over blocks of B³ cells, of n³ blocks. Smoke is never negative: advection weighs it with
+/// weights from 0 to 1.
 template <std::size_t B>
 void average(std::span<const float> smoke, std::size_t n, std::span<std::uint8_t> out) {
   constexpr float kScale = 255.0F / static_cast<float>(B * B * B);
