@@ -21,8 +21,20 @@ Fft2::Fft2(int rows, int cols)
       out_(in_.size()) {
   // the library makes its tables at the first call for each length
   for (const int length : {rows, cols}) {
-    fft_.fwd(out_.data(), in_.data(), length);
-    fft_.inv(out_.data(), in_.data(), length);
+    transform<true>(in_.data(), length);
+    transform<false>(in_.data(), length);
+  }
+}
+
+template <bool kForward>
+void Fft2::transform(const std::complex<double>* line, int length) {
+  // one value is its own transform; the library has no table for it
+  if (length == 1) {
+    out_[0] = line[0];
+  } else if constexpr (kForward) {
+    fft_.fwd(out_.data(), line, length);
+  } else {
+    fft_.inv(out_.data(), line, length);
   }
 }
 
@@ -32,11 +44,7 @@ void Fft2::along_columns(std::span<std::complex<double>> raster) {
   const auto height = static_cast<std::size_t>(rows_);
   for (std::size_t i = 0; i < stride; ++i) {
     for (std::size_t j = 0; j < height; ++j) in_[j] = raster[j * stride + i];
-    if constexpr (kForward) {
-      fft_.fwd(out_.data(), in_.data(), rows_);
-    } else {
-      fft_.inv(out_.data(), in_.data(), rows_);
-    }
+    transform<kForward>(in_.data(), rows_);
     for (std::size_t j = 0; j < height; ++j) raster[j * stride + i] = out_[j];
   }
 }
@@ -49,7 +57,7 @@ void Fft2::forward(std::span<std::complex<double>> raster, int filled) {
       std::fill(row.begin(), row.end(), 0.0);
       continue;
     }
-    fft_.fwd(out_.data(), row.data(), cols_);
+    transform<true>(row.data(), cols_);
     std::copy_n(out_.begin(), cols_, row.begin());
   }
   along_columns<true>(raster);
@@ -60,7 +68,7 @@ void Fft2::inverse(std::span<std::complex<double>> raster, int wanted) {
   for (int j = 0; j < wanted; ++j) {
     const auto row =
         raster.subspan(static_cast<std::size_t>(j * cols_), static_cast<std::size_t>(cols_));
-    fft_.inv(out_.data(), row.data(), cols_);
+    transform<false>(row.data(), cols_);
     std::copy_n(out_.begin(), cols_, row.begin());
   }
 }

@@ -26,6 +26,9 @@ class Fft2 {
   void inverse(std::span<std::complex<double>> raster, int wanted);
 
  private:
+  /// Transforms a line of `length` values into out_.
+  template <bool kForward>
+  void transform(const std::complex<double>* line, int length);
   template <bool kForward>
   void along_columns(std::span<std::complex<double>> raster);
 
