@@ -3,6 +3,7 @@ import { defineConfig } from "vite";
 // The page is embedded into the program: few files, fixed and relative names, nothing from elsewhere.
 export default defineConfig({
   base: "./",
+  server: { host: "127.0.0.1" },  // a bare machine has no name for itself
   build: {
     target: "es2022",
     assetsInlineLimit: 0,
