@@ -4,10 +4,21 @@
 
 #include "core/random.hpp"
 #include "core/stage_timer.hpp"
-#include "textbook/descent.hpp"
-#include "textbook/initial_paths.hpp"
 
+// The baseline is compiled for every kind of machine and chosen where it runs, so that one program
+// runs everywhere and loses nothing to one that was compiled for the machine at hand.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "textbook/kernel.cpp"
+#include <hwy/foreach_target.h>
+// after the line above, which includes this file once for each target
+#include <hwy/highway.h>
+
+#include "textbook/descent-inl.hpp"
+#include "textbook/initial_paths-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
 namespace prostm::textbook {
+namespace HWY_NAMESPACE {
 namespace {
 
 double maximum_on_skin(const Field& field) {
@@ -34,9 +45,8 @@ Points strong_points(const Field& field, double maximum, double weak) {
   return points;
 }
 
-}  // namespace
-
-Result run(const Field& field, const Settings& s) {
+/// See run().
+Result Run(const Field& field, const Settings& s) {
   StageTimer total, timer;
   Result result;
   const double maximum = maximum_on_skin(field);
@@ -78,4 +88,22 @@ Result run(const Field& field, const Settings& s) {
   return result;
 }
 
+}  // namespace
+}  // namespace HWY_NAMESPACE
 }  // namespace prostm::textbook
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace prostm::textbook {
+namespace {
+
+HWY_EXPORT(Run);
+
+}  // namespace
+
+Result run(const Field& field, const Settings& settings) {
+  return HWY_DYNAMIC_DISPATCH(Run)(field, settings);
+}
+
+}  // namespace prostm::textbook
+#endif  // HWY_ONCE

@@ -1,7 +1,7 @@
 #pragma once
 /// The textbook planner's computation, on plain arrays. This header and its sources hold no Eigen
-/// type: they are compiled for the machine at hand, where Eigen's types may have another alignment
-/// than in the rest of the program. Lengths in mm from the centre of cell (0, 0).
+/// type: they are compiled once for each kind of machine, for which Eigen's types may have another
+/// alignment than in the rest of the program. Lengths in mm from the centre of cell (0, 0).
 
 #include <cstdint>
 #include <vector>

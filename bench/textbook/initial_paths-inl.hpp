@@ -1,11 +1,35 @@
-#include "textbook/initial_paths.hpp"
+/// Path initialisation of the textbook planner: plain Lloyd, plain 2-opt, midpoint splits. Part of
+/// kernel.cpp, which compiles it once for each kind of machine.
+
+// clang-format off
+#if defined(PROSTM_TEXTBOOK_INITIAL_PATHS) == defined(HWY_TARGET_TOGGLE)
+#ifdef PROSTM_TEXTBOOK_INITIAL_PATHS
+#undef PROSTM_TEXTBOOK_INITIAL_PATHS
+#else
+#define PROSTM_TEXTBOOK_INITIAL_PATHS
+#endif
+// clang-format on
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include "core/random.hpp"
+#include "core/units.hpp"
+
+HWY_BEFORE_NAMESPACE();
 namespace prostm::textbook {
+namespace HWY_NAMESPACE {
 namespace {
+
+/// Weighted points of the plane [mm].
+struct Points {
+  std::vector<double> x, y, weight;
+  std::size_t size() const { return x.size(); }
+};
+
+using Tour = std::vector<int>;
 
 double distance(const Points& p, int a, int b) {
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
@@ -108,8 +132,8 @@ Points ellipse(const Axis& axis, double low, double high) {
   return p;
 }
 
-}  // namespace
-
+/// Lloyd's iteration from k random points until no point changes its cluster. @return the clusters
+/// that kept points.
 Points lloyd(const Points& points, int k, int max_iterations, Random& random, int& iterations) {
   // k different points drawn at random
   std::vector<int> order(points.size());
@@ -147,6 +171,7 @@ double tour_length(const Points& points, const Tour& tour) {
   return length;
 }
 
+/// 2-opt from a random order of the tour's points.
 void two_opt(const Points& points, Tour& tour, Random& random) {
   shuffle(tour, random);
   const std::size_t n = tour.size();
@@ -169,6 +194,8 @@ void two_opt(const Points& points, Tour& tour, Random& random) {
   }
 }
 
+/// Splits at the midpoint of the bounds along the principal direction until each tour is at most
+/// `max_length`. Heaviest first.
 std::vector<Tour> split(const Points& points, const Tour& whole, double max_length,
                         Random& random) {
   std::vector<Tour> open{whole}, leaves;
@@ -202,6 +229,8 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
   return leaves;
 }
 
+/// n points at equal distances along the closed tour; a circle of 3 mm for one point, an ellipse
+/// for points on a line.
 void resample(const Points& points, const Tour& tour, int n, std::vector<double>& x,
               std::vector<double>& y) {
   // the polygon: the tour itself, or an ellipse when it encloses nothing
@@ -239,4 +268,8 @@ void resample(const Points& points, const Tour& tour, int n, std::vector<double>
   }
 }
 
+}  // namespace
+}  // namespace HWY_NAMESPACE
 }  // namespace prostm::textbook
+HWY_AFTER_NAMESPACE();
+#endif

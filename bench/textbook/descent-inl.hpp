@@ -1,9 +1,24 @@
-#include "textbook/descent.hpp"
+/// Path refinement of the textbook planner: the costs of Eqs. (2)–(5) and steepest descent with
+/// backtracking. Part of kernel.cpp, which compiles it once for each kind of machine.
+
+// clang-format off
+#if defined(PROSTM_TEXTBOOK_DESCENT) == defined(HWY_TARGET_TOGGLE)
+#ifdef PROSTM_TEXTBOOK_DESCENT
+#undef PROSTM_TEXTBOOK_DESCENT
+#else
+#define PROSTM_TEXTBOOK_DESCENT
+#endif
+// clang-format on
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "textbook/kernel.hpp"
+
+HWY_BEFORE_NAMESPACE();
 namespace prostm::textbook {
+namespace HWY_NAMESPACE {
 namespace {
 
 void weights(double t, double* w) {
@@ -24,7 +39,39 @@ double row(const double* w, const double* p) {
   return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
 }
 
-}  // namespace
+/// p*/max p* of the skin, interpolated by Catmull-Rom bicubics; zero elsewhere. Kept with a border
+/// of zeros.
+class Bicubic {
+ public:
+  Bicubic(const Field& field, double maximum);
+  double value(double x, double y) const;
+  /// Value, and its gradient [1/mm] in gx, gy.
+  double value(double x, double y, double& gx, double& gy) const;
+
+ private:
+  static constexpr int kBorder = 3;
+  const double* corner(double u, double v, double& s, double& t) const;
+
+  int rows_, cols_, stride_;
+  double cell_;
+  std::vector<double> value_;
+};
+
+/// Steepest descent on the weighted sum of the four costs; x, y hold the samples of all paths, one
+/// path after the other.
+class Descent {
+ public:
+  Descent(const Bicubic& raster, const Settings& settings) : raster_(raster), s_(settings) {}
+  void run(std::vector<double>& x, std::vector<double>& y, Result& result);
+
+ private:
+  using Coordinates = std::vector<double>;
+  double cost(const Coordinates& x, const Coordinates& y) const;
+  void gradient(const Coordinates& x, const Coordinates& y, Coordinates& gx, Coordinates& gy) const;
+
+  const Bicubic& raster_;
+  Settings s_;
+};
 
 Bicubic::Bicubic(const Field& field, double maximum)
     : rows_(field.rows), cols_(field.cols), stride_(field.cols + 2 * kBorder), cell_(field.cell) {
@@ -112,7 +159,7 @@ void Descent::gradient(const Coordinates& x, const Coordinates& y, Coordinates& 
   const double segment = s_.max_length / s_.samples;
   std::fill(gx.begin(), gx.end(), 0.0);
   std::fill(gy.begin(), gy.end(), 0.0);
-  const auto pull = [&](std::size_t i, std::size_t j, double force, double dx, double dy) {
+  const auto pull = [&](std::size_t i, std::size_t j, double force, double dx, double dy) HWY_ATTR {
     gx[j] += force * dx;
     gy[j] += force * dy;
     gx[i] -= force * dx;
@@ -177,4 +224,8 @@ void Descent::run(std::vector<double>& x, std::vector<double>& y, Result& result
   result.cost = present;
 }
 
+}  // namespace
+}  // namespace HWY_NAMESPACE
 }  // namespace prostm::textbook
+HWY_AFTER_NAMESPACE();
+#endif
