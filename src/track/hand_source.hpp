@@ -77,9 +77,11 @@ struct HandRecording {
 /// hand by hand (by id and side); velocities are central differences of joints smoothed over
 /// `smoothing_time` (H1), clamped. When `loop`, the recording starts again as a hand that leaves
 /// and comes back: for two steps [s] after its end there is no hand, so that a caller with that
-/// step sees at least one frame without; no velocity crosses the seam.
+/// step sees at least one frame without; no velocity crosses the seam. A hand that its tracker
+/// renamed between two frames goes on under its first id.
 /// @throws std::invalid_argument: a setting outside its bounds, no frames, times that do not
-/// increase from 0, two hands of the same id and side in one frame.
+/// increase from 0, two hands of the same id and side in one frame, several frames of which no two
+/// within max_gap have the same hand.
 std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "track/hand_ids.hpp"
 #include "track/hand_source.hpp"
 #include "track/hand_track.hpp"
 #include "track/track_settings.hpp"
@@ -45,12 +46,12 @@ std::vector<RecordedTrack> join_tracks(const HandRecording& recording, double ma
 
 class RecordedHand final : public HandSource {
  public:
-  RecordedHand(const HandRecording& recording, const TrackSettings& settings, bool loop,
-               double step)
+  RecordedHand(HandRecording recording, const TrackSettings& settings, bool loop, double step)
       : settings_(settings), loop_(loop) {
     validate(settings);
     validate_recording(recording);
     validate_step(step);
+    keep_ids(recording, settings);
     for (const HandFrame& frame : recording.frames) times_.push_back(frame.time);
     // an interval longer than one step between the end and the new start holds at least one of the
     // caller's times
@@ -133,7 +134,7 @@ class RecordedHand final : public HandSource {
 std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step) {
-  return std::make_unique<RecordedHand>(recording, settings, loop, step);
+  return std::make_unique<RecordedHand>(std::move(recording), settings, loop, step);
 }
 
 }  // namespace prostm

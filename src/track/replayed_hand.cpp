@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "track/causal_track.hpp"
+#include "track/hand_ids.hpp"
 #include "track/hand_source.hpp"
 #include "track/track_settings.hpp"
 
@@ -17,6 +18,7 @@ class ReplayedHand final : public HandSource {
       : recording_(std::move(recording)), track_(settings), loop_(loop) {
     validate_recording(recording_);
     validate_step(step);
+    keep_ids(recording_, settings);
     length_ = recording_.frames.back().time;
     blank_.time = length_;
     if (length_ > 0.0) interval_ = length_ / static_cast<double>(recording_.frames.size() - 1);

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "core/random.hpp"
 #include "hands.hpp"
@@ -284,6 +286,92 @@ TEST(RecordedHand, ARecordingThinnedToHalfTellsNearlyTheSame) {
   }
   EXPECT_LT(position / count, 2e-4);
   EXPECT_LT(velocity, 0.1 * speed);
+}
+
+/// Two right hands and a left one that comes later, in linear motion.
+HandRecording three_hands(int frames) {
+  HandRecording recording;
+  for (int i = 0; i < frames; ++i) {
+    HandFrame frame;
+    frame.time = 0.01 * i;
+    frame.hands.push_back(hand_at(1, Vec3(frame.time, 0.2, 0)));
+    if (i < 20) frame.hands.push_back(hand_at(2, Vec3(0.1, 0.2, -frame.time)));
+    if (i >= 30) frame.hands.push_back(hand_at(3, Vec3(0.1, 0.2, frame.time), Side::Left));
+    recording.frames.push_back(frame);
+  }
+  return recording;
+}
+
+TEST(HandSources, AHandThatIsRenamedInEveryFrameGoesOn) {
+  const HandRecording named = three_hands(50);
+  HandRecording renamed = named;
+  std::int64_t id = 100;
+  for (HandFrame& frame : renamed.frames) {
+    if (frame.hands.size() == 2 && id % 3 == 0) std::swap(frame.hands[0], frame.hands[1]);
+    for (Hand& hand : frame.hands) hand.id = ++id;
+  }
+  for (const auto make : {make_recorded_hand, make_replayed_hand}) {
+    const auto a = make(named, {}, false, kStep), b = make(renamed, {}, false, kStep);
+    HandFrame expected, actual;
+    std::int64_t first_id = 0;
+    for (double t = 0.0003; t < 0.49; t += 0.003) {
+      a->sample(t, expected);
+      b->sample(t, actual);
+      ASSERT_EQ(actual.hands.size(), expected.hands.size()) << t;
+      for (const Hand& hand : expected.hands) {
+        const auto same =
+            std::find_if(actual.hands.begin(), actual.hands.end(), [&](const Hand& other) {
+              return other.side == hand.side && other.position[kPalm] == hand.position[kPalm];
+            });
+        ASSERT_NE(same, actual.hands.end()) << t;
+        EXPECT_EQ(same->velocity[kPalm], hand.velocity[kPalm]) << t;
+        if (hand.id % 1'000'000 != 1) continue;
+        if (first_id == 0) first_id = same->id;
+        EXPECT_EQ(same->id, first_id) << t;
+      }
+    }
+  }
+}
+
+TEST(HandSources, ANewIdFarAwayIsAnotherHand) {
+  HandRecording recording;
+  for (int i = 0; i < 20; ++i) {
+    HandFrame frame;
+    frame.time = 0.01 * i;
+    // 40 mm in 10 ms: no hand is so fast
+    frame.hands.push_back(hand_at(i < 10 ? 7 : 8, Vec3(i < 10 ? 0.0 : 0.04, 0.2, 0)));
+    recording.frames.push_back(frame);
+  }
+  const auto source = make_recorded_hand(recording, {}, false, kStep);
+  HandFrame frame;
+  source->sample(0.085, frame);
+  EXPECT_EQ(frame.hands.at(0).id, 7);
+  source->sample(0.095, frame);
+  EXPECT_TRUE(frame.hands.empty());
+  source->sample(0.105, frame);
+  EXPECT_EQ(frame.hands.at(0).id, 8);
+  EXPECT_LT(frame.hands[0].velocity[kPalm].norm(), 1e-9);
+}
+
+TEST(HandSources, RefuseARecordingThatIsTooSlowToMove) {
+  HandRecording recording;
+  for (int i = 0; i < 20; ++i) {
+    HandFrame frame;
+    frame.time = 0.1 * i;
+    frame.hands.push_back(hand_at(7, Vec3(0, 0.2, 0)));
+    recording.frames.push_back(frame);
+  }
+  for (const auto make : {make_recorded_hand, make_replayed_hand}) {
+    try {
+      make(recording, {}, false, kStep);
+      FAIL() << "10 frames a second were accepted";
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("max_gap = 0.06 s"), std::string::npos) << e.what();
+    }
+  }
+  TrackSettings patient;
+  patient.max_gap = 0.2;
+  EXPECT_NO_THROW(make_recorded_hand(recording, patient, false, kStep));
 }
 
 }  // namespace
