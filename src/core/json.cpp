@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input_error.hpp"
+#include "core/nearest_name.hpp"
 
 namespace prostm {
 namespace {
@@ -124,6 +125,16 @@ JsonNode JsonNode::at(const char* key, const char* meaning) const {
 
 JsonNode JsonNode::at(std::size_t i) const {
   return {(*value_)[i], *file_, fmt::format("{}[{}]", where_, i)};
+}
+
+void JsonNode::allow_only(const std::vector<std::string>& known) const {
+  if (!value_->is_object()) fail(fmt::format("is {}; it must be an object", shown(*value_)));
+  for (const auto& [key, member] : value_->items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    throw InputError(fmt::format("{}: {} has no member {}; {}", *file_,
+                                 where_.empty() ? "the document" : where_,
+                                 shown(nlohmann::json(shown_name(key))), suggestion(key, known)));
+  }
 }
 
 std::size_t JsonNode::array_size() const {

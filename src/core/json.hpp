@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/geometry.hpp"
 
@@ -29,6 +30,9 @@ class JsonNode {
   /// @param meaning completes "it must be …" when the member is absent.
   JsonNode at(const char* key, const char* meaning) const;
   JsonNode at(std::size_t i) const;
+  /// Refuses members of an object that are none of these: a mistyped optional one would have no
+  /// effect, without a word.
+  void allow_only(const std::vector<std::string>& known) const;
   std::size_t array_size() const;
   double number(double low, double high) const;
   int integer(int low, int high) const;

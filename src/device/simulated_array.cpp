@@ -64,7 +64,7 @@ const SimulatedArraySettings& validated(const SimulatedArraySettings& s) {
   require_between("block_samples", s.block_samples, 1, 4096);
   require_between("max_foci", s.max_foci, 1, kMostFoci);
   require_between("queue_blocks", s.queue_blocks, 1, 10);
-  require_between("most_queue_blocks", s.most_queue_blocks, 1, 10);
+  require_between("most_queue_blocks", s.most_queue_blocks, s.queue_blocks, 10);
   require_between("history", s.history, 0.0, 600.0, "s");
   live_method(s.solver);
   return s;

@@ -16,8 +16,7 @@ struct SimulatedArraySettings {
   int block_samples = 40;      ///< a block is 1 ms; 1..4096
   int max_foci = 8;            ///< 1..8
   int queue_blocks = 3;        ///< 1..10; each costs a block of latency and covers for one of delay
-  int most_queue_blocks = 10;  ///< 1..10; that the queue grows to where it runs dry; it does not
-                               ///< grow when this is not above queue_blocks
+  int most_queue_blocks = 10;  ///< queue_blocks..10; that the queue grows to where it runs dry
   double history = 4.0;        ///< kept for reading back [s], up to 600
   bool realtime = true;        ///< false: no thread and no clock, pull() is called by hand
   std::string solver = "weighted";  ///< of `output`: or superposition, gs-pat

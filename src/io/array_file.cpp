@@ -97,6 +97,8 @@ TransducerArray array_from_json(std::string_view text, const std::string& file) 
   const nlohmann::json document = parse_json(text, file);
   const JsonNode root(document, file);
   require_format(root, "prostm-array/1");
+  root.allow_only({"format", "name", "frequency_hz", "radius_mm", "directivity", "amplitude_pa_m",
+                   "amplitude_interval_pa_m", "transducers_mm", "normals"});
   TransducerArray array;
   array.name = root.at("name", "what the array is called").text();
   array.frequency = root.at("frequency_hz", "the carrier's frequency in Hz").number(20e3, 100e3);

@@ -53,6 +53,8 @@ TargetField field_from_json(std::string_view text, const std::string& name) {
   const nlohmann::json document = parse_json(text, name);
   const JsonNode root(document, name);
   require_format(root, "prostm-field/1");
+  root.allow_only({"format", "cell_mm", "origin_mm", "rows", "cols", "pressure", "height_mm",
+                   "weight", "plane"});
   TargetField field;
   read_raster(root, field);
 

@@ -45,9 +45,10 @@ Surface decode(std::string_view bytes, const std::string& name) {
   Surface surface(cairo_image_surface_create_from_png_stream(read_bytes, &bytes));
   const cairo_status_t status = cairo_surface_status(surface.get());
   if (status != CAIRO_STATUS_SUCCESS) {
-    throw InputError(
-        fmt::format("{}: the PNG picture cannot be decoded ({}); it is cut off or broken", name,
-                    cairo_status_to_string(status)));
+    // whatever libpng finds wrong, cairo calls it a lack of memory
+    throw InputError(name +
+                     ": the PNG picture cannot be decoded; it is cut off or broken, so save it "
+                     "again");
   }
   const cairo_format_t format = cairo_image_surface_get_format(surface.get());
   if (format != CAIRO_FORMAT_ARGB32 && format != CAIRO_FORMAT_RGB24) {

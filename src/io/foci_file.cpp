@@ -22,6 +22,7 @@ FociFile foci_from_json(std::string_view text, const std::string& file) {
   const nlohmann::json document = parse_json(text, file);
   const JsonNode root(document, file);
   require_format(root, "prostm-foci/1");
+  root.allow_only({"format", "foci"});
   const JsonNode foci = root.at("foci", "an array of focal points");
   const std::size_t count = foci.array_size();
   if (count < 1 || count > static_cast<std::size_t>(kMaxTransducers)) {
@@ -31,6 +32,7 @@ FociFile foci_from_json(std::string_view text, const std::string& file) {
   FociFile out;
   for (std::size_t m = 0; m < count; ++m) {
     const JsonNode focus = foci.at(m);
+    focus.allow_only({"position_mm", "pressure_pa"});
     const Vec3 mm = focus.at("position_mm", "a place [x, y, z] in mm, z from the array up")
                         .vec3(-kFarthestMm, kFarthestMm);
     out.position.push_back(from_milli(mm));

@@ -32,6 +32,7 @@ Calibration pose_from_json(std::string_view text, const std::string& file) {
   const nlohmann::json document = parse_json(text, file);
   const JsonNode root(document, file);
   require_format(root, "prostm-pose/1");
+  root.allow_only({"format", "position_mm", "quaternion", "rms_mm", "largest_mm"});
   Calibration calibration;
   calibration.X_DT.translation() = from_milli(
       root.at("position_mm", "where the tracker is, [x, y, z]").vec3(-kFarthest, kFarthest));

@@ -85,6 +85,7 @@ void read_heights(const JsonNode& node, TargetField& field) {
 }
 
 Pose read_plane(const JsonNode& node) {
+  node.allow_only({"origin_mm", "x", "y"});
   const Vec3 origin_mm =
       node.at("origin_mm", "[x, y, z] in mm, frame D").vec3(-kMaxCoordinateMm, kMaxCoordinateMm);
   const Vec3 x = node.at("x", "the plane's x axis, [x, y, z] in frame D")
@@ -98,6 +99,12 @@ Pose read_plane(const JsonNode& node) {
         fmt::format("has axes of length {} and {} with dot product {}; x and y must be unit "
                     "vectors at a right angle, to within {}",
                     x.norm(), y.norm(), x.dot(y), kTolerance));
+  }
+
+  if (x.cross(y).z() < -kTolerance) {
+    node.fail(
+        "faces away from the array, as x × y does; heights along it must lead away from the "
+        "array, so turn one of the axes round");
   }
 
   // axes that are right already stay as they are, to the bit

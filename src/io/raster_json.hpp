@@ -32,7 +32,7 @@ void check_matrix(const JsonNode& node, const TargetField& field);
 /// Reads a matrix of heights [mm], null off the skin, where the heights of the skin are continued.
 void read_heights(const JsonNode& node, TargetField& field);
 /// Reads a plane's "origin_mm", "x" and "y": unit and orthogonal to within 1e-6, then made exactly
-/// so.
+/// so; x × y must not point towards the array's side, −z.
 Pose read_plane(const JsonNode& node);
 
 /// Adds the members that read_raster reads.

@@ -7,49 +7,14 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "core/json.hpp"
+#include "core/nearest_name.hpp"
 
 namespace prostm {
 namespace {
-
-/// Edits (insert, delete, replace) that turn a into b.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
-/// A name from the file as it may stand in a message.
-std::string shown(std::string_view name) {
-  return std::string(name.substr(0, 60));
-}
-
-/// "did you mean …", or all that there is when nothing is near.
-std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
-  const std::string typed = shown(unknown);
-  const auto nearest =
-      std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-        return edit_distance(typed, a) < edit_distance(typed, b);
-      });
-  if (nearest == known.end()) return "there are none";
-  const std::size_t tolerance = std::max<std::size_t>(2, nearest->size() / 3);
-  if (edit_distance(typed, *nearest) <= tolerance)
-    return fmt::format("did you mean \"{}\"?", *nearest);
-  return fmt::format("known are {}", fmt::join(known, ", "));
-}
 
 /// Lists the names of a group's fields.
 class NameCollector : public SettingsVisitor {
@@ -137,7 +102,7 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
   for (const auto& [key, node] : table) {
     if (std::find(known.names.begin(), known.names.end(), key.str()) == known.names.end()) {
       throw InputError(fmt::format("{}, line {}: {} has no setting \"{}\"; {}", file,
-                                   key.source().begin.line, group.name, shown(key.str()),
+                                   key.source().begin.line, group.name, shown_name(key.str()),
                                    suggestion(key.str(), known.names)));
     }
   }
@@ -163,7 +128,7 @@ void settings_from_toml(std::string_view text, const std::string& name,
                                     [typed](const auto& g) { return g.name == typed; });
     if (group == groups.end()) {
       throw InputError(fmt::format("{}, line {}: there is no group of settings \"{}\"; {}", name,
-                                   key.source().begin.line, shown(key.str()),
+                                   key.source().begin.line, shown_name(key.str()),
                                    suggestion(key.str(), known)));
     }
     const toml::table* table = node.as_table();

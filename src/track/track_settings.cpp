@@ -1,6 +1,7 @@
 #include "track/track_settings.hpp"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -54,6 +55,7 @@ void validate(const ScriptedHandSettings& settings) {
   require_between("height", settings.height, 0.10, 0.60, "m");
   require_between("period", settings.period, 5.0, 3600.0, "s");
   require_between("jitter", settings.jitter, 0.0, 0.01, "m");
+  require_between("seed", settings.seed, 0, std::numeric_limits<int>::max());
 }
 
 void validate_recording(const HandRecording& recording) {

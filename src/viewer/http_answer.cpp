@@ -42,24 +42,24 @@ HttpAnswer file_answer(std::string_view path, std::span<const PageFile> files) {
   return refuse(404, "There is no such file here; the page is at /.\n");
 }
 
+/// Whether this, behind a host's name, is nothing or a port. Which one does not matter: it may come
+/// through a tunnel.
+bool is_port(std::string_view text) {
+  if (text.empty()) return true;
+  return text.front() == ':' && text.size() > 1 &&
+         std::all_of(text.begin() + 1, text.end(),
+                     [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
 }  // namespace
 
 bool host_allowed(std::string_view host, bool any_address) {
-  // the port does not matter: it may come through a tunnel
-  std::string_view name = host;
-  const std::size_t colon = name.rfind(':');
-  if (!name.empty() && name.front() == '[') {
-    const std::size_t end = name.find(']');
-    if (end == std::string_view::npos) return false;
-    name = name.substr(1, end - 1);
-  } else if (colon != std::string_view::npos) {
-    const std::string_view port = name.substr(colon + 1);
-    if (port.empty() || !std::all_of(port.begin(), port.end(),
-                                     [](unsigned char c) { return std::isdigit(c) != 0; })) {
-      return false;
-    }
-    name = name.substr(0, colon);
-  }
+  // NAME, NAME:PORT, [ADDRESS] or [ADDRESS]:PORT
+  const bool brackets = !host.empty() && host.front() == '[';
+  const std::size_t end = brackets ? host.find(']') : host.find(':');
+  if (brackets && end == std::string_view::npos) return false;
+  const std::string_view name = brackets ? host.substr(1, end - 1) : host.substr(0, end);
+  if (!is_port(host.substr(std::min(host.size(), brackets ? end + 1 : end)))) return false;
   if (lower(name) == "localhost") return true;
   boost::system::error_code wrong;
   const auto address = boost::asio::ip::make_address(std::string(name), wrong);
@@ -69,6 +69,8 @@ bool host_allowed(std::string_view host, bool any_address) {
 HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, bool any_address,
                   const std::function<std::string()>& numbers) {
   if (request.host.empty()) return refuse(400, "The request has no Host.\n");
+  if (request.ambiguous)
+    return refuse(400, "The request has more than one Host or more than one Origin.\n");
   if (!host_allowed(request.host, any_address))
     return refuse(403, "This server answers to its own address and to localhost alone.\n");
   if (!same_origin(request.origin, request.host))

@@ -14,6 +14,7 @@ namespace prostm {
 struct HttpRequest {
   std::string_view method, target;
   std::string_view host, origin;  ///< headers; empty without
+  bool ambiguous = false;         ///< one of these headers is there twice
   bool upgrade = false;           ///< to a WebSocket
 };
 
@@ -30,9 +31,9 @@ struct HttpAnswer {
 /// GET and HEAD of the page's files, by their exact paths alone ("/index.html" is "/"), of
 /// /numbers.json, and the WebSocket /live.
 ///
-/// 403: a Host that is a name other than localhost, or an address that is not loopback unless
-/// `any_address`, since a foreign site can give its own name our address; or an Origin that is not
-/// the same host. Programs send no Origin and are let in.
+/// 400: no Host, or two. 403: a Host that is a name other than localhost, or an address that is not
+/// loopback unless `any_address`, since a foreign site can give its own name our address; or an
+/// Origin that is not the same host. Programs send no Origin and are let in.
 /// @param numbers makes the body of /numbers.json.
 HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, bool any_address,
                   const std::function<std::string()>& numbers);

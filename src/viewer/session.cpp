@@ -85,6 +85,7 @@ void Session::on_request(beast::error_code wrong) {
   parts.target = view(request.target());
   parts.host = view(request[http::field::host]);
   parts.origin = view(request[http::field::origin]);
+  parts.ambiguous = request.count(http::field::host) > 1 || request.count(http::field::origin) > 1;
   parts.upgrade = websocket::is_upgrade(request);
   HttpAnswer a = answer(parts, hub_.files, hub_.any_address, [this] { return hub_.numbers(); });
   if (a.live && static_cast<int>(hub_.pages.size()) >= hub_.settings.max_pages) {

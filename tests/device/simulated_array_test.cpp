@@ -436,6 +436,15 @@ TEST(SimulatedArray, SettingsAreChecked) {
     EXPECT_STREQ(e.what(), "queue_blocks = 11 must be between 1 and 10");
   }
   settings = by_hand();
+  settings.queue_blocks = 9;
+  settings.most_queue_blocks = 3;
+  try {
+    make(settings);
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "most_queue_blocks = 3 must be between 9 and 10");
+  }
+  settings = by_hand();
   settings.sample_rate = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(make(settings), std::invalid_argument);
   settings = by_hand();

@@ -164,6 +164,10 @@ TEST(FieldPng, SaysWhatIsWrong) {
   EXPECT_THAT(sentence("GIF89a and so on, not a PNG"), HasSubstr("is not a PNG picture"));
   EXPECT_THAT(sentence(good.substr(0, 20)), HasSubstr("is not a PNG picture"));
   EXPECT_THAT(sentence(good.substr(0, good.size() / 2)), HasSubstr("cut off or broken"));
+  std::string palette = good.substr(16, 13);  // colours by number, but no list of them
+  palette[9] = 3;
+  EXPECT_THAT(sentence(good.substr(0, 8) + test::png_chunk("IHDR", palette) + good.substr(33)),
+              AllOf(HasSubstr("cut off or broken"), Not(HasSubstr("memory"))));
   std::string huge = good;
   huge.replace(16, 8, std::string("\0\0\x4e\x20\0\0\x4e\x20", 8));
   EXPECT_THAT(sentence(huge), HasSubstr("20000 x 20000"));

@@ -110,6 +110,12 @@ TEST(FieldJson, SaysWhatIsWrong) {
           {"\"x\": [0, 1, 0], ", "", "\"plane\".x is missing"},
           {"{\"origin_mm\": [1, 2, 180]", "{\"origin_mm\": [1, null, 180]",
            "is null; it must be a number"},
+          {"[-1, 0, 0]", "[1, 0, 0]", "\"plane\" faces away from the array"},
+          {"\"height_mm\"", "\"hieght_mm\"",
+           "the document has no member \"hieght_mm\"; did you mean \"height_mm\"?"},
+          {"\"weight\"", "\"notes\"", "no member \"notes\"; known are format, cell_mm"},
+          {"\"origin_mm\": [1, 2, 180]", "\"origin\": [1, 2, 180], \"origin_mm\": [1, 2, 180]",
+           "\"plane\" has no member \"origin\""},
       },
       [](const std::string& text) { field_from_json(text, "a.json"); });
 }

@@ -34,6 +34,8 @@ inline TargetField random_field(Random& random) {
   const Quat q =
       Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
   field.X_DP.linear() = q.toRotationMatrix();
+  // a field's plane faces as the array does
+  if (field.X_DP.linear()(2, 2) < 0.0) field.X_DP.rotate(Quat(0.0, 1.0, 0.0, 0.0));
   field.X_DP.translation() = Vec3(length(), length(), length());
   return field;
 }

@@ -93,11 +93,20 @@ TEST_F(Server, RefusesOtherMethodsBodiesAndNonsense) {
 
 TEST_F(Server, RefusesNamesThatAreNotItsOwn) {
   for (const char* host : {"evil.example", "evil.example:8470", "127.0.0.1.evil.example",
-                           "192.168.1.7", "localhost.evil", "[::2]", "[::1", "127.0.0.1:80x"}) {
+                           "192.168.1.7", "localhost.evil", "[::2]", "[::1", "127.0.0.1:80x",
+                           "[::1]evil.example", "[::1]:", "[::1]:80x", "127.0.0.1:", "::1"}) {
     EXPECT_EQ(status_of(get(port_, "/", "Host: " + std::string(host) + "\r\n")), 403) << host;
   }
   for (const char* host : {"localhost", "LOCALHOST:9000", "127.0.0.1", "[::1]:8470"})
     EXPECT_EQ(status_of(get(port_, "/", "Host: " + std::string(host) + "\r\n")), 200) << host;
+}
+
+TEST_F(Server, RefusesRequestsThatSayTwiceWhereTheyGoOrComeFrom) {
+  const std::string start = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n";
+  for (const char* second : {"Host: 127.0.0.1\r\n", "Host: evil.example\r\n",
+                             "Origin: http://127.0.0.1\r\nOrigin: http://evil.example\r\n"}) {
+    EXPECT_EQ(status_of(test::raw_exchange(port_, start + second + "\r\n")), 400) << second;
+  }
 }
 
 TEST_F(Server, RefusesOtherSites) {
