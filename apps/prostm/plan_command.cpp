@@ -160,8 +160,10 @@ Result plan_and_score(const TargetField& target, const PipelineSettings& setting
       is_am(settings) ? plan_foci(target, settings, other) : plan_paths(target, s, traced, other);
   r.metrics = score_plan(target, r.plan, 0, settings.sigma(), s.gain_law());
   if (r.status != PlanStatus::Planned) return r;
+  Progress progress("scoring what must lose to the plan");
   r.controls = controls(target, settings.sigma(), s.gain_law(), s.max_length(), &other,
-                        static_cast<std::uint64_t>(s.seed));
+                        static_cast<std::uint64_t>(s.seed),
+                        [&](int done, int all) { progress.show(done, all, "fields"); });
   return r;
 }
 

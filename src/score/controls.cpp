@@ -6,7 +6,7 @@
 #include "core/random.hpp"
 #include "plan/closest_point.hpp"
 #include "plan/clustering.hpp"
-#include "score/score.hpp"
+#include "score/scorer.hpp"
 
 namespace prostm {
 namespace {
@@ -40,13 +40,13 @@ void for_skin(const TargetField& target, double maximum, const Visit& visit) {
   }
 }
 
-Metrics flat_field(const TargetField& target, double maximum) {
+Metrics flat_field(const TargetField& target, double maximum, const Scorer& scorer) {
   double sum = 0.0, cells = 0.0;
   for_skin(target, maximum, [&](const Vec2&, double p) {
     sum += p;
     cells += 1.0;
   });
-  return score_field(target, std::vector<double>(target.size(), sum / cells * maximum), 0.0);
+  return scorer.field(std::vector<double>(target.size(), sum / cells * maximum), 0.0);
 }
 
 /// Up to four circles about random skin cells that do not cross.
@@ -202,37 +202,44 @@ Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, dou
 }
 
 std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
-                              double length, const Plan* other, std::uint64_t seed) {
+                              double length, const Plan* other, std::uint64_t seed,
+                              const std::function<void(int done, int all)>& progress) {
   const double maximum = max_pressure(target);
   if (!(maximum > 0.0)) return {};
+  const Scorer scorer(target);
+  const bool others = other != nullptr && !other->empty();
+  const bool stands_still = others && !other->foci.empty();
+  const int all = 2 + kDraws + (stands_still ? kDraws : 0) + (others ? 1 : 0);
+  int done = 0;
+  const auto score = [&](const Plan& plan) {
+    const Metrics metrics = scorer.plan(plan, 0, sigma, gain);
+    if (progress) progress(++done, all);
+    return metrics;
+  };
   std::vector<Control> table;
-  table.push_back({"flat field", flat_field(target, maximum)});
+  table.push_back({"flat field", flat_field(target, maximum, scorer)});
+  ++done;
   const Plan circles = circles_at_mass_centres(target, gain, length, seed);
-  table.push_back(
-      {"four circles at the mass centres", score_plan(target, circles, 0, sigma, gain)});
+  table.push_back({"four circles at the mass centres", score(circles)});
 
   Random random(seed);
   std::vector<Metrics> draws;
   for (int draw = 0; draw < kDraws; ++draw) {
     Plan plan = random_circles(target, maximum, length, 1.0 / gain.draw_rate, random);
     solve_pressures(target, maximum, sigma, gain, plan);
-    draws.push_back(score_plan(target, plan, 0, sigma, gain));
+    draws.push_back(score(plan));
   }
   table.push_back({"random circles, solved pressures", median(draws)});
 
-  if (other == nullptr || other->empty()) return table;
-  const bool stands_still = !other->foci.empty();
+  if (!others) return table;
   if (stands_still) {
     draws.clear();
-    for (int draw = 0; draw < kDraws; ++draw) {
-      const Plan plan = random_foci(target, other->foci.size(), sigma, maximum, random);
-      draws.push_back(score_plan(target, plan, 0, sigma, gain));
-    }
+    for (int draw = 0; draw < kDraws; ++draw)
+      draws.push_back(score(random_foci(target, other->foci.size(), sigma, maximum, random)));
     table.push_back({"random foci, solved pressures", median(draws)});
   }
-  const Plan plan = moved(*other, centre_of_mass(target, maximum), maximum, gain);
   table.push_back({stands_still ? "foci of another target" : "paths of another target",
-                   score_plan(target, plan, 0, sigma, gain)});
+                   score(moved(*other, centre_of_mass(target, maximum), maximum, gain))});
   return table;
 }
 

@@ -1,21 +1,19 @@
-#include "score/score.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "plan/closest_point.hpp"
 #include "plan/quasi_static.hpp"
+#include "score/scorer.hpp"
 
 namespace prostm {
 namespace {
 
-constexpr double kBlur = 8.5e-3;     // b of skill_8 [m]
-constexpr double kBlurReach = 4.0;   // the Gaussian is cut off at so many b
 constexpr double kSpillShare = 0.1;  // of max p*: pressure below this is not to be felt
 
 /// Target and rendered field on the skin, both over max p*.
 struct SkinValues {
-  std::vector<double> target, rendered;
+  const std::vector<double>& target;
+  const std::vector<double>& rendered;
 };
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -92,59 +90,13 @@ double spill(const SkinValues& v) {
   return all > 0.0 ? outside / all : 0.0;
 }
 
-SkinValues on_skin(const TargetField& target, const std::vector<double>& rendered, double maximum) {
-  SkinValues v;
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    if (target.skin[i] == 0) continue;
-    v.target.push_back(target.pressure[i] / maximum);
-    v.rendered.push_back(rendered[i] / maximum);
-  }
-  return v;
-}
-
-/// One pass of a separable Gaussian along rows (stride 1) or columns.
-std::vector<double> blur_along(const std::vector<double>& in, std::size_t lines,
-                               std::size_t line_stride, std::size_t length, std::size_t stride,
-                               const std::vector<double>& kernel) {
-  std::vector<double> out(in.size(), 0.0);
-  const auto reach = static_cast<std::ptrdiff_t>(kernel.size()) - 1;
-  const auto n = static_cast<std::ptrdiff_t>(length);
-  for (std::size_t line = 0; line < lines; ++line) {
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      double sum = 0.0;
-      for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(i - reach, 0);
-           j <= std::min(i + reach, n - 1); ++j) {
-        sum += kernel[static_cast<std::size_t>(std::abs(i - j))] *
-               in[line * line_stride + static_cast<std::size_t>(j) * stride];
-      }
-      out[line * line_stride + static_cast<std::size_t>(i) * stride] = sum;
-    }
-  }
-  return out;
-}
-
-/// Gaussian mean over the skin (Q5): blur of the field on skin over the blur of the skin itself.
-std::vector<double> blur_within_skin(const TargetField& target, const std::vector<double>& field) {
-  const auto rows = static_cast<std::size_t>(target.rows),
-             cols = static_cast<std::size_t>(target.cols);
-  const double reach = std::min(kBlurReach * kBlur / target.cell, static_cast<double>(rows + cols));
-  std::vector<double> kernel(static_cast<std::size_t>(reach) + 1);
-  for (std::size_t i = 0; i < kernel.size(); ++i) {
-    const double d = static_cast<double>(i) * target.cell / kBlur;
-    kernel[i] = std::exp(-0.5 * d * d);
-  }
-  const auto blur = [&](const std::vector<double>& in) {
-    return blur_along(blur_along(in, rows, cols, cols, 1, kernel), cols, 1, rows, cols, kernel);
-  };
-  std::vector<double> masked(field.size()), skin(field.size());
+std::vector<double> on_skin(const TargetField& target, const std::vector<double>& field) {
+  std::vector<double> values;
+  values.reserve(field.size());
   for (std::size_t i = 0; i < field.size(); ++i) {
-    skin[i] = target.skin[i] != 0 ? 1.0 : 0.0;
-    masked[i] = skin[i] * field[i];
+    if (target.skin[i] != 0) values.push_back(field[i]);
   }
-  const std::vector<double> sum = blur(masked), weight = blur(skin);
-  for (std::size_t i = 0; i < field.size(); ++i)
-    masked[i] = skin[i] > 0.0 ? sum[i] / weight[i] : 0.0;
-  return masked;
+  return values;
 }
 
 }  // namespace
@@ -166,37 +118,49 @@ double plan_coverage(const TargetField& target, const Plan& plan, int patch, dou
   return covered / all;
 }
 
-Metrics score_field(const TargetField& target, const std::vector<double>& rendered,
-                    double coverage) {
+Scorer::Scorer(const TargetField& target)
+    : target_(target), maximum_(max_pressure(target)), blur_(target) {
+  if (!(maximum_ > 0.0)) return;
+  std::vector<double> share(target.size());
+  for (std::size_t i = 0; i < target.size(); ++i) share[i] = target.pressure[i] / maximum_;
+  share_ = on_skin(target, share);
+  blurred_ = on_skin(target, blur_.of(share));
+}
+
+Metrics Scorer::field(const std::vector<double>& rendered, double coverage) const {
   Metrics m;
-  const double maximum = max_pressure(target);
-  if (!(maximum > 0.0)) return m;
-  const SkinValues v = on_skin(target, rendered, maximum);
+  if (!(maximum_ > 0.0)) return m;
+  std::vector<double> share(rendered.size());
+  for (std::size_t i = 0; i < share.size(); ++i) share[i] = rendered[i] / maximum_;
+  const std::vector<double> on = on_skin(target_, share),
+                            blurred = on_skin(target_, blur_.of(share));
+  const SkinValues v{share_, on};
   m.rmse = rmse(v);
   m.correlation = correlation(v);
   m.coverage = coverage;
   m.skill_0 = skill(v);
   m.overlap = overlap(v);
   m.spill = spill(v);
-
   // the same skill on what is left when detail finer than b is blurred away
-  std::vector<double> target_share(target.size()), rendered_share(target.size());
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    target_share[i] = target.pressure[i] / maximum;
-    rendered_share[i] = rendered[i] / maximum;
-  }
-  TargetField blurred = target;
-  blurred.pressure = blur_within_skin(target, target_share);
-  m.skill_8 = skill(on_skin(blurred, blur_within_skin(target, rendered_share), 1.0));
+  m.skill_8 = skill({blurred_, blurred});
   return m;
+}
+
+Metrics Scorer::plan(const Plan& plan, int patch, double sigma, const GainLaw& gain) const {
+  if (!(maximum_ > 0.0)) return {};
+  std::vector<double> rendered(target_.size());
+  quasi_static_field(plan, patch, target_, sigma, gain, rendered);
+  return field(rendered, plan_coverage(target_, plan, patch, sigma));
+}
+
+Metrics score_field(const TargetField& target, const std::vector<double>& rendered,
+                    double coverage) {
+  return Scorer(target).field(rendered, coverage);
 }
 
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
                    const GainLaw& gain) {
-  if (!(max_pressure(target) > 0.0)) return {};
-  std::vector<double> rendered(target.size());
-  quasi_static_field(plan, patch, target, sigma, gain, rendered);
-  return score_field(target, rendered, plan_coverage(target, plan, patch, sigma));
+  return Scorer(target).plan(plan, patch, sigma, gain);
 }
 
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,

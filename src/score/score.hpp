@@ -3,6 +3,7 @@
 /// numbers honest.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -68,9 +69,10 @@ Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, dou
 /// mean sample moved to this target's centre of
 ///   mass, their highest p_i/γ set to max p*.
 /// @param sigma fall-off of a focal point [m].  @param gain γ of each path; circles take a lap of
-/// 1/draw_rate.  @param length of a circle, e.g. L
-/// [m].
+/// 1/draw_rate.  @param length of a circle, e.g. L [m].  @param progress is told after each field
+/// that is scored: a large raster takes seconds.
 std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
-                              double length, const Plan* other, std::uint64_t seed);
+                              double length, const Plan* other, std::uint64_t seed,
+                              const std::function<void(int done, int all)>& progress = {});
 
 }  // namespace prostm

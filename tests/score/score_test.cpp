@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "am/am_planner.hpp"
 #include "core/random.hpp"
@@ -210,6 +211,24 @@ TEST(Controls, AreFiniteForOneCellAndForEveryPattern) {
   cell.pressure[0] = 1e-290;
   expect_finite(cell);
   for (const fields::Pattern pattern : fields::kPatterns) expect_finite(fields::make(pattern, 0));
+}
+
+TEST(Controls, TellAfterEachFieldHowManyAreDone) {
+  const TargetField target = fields::make(fields::kPatterns[0], 0);
+  Plan paths, foci;
+  paths.paths.push_back({0, {Vec2(0, 0), Vec2(0.03, 0)}, {1.0, 1.0}, 0.06, 7.0, 0.06 / 7.0});
+  foci.foci.push_back({0, Vec2(0, 0), 1.0});
+  for (const Plan* other :
+       {static_cast<const Plan*>(nullptr), &std::as_const(paths), &std::as_const(foci)}) {
+    int last = 0, of = 0;
+    controls(target, kSigma, kGain, 0.14, other, 1, [&](int done, int all) {
+      EXPECT_GT(done, last);
+      last = done;
+      of = all;
+    });
+    EXPECT_EQ(last, of);
+    EXPECT_GT(of, 20);
+  }
 }
 
 TEST(Controls, FociAtRandomPlacesAndOfAnotherTargetLoseToPlannedOnes) {
