@@ -118,7 +118,9 @@ void require_frames(const HandRecording& recording, const std::string& name) {
     throw InputError(name + ": holds 0 frames; a recording must have at least 1");
 }
 
-HandRecording hands_from_jsonl(std::string_view text, const std::string& name) {
+HandRecording hands_from_jsonl(std::string_view text, const std::string& name,
+                               const ReadProgress& progress) {
+  const std::size_t all = text.size();
   std::size_t line = 0;
   const std::string_view first = next_line(text, line);
   if (first.empty())
@@ -147,17 +149,18 @@ HandRecording hands_from_jsonl(std::string_view text, const std::string& name) {
     for (std::size_t h = 0; h < hands.array_size(); ++h)
       frame.hands.push_back(neutral_hand(hands.at(h)));
     append_frame(node, time - start, frame, recording);
+    if (progress) progress(all - text.size(), all);
   }
   require_frames(recording, name);
   return recording;
 }
 
-HandRecording read_hand_recording(const std::string& path) {
+HandRecording read_hand_recording(const std::string& path, const ReadProgress& progress) {
   const std::string text = read_file(path, kMaxRecordingBytes);
   // a neutral recording says so in its first line
   const std::string_view first =
       std::string_view(text).substr(0, std::min(text.find('\n', text.find('{')), text.size()));
-  return first.find("\"hand-frames\"") != first.npos ? hands_from_jsonl(text, path)
+  return first.find("\"hand-frames\"") != first.npos ? hands_from_jsonl(text, path, progress)
                                                      : hands_from_leap_json(text, path);
 }
 

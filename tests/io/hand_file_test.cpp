@@ -72,6 +72,18 @@ TEST(HandsJsonl, ReadsFramesWithAndWithoutHands) {
   EXPECT_EQ(hand.velocity[kPalm], Vec3::Zero());
 }
 
+TEST(HandsJsonl, TellsAfterEachFrameHowMuchHasBeenRead) {
+  const std::string text = jsonl({neutral_header(), neutral_frame(5.0), neutral_frame(6.0)});
+  std::vector<std::size_t> done;
+  hands_from_jsonl(text, "x", [&](std::size_t bytes, std::size_t all) {
+    EXPECT_EQ(all, text.size());
+    done.push_back(bytes);
+  });
+  ASSERT_EQ(done.size(), 2u);
+  EXPECT_LT(done[0], done[1]);
+  EXPECT_EQ(done[1], text.size());
+}
+
 TEST(HandsJsonl, SaysWhatIsWrongAndWhere) {
   const auto with = [](const char* key, const json& value) {
     json frame = neutral_frame(0.1);
