@@ -218,7 +218,6 @@ void print_columns(std::FILE* out, const std::string& scene, const Columns& colu
 }  // namespace
 
 int bench_command(const BenchOptionsGiven& given) {
-  check_outputs(given.common);
   if (given.repeats < 1 || given.repeats > 1000) {
     throw InputError(fmt::format("--repeats {} must be between 1 and 1000", given.repeats));
   }

@@ -37,7 +37,6 @@ class Capture final : public RunObserver {
 }  // namespace
 
 int capture_command(const CaptureOptionsGiven& given) {
-  check_outputs(given.common);
   if (given.frames < 1 || given.frames > 1'000'000) {
     throw InputError(fmt::format("--frames {} must be between 1 and 1000000", given.frames));
   }

@@ -6,11 +6,12 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <limits>
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
+#include "core/require.hpp"
 #include "core/stage_timer.hpp"
-#include "figure/figures.hpp"
 #include "io/array_file.hpp"
 #include "io/hand_file.hpp"
 #include "io/pose_file.hpp"
@@ -33,6 +34,15 @@ std::vector<SettingsGroup> groups_of(PipelineSettings& settings) {
   return groups;
 }
 
+/// What the settings file names is among the files of the command.
+void check_files_of(const PipelineSettings& settings, const CommonOptions& options) {
+  Files files = options.files;
+  const std::string where = " (in " + options.settings_file + ")";
+  if (names_json(settings.array)) files.reads("--array" + where, settings.array);
+  if (names_json(settings.tracker)) files.reads("--tracker" + where, settings.tracker);
+  files.check();
+}
+
 }  // namespace
 
 PipelineSettings make_settings(const CommonOptions& options,
@@ -44,9 +54,13 @@ PipelineSettings make_settings(const CommonOptions& options,
     settings.array = *options.array;
     settings.array_width = true;
   }
-  settings.transducers = array_from_name(settings.array);
   if (options.tracker) settings.tracker = *options.tracker;
+  if (!options.settings_file.empty()) check_files_of(settings, options);
+  settings.transducers = array_from_name(settings.array);
   settings.X_DT = tracker_pose_from_name(settings.tracker);
+  constexpr int kAnySeed = std::numeric_limits<int>::max();
+  if (options.seed) require_between("--seed", *options.seed, 0, kAnySeed);
+  require_between("plan.seed", settings.plan.seed, 0, kAnySeed);
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = *options.method;
   if (options.preset) settings.plan.preset = *options.preset;
@@ -59,9 +73,12 @@ PipelineSettings make_settings(const CommonOptions& options,
   return settings;
 }
 
-void check_outputs(const CommonOptions& options) {
-  if (!options.json.empty()) check_writable(options.json);
-  if (!options.figure.empty()) check_figure(options.figure);
+bool names_json(const std::string& name) {
+  return name.ends_with(".json");
+}
+
+bool names_recording(const std::string& hand) {
+  return hand != "scripted" && hand != "page" && hand != "openxr" && !hand.starts_with("leap:");
 }
 
 FocusMethod solver_of(const std::string& name) {
@@ -79,7 +96,7 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
     duration = std::numeric_limits<double>::infinity();
     return make_scripted_hand(settings.scripted_hand, settings.track);
   }
-  if (name == "page" || name == "openxr" || name.rfind("leap:", 0) == 0) {
+  if (!names_recording(name)) {
     if (!settings.simulated_array.realtime) {
       throw InputError("--hand " + name +
                        " is live, so it needs prostm run in real time, without "
@@ -93,7 +110,11 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
   }
   // with a clock a recording stands in for a tracker, of which only the past is known
   const auto make = settings.simulated_array.realtime ? make_replayed_hand : make_recorded_hand;
-  auto hands = make(read_hand_recording(name), settings.track, true, 1.0 / settings.fluid_rate);
+  Progress progress("reading " + name);
+  HandRecording recording = read_hand_recording(name, [&](std::size_t done, std::size_t all) {
+    progress.show(1e-6 * static_cast<double>(done), 1e-6 * static_cast<double>(all), "MB");
+  });
+  auto hands = make(std::move(recording), settings.track, true, 1.0 / settings.fluid_rate);
   duration = hands->duration();
   return hands;
 }

@@ -16,12 +16,15 @@
 
 namespace prostm::app {
 
-/// Defaults, then the settings file, then the options.
+/// Defaults, then the settings file, then the options. @throws InputError also for an output that
+/// is a file which the settings name.
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene);
 
-/// Tries the files that the results are to go to, before the work. @throws InputError.
-void check_outputs(const CommonOptions& options);
+/// Whether `--array` or `--tracker` names a file, rather than one that is built in.
+bool names_json(const std::string& name);
+/// Whether `--hand` names a recording, rather than a source that is built in.
+bool names_recording(const std::string& hand);
 
 /// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
 FocusMethod solver_of(const std::string& name);

@@ -6,7 +6,7 @@
 
 namespace prostm::app {
 
-int devices_command(const std::string& json) {
+int devices_command(const DevicesOptionsGiven& options) {
   const SimulatedArray sim(SimulatedArraySettings{}, usx_array(), Medium{});
   const DeviceInfo& info = sim.info();
   const std::string openxr = openxr_problem();
@@ -36,14 +36,14 @@ int devices_command(const std::string& json) {
   };
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const Row& row : rows) {
-    fmt::print(prose(json), "{:<6} {:<10} {:<14} {}\n", row.role, row.kind,
+    fmt::print(prose(options.json), "{:<6} {:<10} {:<14} {}\n", row.role, row.kind,
                row.available ? "available" : "not available", row.detail);
     out.push_back({{"role", row.role},
                    {"kind", row.kind},
                    {"available", row.available},
                    {"detail", row.detail}});
   }
-  write_json(json, out);
+  write_json(options.json, out);
   return 0;
 }
 

@@ -199,7 +199,6 @@ void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
 }  // namespace
 
 int field_command(const FieldOptionsGiven& given) {
-  check_outputs(given.common);
   PipelineSettings all = make_settings(given.common, std::nullopt);
   const TransducerArray& array = all.transducers;
   if (given.widths != given.plan.empty()) {

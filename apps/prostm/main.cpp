@@ -2,13 +2,20 @@
 /// status 2.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
+#include <new>
 #include <stdexcept>
+#include <system_error>
 
+#include "common.hpp"
 #include "core/input_error.hpp"
+#include "figure/figures.hpp"
+#include "io/recorder.hpp"
 #include "options.hpp"
 
 namespace {
@@ -17,60 +24,124 @@ using namespace prostm::app;
 
 constexpr int kBadInput = 2;
 
+/// What the command line asks for: done once it has been parsed and its files have been checked.
+struct Work {
+  const Files* files = nullptr;
+  std::function<int()> run;
+};
+
+/// Also of a thread, which needs room for its stack.
+bool lacks_memory(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return true;
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return system != nullptr && (system->code() == std::errc::resource_unavailable_try_again ||
+                               system->code() == std::errc::not_enough_memory);
+}
+
 void only(CLI::App& command, const std::string& option, const std::string& built,
-          const std::string& unbuilt, const std::string& help) {
-  command.add_option_function<std::string>(
-      option,
-      [=](const std::string& value) {
-        if (value == built) return;
-        throw prostm::InputError(
-            option + " " + value + " is " +
-            (unbuilt.find(value) != std::string::npos ? "not built yet" : "unknown") +
-            "; this version has " + built);
-      },
-      help + " [" + built + "]");
+          const std::vector<std::string>& unbuilt, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          option,
+          [=](const std::string& value) {
+            if (value == built) return;
+            const bool planned = std::find(unbuilt.begin(), unbuilt.end(), value) != unbuilt.end();
+            throw prostm::InputError(option + " " + value + " is " +
+                                     (planned ? "not built yet" : "unknown") +
+                                     "; this version has " + built);
+          },
+          help + " [" + built + "]")
+      ->type_name("NAME");
+}
+
+/// An option, or a positional, whose value is a file that the command reads.
+template <class Value>
+CLI::Option* add_input(CLI::App& command, Files& files, const std::string& name, Value& value,
+                       const std::string& help) {
+  return command.add_option(name, value, help)
+      ->type_name("INPUT")
+      ->each([&files, name](const std::string& path) { files.reads(name, path); });
+}
+
+/// The same, where some values are names of what is built in.
+template <class Value>
+CLI::Option* add_input_or_name(CLI::App& command, Files& files, const std::string& name,
+                               Value& value, bool (*is_file)(const std::string&),
+                               const std::string& help) {
+  return command.add_option(name, value, help)
+      ->type_name("NAME|INPUT")
+      ->each([&files, name, is_file](const std::string& path) {
+        if (is_file(path)) files.reads(name, path);
+      });
+}
+
+/// An option whose value is a file that the command writes.
+template <class Value>
+CLI::Option* add_output(CLI::App& command, Files& files, const std::string& name, Value& value,
+                        Files::Check check, const std::string& help) {
+  return command.add_option(name, value, help)
+      ->type_name("OUTPUT")
+      ->each([&files, name, check](const std::string& path) { files.writes(name, path, check); });
+}
+
+/// One that takes one of a few words.
+template <class Value>
+CLI::Option* add_name(CLI::App& command, const std::string& name, Value& value,
+                      const std::string& help) {
+  return command.add_option(name, value, help)->type_name("NAME");
+}
+
+void add_json(CLI::App& command, Files& files, std::string& json) {
+  add_output(command, files, "--json", json, prostm::check_writable,
+             "write the result as JSON; - is standard output");
 }
 
 void add_common(CLI::App& command, CommonOptions& o) {
-  command.add_option("--settings", o.settings_file,
-                     "settings of any stage, a TOML file (docs/files.md)");
-  command.add_option("--json", o.json, "write the result as JSON; - is standard output");
+  add_input(command, o.files, "--settings", o.settings_file,
+            "settings of any stage, a TOML file (docs/files.md)");
+  add_json(command, o.files, o.json);
   command.add_option("--seed", o.seed, "of everything that is drawn at random");
-  command.add_option("--preset", o.preset, "best (default), fast, paper, or paper-valid");
+  add_name(command, "--preset", o.preset, "best (default), fast, paper, or paper-valid");
   command.add_option("--paths", o.paths, "focal points, 1 to 8");
   command.add_option("--budget-ms", o.budget_ms,
                      "time for a plan of preset best; 0: a fixed amount of work");
-  command.add_option(
-      "--method", o.method,
-      "pro-stm (default): paths, or am: foci that stand still, modulated (docs/am.md)");
+  add_name(command, "--method", o.method,
+           "pro-stm (default): paths, or am: foci that stand still, modulated (docs/am.md)");
+}
+
+void add_array(CLI::App& command, CommonOptions& o, const std::string& help) {
+  add_input_or_name(command, o.files, "--array", o.array, names_json, help);
+}
+
+void add_figure(CLI::App& command, CommonOptions& o, const std::string& help) {
+  add_output(command, o.files, "--figure", o.figure, prostm::check_figure, help);
 }
 
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand) {
   add_common(command, common);
-  command.add_option("--scene", scene,
-                     "one-plume (default), two-plumes, three-plumes, four-plumes, or still-air");
-  command
-      .add_option(
-          "--hand", hand,
-          "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
-          "page (docs/hands.md)")
+  add_name(command, "--scene", scene,
+           "one-plume (default), two-plumes, three-plumes, four-plumes, or still-air");
+  add_input_or_name(
+      command, common.files, "--hand", hand, names_recording,
+      "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
+      "page (docs/hands.md)")
       ->capture_default_str();
-  command.add_option(
-      "--tracker", common.tracker,
+  add_input_or_name(
+      command, common.files, "--tracker", common.tracker, names_json,
       "where the tracker is: centre (default), ultraleap-kit, or a pose file (.json)");
   command.add_option("--grid", common.grid,
                      "cells along each edge of the fluid's box, a multiple of 16");
-  command.add_option("--array", common.array, "usx (default), autd3, or an array file (.json)");
+  add_array(command, common, "usx (default), autd3, or an array file (.json)");
 }
 
-void add_run(CLI::App& app, int& status) {
+void add_run(CLI::App& app, Work& work) {
   auto* command =
       app.add_subcommand("run", "a hand in smoke, felt through focal-point paths: the main job");
   auto o = std::make_shared<RunOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand);
-  only(*command, "--device", "sim", "autd3 ultraleap stream", "what plays the paths");
-  command->add_option("--figure", o->common.figure, "a picture of one instant (.png or .svg)");
+  only(*command, "--device", "sim", {"autd3", "ultraleap", "stream"}, "what plays the paths");
+  add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
   command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle");
   command->add_option("--seconds", o->seconds,
                       "of run time; default: the recording's length, or 60");
@@ -81,125 +152,138 @@ void add_run(CLI::App& app, int& status) {
   auto* stepped = command->add_flag("--stepped", o->stepped, "the same on one thread");
   realtime->excludes(fast)->excludes(stepped);
   fast->excludes(stepped);
-  command->add_option(
-      "--switch", o->switch_at,
-      "when a new plan takes over: lap (default), at the end of each path's lap, or "
-      "now, at the next block");
-  command->add_option("--record", o->record,
-                      "record targets, hands and plans (.h5, docs/recordings.md)");
+  add_name(*command, "--switch", o->switch_at,
+           "when a new plan takes over: lap (default), at the end of each path's lap, or "
+           "now, at the next block");
+  add_output(*command, o->common.files, "--record", o->record, prostm::check_recording,
+             "record targets, hands and plans (.h5, docs/recordings.md)");
   command->add_flag("--view", o->view,
                     "serve the page that shows and steers the run (docs/viewing.md)");
   command->add_flag("--stay", o->stay, "go on after --seconds, until Ctrl-C; needs --view");
   command->add_option("--view-port", o->view_port,
                       "port of the page, 0 for any; default: 8470, or the next free one");
-  command->add_option("--view-address", o->view_address,
-                      "address to serve the page on; default: 127.0.0.1, this machine alone");
   command
-      ->add_option("--tracker-file", o->tracker_file,
-                   "where the page's calibration saves the tracker's pose, for --tracker")
-      ->capture_default_str();
+      ->add_option("--view-address", o->view_address,
+                   "address to serve the page on; default: 127.0.0.1, this machine alone")
+      ->type_name("ADDRESS");
+  auto* tracker_file =
+      command
+          ->add_option("--tracker-file", o->tracker_file,
+                       "where the page's calibration saves the tracker's pose, for --tracker")
+          ->type_name("OUTPUT")
+          ->capture_default_str();
   command->footer(
       "Example:\n  prostm run --scene four-plumes --hand me.hands.jsonl --seconds 60 --json "
       "summary.json");
-  command->callback([o, &status] { status = run_command(*o); });
+  command->callback([o, tracker_file, &work] {
+    // only a page writes it; one that nobody named need not be writable until then
+    if (o->view) {
+      const auto check = tracker_file->count() > 0 ? prostm::check_writable : nullptr;
+      o->common.files.writes("--tracker-file", o->tracker_file, check, "--tracker");
+    }
+    work = {&o->common.files, [o] { return run_command(*o); }};
+  });
 }
 
-void add_plan(CLI::App& app, int& status) {
+void add_plan(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("plan", "the paths, or foci, for one target field");
   auto o = std::make_shared<PlanOptionsGiven>();
   add_common(*command, o->common);
-  command->add_option("field", o->field, "target field: .json, .npy, .png or .h5 (docs/files.md)")
+  add_input(*command, o->common.files, "field", o->field,
+            "target field: .json, .npy, .png or .h5 (docs/files.md)")
       ->required();
   command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
   command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
-  command->add_option(
-      "--figure", o->common.figure,
-      "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
-      "presets (.png or .svg)");
-  command->add_option(
-      "--array", o->common.array,
-      "plan with the width that the focus of usx, autd3 or an array file has there");
-  command->add_option("--beside", o->beside, "draw these digitised panels beside ours (JSON)");
+  add_figure(*command, o->common,
+             "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
+             "presets (.png or .svg)");
+  add_array(*command, o->common,
+            "plan with the width that the focus of usx, autd3 or an array file has there");
+  add_input(*command, o->common.files, "--beside", o->beside,
+            "draw these digitised panels beside ours (JSON)");
   command->footer(
       "Example:\n  prostm plan palm.npy --cell-mm 5 --preset paper --figure palm.png --json "
       "palm.plan.json");
-  command->callback([o, &status] { status = plan_command(*o); });
+  command->callback([o, &work] { work = {&o->common.files, [o] { return plan_command(*o); }}; });
 }
 
-void add_capture(CLI::App& app, int& status) {
+void add_capture(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("capture", "record the target fields of a scene");
   auto o = std::make_shared<CaptureOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand);
   command->add_option("--frames", o->frames, "fields with pressure on them")->capture_default_str();
-  command->add_option("--out", o->out, "the recording (.h5)")->required();
+  add_output(*command, o->common.files, "--out", o->out, prostm::check_recording,
+             "the recording (.h5)")
+      ->required();
   command->footer("Example:\n  prostm capture --scene one-plume --frames 500 --out one-plume.h5");
-  command->callback([o, &status] { status = capture_command(*o); });
+  command->callback([o, &work] { work = {&o->common.files, [o] { return capture_command(*o); }}; });
 }
 
-void add_bench(CLI::App& app, int& status) {
+void add_bench(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("bench", "the paper's Table I on recorded fields");
   auto o = std::make_shared<BenchOptionsGiven>();
   add_common(*command, o->common);
-  command->add_option("files", o->files, "recordings (.h5) of prostm capture or run --record")
+  add_input(*command, o->common.files, "files", o->files,
+            "recordings (.h5) of prostm capture or run --record")
       ->required();
   command->add_option("--repeats", o->repeats, "runs of each field, of which the median counts")
       ->capture_default_str();
   command->footer("Example:\n  prostm bench one-plume.h5 four-plumes.h5 --json table1.json");
-  command->callback([o, &status] { status = bench_command(*o); });
+  command->callback([o, &work] { work = {&o->common.files, [o] { return bench_command(*o); }}; });
 }
 
-void add_solve(CLI::App& app, int& status) {
+void add_solve(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("solve", "transducer drives for given focal points");
   auto o = std::make_shared<SolveOptionsGiven>();
-  command->add_option("foci", o->foci, "focal points and their pressures (docs/files.md)")
+  add_input(*command, o->files, "foci", o->foci, "focal points and their pressures (docs/files.md)")
       ->required();
-  command->add_option("--array", o->array, "usx, autd3, or an array file (.json)")
+  add_input_or_name(*command, o->files, "--array", o->array, names_json,
+                    "usx, autd3, or an array file (.json)")
       ->capture_default_str();
-  command
-      ->add_option("--solver", o->solver, "superposition, ibp, gs-pat, weighted, eigenvector or lm")
+  add_name(*command, "--solver", o->solver,
+           "superposition, ibp, gs-pat, weighted, eigenvector or lm")
       ->capture_default_str();
-  command->add_option("--json", o->json, "write the drives as JSON; - is standard output");
+  add_json(*command, o->files, o->json);
   command->footer(
       "Example:\n  prostm solve foci.json --array autd3 --solver lm --json drives.json");
-  command->callback([o, &status] { status = solve_command(*o); });
+  command->callback([o, &work] { work = {&o->files, [o] { return solve_command(*o); }}; });
 }
 
-void add_field(CLI::App& app, int& status) {
+void add_field(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("field", "what an array puts on the skin by a plan");
   auto o = std::make_shared<FieldOptionsGiven>();
-  command->add_option("plan", o->plan, "a plan of prostm plan --json");
+  add_input(*command, o->common.files, "plan", o->plan, "a plan of prostm plan --json");
   command->add_flag("--widths", o->widths,
                     "instead: how wide a focus of the array is, by height, offset and tilt");
-  command->add_option("--field", o->target,
-                      "the field that was planned, to compare with (.json, .npy, .png or .h5)");
+  add_input(*command, o->common.files, "--field", o->target,
+            "the field that was planned, to compare with (.json, .npy, .png or .h5)");
   command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
   command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
-  command->add_option("--array", o->common.array, "usx (default), autd3, or an array file (.json)");
-  command
-      ->add_option("--solver", o->solver, "superposition, ibp, gs-pat, weighted, eigenvector or lm")
+  add_array(*command, o->common, "usx (default), autd3, or an array file (.json)");
+  add_name(*command, "--solver", o->solver,
+           "superposition, ibp, gs-pat, weighted, eigenvector or lm")
       ->capture_default_str();
   command->add_option("--full-scale-pa", o->full_scale_pa,
                       "acoustic pressure of intensity 1, rms; 0: the most that the array can hold "
                       "over the whole loop");
   command->add_flag("--memoryless", o->memoryless, "transducers that follow their drives at once");
-  command->add_option("--settings", o->common.settings_file,
-                      "settings of any stage, a TOML file (docs/files.md)");
-  command->add_option("--figure", o->common.figure,
-                      "target, envelope, mean and difference (.png or .svg)");
-  command->add_option("--json", o->common.json, "write the result as JSON; - is standard output");
+  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+            "settings of any stage, a TOML file (docs/files.md)");
+  add_figure(*command, o->common, "target, envelope, mean and difference (.png or .svg)");
+  add_json(*command, o->common.files, o->common.json);
   command->footer(
       "Example:\n  prostm field palm.plan.json --field palm.npy --cell-mm 5 --array autd3 --figure "
       "palm.field.png");
-  command->callback([o, &status] { status = field_command(*o); });
+  command->callback([o, &work] { work = {&o->common.files, [o] { return field_command(*o); }}; });
 }
 
-void add_devices(CLI::App& app, int& status) {
+void add_devices(CLI::App& app, Work& work) {
   auto* command =
       app.add_subcommand("devices", "what can be driven from here, and why not, for each kind");
-  auto json = std::make_shared<std::string>();
-  command->add_option("--json", *json, "write the result as JSON; - is standard output");
+  auto o = std::make_shared<DevicesOptionsGiven>();
+  add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm devices");
-  command->callback([json, &status] { status = devices_command(*json); });
+  command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
 }
 
 /// Commands of the design that do not exist yet answer with a sentence, not with a usage error.
@@ -225,18 +309,19 @@ int main(int argc, char** argv) {
       "prostm: touch in mid-air from pressure fields, by path routing optimisation for ultrasound");
   app.set_version_flag("--version", PROSTM_VERSION);
   app.require_subcommand(1);
-  int status = 0;
-  add_run(app, status);
-  add_plan(app, status);
-  add_capture(app, status);
-  add_bench(app, status);
-  add_solve(app, status);
-  add_field(app, status);
-  add_devices(app, status);
+  Work work;
+  add_run(app, work);
+  add_plan(app, work);
+  add_capture(app, work);
+  add_bench(app, work);
+  add_solve(app, work);
+  add_field(app, work);
+  add_devices(app, work);
   add_unbuilt(app);
   try {
     app.parse(argc, argv);
-    return status;
+    work.files->check();
+    return work.run();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
     std::fprintf(stderr, "prostm: %s; see prostm --help\n", error.what());
@@ -248,6 +333,12 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "prostm: %s\n", error.what());
     return kBadInput;
   } catch (const std::exception& error) {
+    if (lacks_memory(error)) {
+      std::fprintf(stderr,
+                   "prostm: there is not enough memory for this; free some, raise its limit "
+                   "(ulimit -v), or ask for less, such as a smaller --grid or field\n");
+      return kBadInput;
+    }
     std::fprintf(stderr, "prostm: unexpected: %s\n", error.what());
     return 1;
   }

@@ -5,11 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "files.hpp"
+
 namespace prostm::app {
 
 /// Options of every command that runs a stage. An unset optional leaves what the settings file or
 /// the default says.
 struct CommonOptions {
+  Files files;  ///< all that the command line names
   std::string settings_file;
   std::string json;  ///< file, "-" for standard output, empty for none
   std::string figure;
@@ -57,6 +60,7 @@ struct BenchOptionsGiven {
 };
 
 struct SolveOptionsGiven {
+  Files files;
   std::string foci;
   std::string array = "usx";
   std::string solver = "weighted";
@@ -75,14 +79,19 @@ struct FieldOptionsGiven {
   bool widths = false;  ///< of a focus, instead of the field of a plan
 };
 
+struct DevicesOptionsGiven {
+  Files files;
+  std::string json;
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
-/// std::invalid_argument.
+/// std::invalid_argument. The files that the options name have been checked.
 int run_command(const RunOptionsGiven& options);
 int plan_command(const PlanOptionsGiven& options);
 int capture_command(const CaptureOptionsGiven& options);
 int bench_command(const BenchOptionsGiven& options);
 int solve_command(const SolveOptionsGiven& options);
 int field_command(const FieldOptionsGiven& options);
-int devices_command(const std::string& json);
+int devices_command(const DevicesOptionsGiven& options);
 
 }  // namespace prostm::app

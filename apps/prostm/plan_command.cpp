@@ -232,7 +232,6 @@ double sigma_on_skin(const TransducerArray& array, const TargetField& target, do
 }  // namespace
 
 int plan_command(const PlanOptionsGiven& given) {
-  check_outputs(given.common);
   PipelineSettings settings = make_settings(given.common, std::nullopt);
   const PlanSettings& s = settings.plan;
   if (!given.beside.empty() && given.common.figure.empty())

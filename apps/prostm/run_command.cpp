@@ -114,7 +114,6 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
 }  // namespace
 
 int run_command(const RunOptionsGiven& given) {
-  check_outputs(given.common);
   PipelineSettings settings = make_settings(given.common, given.scene);
   RunOptions options;
   options.mode = given.stepped               ? RunMode::Stepped

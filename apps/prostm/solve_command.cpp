@@ -15,7 +15,6 @@ int solve_command(const SolveOptionsGiven& options) {
   const TransducerArray array = array_from_name(options.array);
   FocusSettings settings;
   settings.method = solver_of(options.solver);
-  if (!options.json.empty()) check_writable(options.json);
   const FociFile foci = read_foci(options.foci);
 
   const Medium air;

@@ -14,8 +14,8 @@ namespace {
 
 /// What kind of hands `--hand` names.
 std::string source_of(const std::string& hand) {
-  if (hand == "scripted" || hand == "openxr" || hand == "page") return hand;
-  return hand.rfind("leap:", 0) == 0 ? "leap" : "recording";
+  if (names_recording(hand)) return "recording";
+  return hand.starts_with("leap:") ? "leap" : hand;
 }
 
 }  // namespace

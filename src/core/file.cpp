@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -80,13 +81,39 @@ int open_temporary(const std::string& path, std::string& temporary) {
 
 /// What is there, said before it is read.
 Descriptor open_to_read(const std::string& path, struct stat* status) {
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // a pipe is opened without waiting for somebody to write into it
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0 || ::fstat(file.get(), status) != 0) {
     throw InputError(
         fmt::format("{} cannot be read ({}); name a file that exists", path, reason(errno)));
   }
   if (S_ISDIR(status->st_mode)) throw InputError(path + " is a folder; name a file");
+  if (!S_ISREG(status->st_mode)) {
+    throw InputError(path + " is a pipe or a device; name an ordinary file");
+  }
   return file;
+}
+
+/// Where writing to `path` ends up: links are followed, also one to a file that is not there yet.
+std::filesystem::path followed(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::error_code ignored;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, ignored); ++i) {
+    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+  }
+  return path;
+}
+
+/// Renaming a file over a protected one succeeds, so its mode is asked. Root may write everywhere:
+/// a file that its mode lets nobody write is protected from root as well.
+void check_protection(const std::string& path) {
+  constexpr mode_t kAnybody = S_IWUSR | S_IWGRP | S_IWOTH;
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return;
+  if ((status.st_mode & kAnybody) != 0 && ::access(path.c_str(), W_OK) == 0) return;
+  throw InputError(fmt::format(
+      "{} is protected (mode {:03o}) and would be replaced; make it writable or name another file",
+      path, status.st_mode & 0777U));
 }
 
 /// Whether `path` is written through a temporary file, beside `target`: a link stays a link, a
@@ -98,9 +125,31 @@ bool temporary_serves(const std::string& path, std::string& target) {
     throw InputError(path + " is a folder; name a file to write");
   }
   const bool regular = kind == std::filesystem::file_type::regular;
-  target = regular ? std::filesystem::canonical(path, ignored).string() : path;
+  if (regular) check_protection(path);
+  target = followed(path).string();
   return regular || kind == std::filesystem::file_type::not_found ||
          kind == std::filesystem::file_type::none;
+}
+
+/// A file that is there, or the folder and the name of one that would be made.
+struct Identity {
+  dev_t device = 0;
+  ino_t number = 0;
+  std::string name;  // in the folder of that number; empty for a file that is there
+  bool operator==(const Identity&) const = default;
+};
+
+/// None of what is no ordinary file, and where there is no folder to make one in.
+std::optional<Identity> identity_of(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0) {
+    if (!S_ISREG(status.st_mode)) return {};
+    return Identity{status.st_dev, status.st_ino, ""};
+  }
+  const std::filesystem::path target = followed(path);
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  if (::stat(folder.c_str(), &status) != 0) return {};
+  return Identity{status.st_dev, status.st_ino, target.filename().string()};
 }
 
 /// 0 or the error; the temporary file is there in both cases.
@@ -124,10 +173,9 @@ std::string read_file(const std::string& path, std::size_t limit) {
     return InputError(fmt::format("{} is larger than the {} MB that a file of its kind may have",
                                   path, limit >> 20));
   };
-  if (S_ISREG(status.st_mode) && static_cast<std::size_t>(status.st_size) > limit)
-    throw too_large();
+  if (static_cast<std::size_t>(status.st_size) > limit) throw too_large();
 
-  // the size is only a hint: pipes have none, and files grow
+  // the size is only a hint: files grow, and those of the kernel have none
   std::string bytes;
   bytes.reserve(static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)));
   std::array<char, 65536> buffer{};
@@ -149,6 +197,11 @@ void check_writable(const std::string& path) {
   const Descriptor file(open_temporary(target, temporary));
   if (file.get() < 0) fail_to_write(path, errno);
   ::unlink(temporary.c_str());
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  const std::optional<Identity> first = identity_of(a);
+  return first && first == identity_of(b);
 }
 
 void write_file(const std::string& path, std::string_view bytes) {

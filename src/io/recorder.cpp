@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/file.hpp"
 #include "core/input_error.hpp"
 #include "io/hdf5.hpp"
 #include "io/hdf5_disk.hpp"
@@ -68,23 +69,6 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-/// Creates the file to learn why it cannot be created; HDF5 does not say.
-void check_writable(const std::string& path, const std::string& part) {
-  std::error_code ignored;
-  const auto kind = std::filesystem::status(path, ignored).type();
-  if (kind != std::filesystem::file_type::regular &&
-      kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::none) {
-    throw InputError(path + " is not an ordinary file; name a file to record into");
-  }
-  const int fd = ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (fd < 0) {
-    throw InputError(fmt::format(
-        "{} cannot be written ({}); name a file in a folder that exists and is writable", path,
-        reason(errno)));
-  }
-  ::close(fd);
-}
-
 /// 0 or the error.
 int sync(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -95,6 +79,17 @@ int sync(const std::string& path) {
 }
 
 }  // namespace
+
+void check_recording(const std::string& path) {
+  check_writable(path);
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  if (kind == std::filesystem::file_type::regular ||
+      kind == std::filesystem::file_type::not_found || kind == std::filesystem::file_type::none) {
+    return;
+  }
+  throw InputError(path + " is not an ordinary file; name a file to record into");
+}
 
 struct Recorder::Impl {
   std::string path, part;
@@ -280,7 +275,7 @@ Recorder::Recorder(const std::string& path, const std::string& settings_json)
   Impl& r = *impl_;
   r.path = path;
   r.part = path + ".part.h5";
-  check_writable(path, r.part);
+  check_recording(path);  // HDF5 does not say why a file cannot be created
   r.file = h5::create_file(r.part, r.error);
   const hid_t file = r.file.get();
   const bool ok = r.file.valid() && h5::write_text(file, "format", "prostm-recording/1") &&

@@ -10,13 +10,16 @@
 
 namespace prostm {
 
+/// Tries whether a recording could be made there, before the work that fills it. @throws
+/// InputError: as check_writable, and what is no ordinary file.
+void check_recording(const std::string& path);
+
 /// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed
 /// every second of data, so that a killed run leaves a file that opens. Earliest HDF5 file format.
 /// The layout, units and attributes are in docs/recordings.md.
 class Recorder {
  public:
-  /// @param settings_json kept as an attribute. @throws InputError: the folder is missing or not
-  /// writable.
+  /// @param settings_json kept as an attribute. @throws InputError as check_recording.
   Recorder(const std::string& path, const std::string& settings_json);
   ~Recorder();  ///< closes like close(), but keeps quiet about errors
 

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def pytest_configure(config):
     config.addinivalue_line(
-        "markers", "realtime: needs the speed of a release build; left out under sanitizers")
+        "markers", "realtime: needs the speed or the little memory of a release build; left out under sanitizers")
     config.addinivalue_line(
         "markers", "long: steps through seconds of a run as other tests do; left out under sanitizers")
 

@@ -143,6 +143,8 @@ def test_bad_recordings(refuses, tmp_path, fault):
         (["run", "--seconds", "9", "--figure-at", "nan", "--figure", "f.png"], ["--figure-at", "nan"]),
         (["run", "--grid", "63"], ["63"]),
         (["run", "--paths", "9"], ["9"]),
+        (["run", "--device", "a"], ["--device a is unknown"]),
+        (["run", "--seed", "-1"], ["--seed = -1", "between 0"]),
         (["run", "--preset", "worst"], ["worst"]),
         (["run", "--budget-ms", "-1"], ["budget", "between 0"]),
         (["run", "--budget-ms", "nan"], ["budget", "between 0"]),
@@ -168,6 +170,7 @@ def test_bad_options(refuses, args, words):
         ('[plan]\npaths = "three"\n', ["paths"]),
         ("[plan]\npaths = 99\n", ["99"]),
         ("[plan]\nsigma = nan\n", ["sigma"]),
+        ("[plan]\nseed = -1\n", ["plan.seed", "-1"]),
         ("[plan\n", ["s.toml"]),
     ],
 )
@@ -234,6 +237,14 @@ def test_full_disk(program, tmp_path):
         lines = done.stderr.splitlines()
         assert len(lines) == 1 and lines[0].startswith("prostm: ") and out[-1].name in lines[0]
         assert not (tmp_path / out[-1].name).exists()
+
+
+@pytest.mark.realtime
+def test_a_lack_of_memory_is_said_as_such(program, tmp_path):
+    for arguments in (["run", "--seconds", "1"], ["capture", "--frames", "1", "--out", "o.h5"]):
+        done = subprocess.run([str(program), *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (100 << 20, 100 << 20)))
+        assert done.returncode == 2 and done.stderr.startswith("prostm: there is not enough memory"), done.stderr
 
 
 def test_ctrl_c_leaves_valid_files(program, tmp_path):

@@ -2,12 +2,15 @@
 
 import json
 import math
+import re
 import struct
 import zlib
 
 import h5py
 import numpy as np
 import pytest
+
+from conftest import ROOT
 
 
 def blob_field(rows=24, cols=30, cell=5.0):
@@ -443,3 +446,31 @@ def test_widths_of_a_focus(prostm, field, tmp_path):
     plan = plan_of(prostm, field, "--array", "usx")
     assert 4e-3 < plan["settings"]["plan"]["sigma"] < 8e-3
     assert "focus of usx on the skin" in prostm("plan", field, "--array", "usx").stdout
+
+
+@pytest.mark.parametrize("shape", [(1, 20), (20, 1), (1, 1)])
+@pytest.mark.parametrize("method", ["pro-stm", "am"])
+def test_a_raster_of_one_row_or_column_goes_through_every_command(prostm, tmp_path, shape, method):
+    np.save(tmp_path / "line.npy", np.ones(shape))
+    line = ["line.npy", "--cell-mm", "5"]
+    prostm("plan", *line, "--method", method, "--json", "plan.json", "--figure", "plan.svg", "--array", "usx")
+    done = prostm("field", "plan.json", "--field", *line, "--json", "-", "--figure", "field.svg")
+    field = json.loads(done.stdout)
+    assert np.array(field["envelope_pa"]).shape == shape and np.array(field["felt_um"]).shape == shape
+    assert 0 < np.max(field["felt_um"]) and field["envelope"]["largest_pa"] > 0
+
+
+def test_the_plan_of_the_documentation_has_a_field(prostm, tmp_path):
+    text = (ROOT / "docs" / "files.md").read_text()
+    example = text[text.index('{"format": "prostm-plan/1"'):]
+    (tmp_path / "plan.json").write_text(example[: example.index("```")])
+    assert "radiation pressure on the skin" in prostm("field", "plan.json").stdout
+
+
+def test_the_program_is_compiled_for_no_machine_in_particular(program):
+    """What is in it for newer machines is chosen where it runs, and not by the compiler's options."""
+    commands = json.loads((program.parent / "compile_commands.json").read_text())
+    # only benchmarks, which are not installed, may be made for the machine that they run on
+    mine = [c for c in commands if "/bench/" not in c["file"] or "/bench/textbook/" in c["file"]]
+    assert any("/bench/textbook/" in c["file"] for c in mine) and any("/apps/" in c["file"] for c in mine)
+    assert [c["file"] for c in mine if re.search(r" -m(arch|cpu|tune|avx|sse|fma)", c["command"])] == []

@@ -90,8 +90,61 @@ TEST(ReadFile, SaysWhatCannotBeRead) {
   write_file(folder.file("large"), std::string((3U << 20) + 1, 'x'));
   EXPECT_THAT(input_error([&] { read_file(folder.file("large"), 3U << 20); }),
               HasSubstr("larger than the 3 MB"));
-  EXPECT_THAT(input_error([&] { read_file("/dev/zero", 1U << 20); }),
-              HasSubstr("larger than the 1 MB"));
+  // a file of the kernel that says nothing of its size
+  EXPECT_THAT(input_error([&] { read_file("/proc/self/maps", 10); }), HasSubstr("larger than"));
+}
+
+TEST(ReadFile, RefusesPipesAndDevicesWithoutWaiting) {
+  const test::TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {pipe, std::string("/dev/zero")}) {
+    EXPECT_THAT(input_error([&] { read_file(path); }),
+                AllOf(HasSubstr(path), HasSubstr("ordinary file")));
+    EXPECT_THAT(input_error([&] { check_readable(path); }), HasSubstr("ordinary file"));
+  }
+}
+
+TEST(WriteFile, KeepsAProtectedFileAlsoFromRoot) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("a.json");
+  write_file(path, "old");
+  std::filesystem::create_symlink(path, folder.file("link"));
+  ::chmod(path.c_str(), 0444);
+  for (const std::string& name : {path, folder.file("link")}) {
+    EXPECT_THAT(input_error([&] { write_file(name, "new"); }),
+                AllOf(HasSubstr(name), HasSubstr("protected (mode 444)")));
+    EXPECT_THAT(input_error([&] { check_writable(name); }), HasSubstr("protected"));
+  }
+  EXPECT_EQ(read_file(path), "old");
+}
+
+TEST(WriteFile, MakesTheFileThatALinkPointsTo) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_symlink("target", folder.file("link"));
+  write_file(folder.file("link"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link")));
+  EXPECT_EQ(read_file(folder.file("target")), "new");
+}
+
+TEST(SameFile, IsFoundByAllOfItsNamesAndBeforeItIsThere) {
+  const test::TemporaryFolder folder;
+  const std::string a = folder.file("a"), b = folder.file("b"), c = folder.file("c");
+  write_file(a, "x");
+  write_file(b, "x");
+  std::filesystem::create_directory(folder.file("inner"));
+  std::filesystem::create_hard_link(a, folder.file("hard"));
+  std::filesystem::create_symlink(a, folder.file("soft"));
+  std::filesystem::create_symlink("c", folder.file("to c"));
+  std::filesystem::create_directory_symlink(folder.file(""), folder.file("here"));
+  for (const char* other : {"a", "./a", "inner/../a", "hard", "soft", "here/a", "here/here/soft"})
+    EXPECT_TRUE(is_same_file(a, folder.file(other))) << other;
+  for (const char* other : {"c", "./c", "inner/../c", "to c", "here/c", "here/to c"})
+    EXPECT_TRUE(is_same_file(c, folder.file(other))) << other;
+  for (const char* other : {"b", "c", "inner/a", "missing/a"})
+    EXPECT_FALSE(is_same_file(a, folder.file(other))) << other;
+  EXPECT_FALSE(is_same_file(c, folder.file("inner/c")));
+  EXPECT_FALSE(is_same_file("/dev/null", "/dev/null"));
 }
 
 }  // namespace

@@ -196,7 +196,7 @@ TEST(Recording, CannotBeWrittenWithoutAFolder) {
   EXPECT_THAT(input_error([&] { const Recorder recorder("/dev/full", "{}"); }),
               HasSubstr("not an ordinary file"));
   EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file(""), "{}"); }),
-              HasSubstr("not an ordinary file"));
+              HasSubstr("is a folder"));
 }
 
 TEST(Recording, SaysThatTheDiskIsFullWheneverThatHappens) {

@@ -1,0 +1,37 @@
+#include "files.hpp"
+
+#include <fmt/format.h>
+
+#include "core/input_error.hpp"
+
+namespace prostm::app {
+
+void Files::reads(const std::string& option, const std::string& path) {
+  entries_.push_back({option, path, check_readable, false, {}});
+}
+
+void Files::writes(const std::string& option, const std::string& path, Check also,
+                   const std::string& of) {
+  entries_.push_back({option, path, also, true, of});
+}
+
+void Files::check() const {
+  for (const Entry& entry : entries_) {
+    if (!entry.output) entry.check(entry.path);
+  }
+  for (const Entry& entry : entries_) {
+    if (!entry.output) continue;
+    for (const Entry& other : entries_) {
+      const bool updated = !entry.of.empty() && !other.output && other.option.starts_with(entry.of);
+      if (&other == &entry || updated) continue;
+      if (!is_same_file(entry.path, other.path)) continue;
+      throw InputError(
+          fmt::format("{} {} and {} {} are one file, which would be overwritten; give {} another "
+                      "name",
+                      entry.option, entry.path, other.option, other.path, entry.option));
+    }
+    if (entry.check != nullptr) entry.check(entry.path);
+  }
+}
+
+}  // namespace prostm::app
