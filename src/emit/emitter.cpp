@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "emit/exchange.hpp"
 #include "emit/focus_emitter.hpp"
@@ -70,6 +71,10 @@ void Emitter::lose() noexcept {
   message.lost = true;
   message.refused = false;
   exchange_->inbox.publish();
+}
+
+void Emitter::obey(std::shared_ptr<const Mute> mute) noexcept {
+  exchange_->mute = std::move(mute);
 }
 
 int Emitter::foci() const {

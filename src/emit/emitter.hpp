@@ -7,6 +7,7 @@
 
 #include "core/settings.hpp"
 #include "emit/focus_sample.hpp"
+#include "emit/mute.hpp"
 #include "plan/lifted_plan.hpp"
 #include "plan/method.hpp"
 
@@ -84,6 +85,9 @@ class Emitter : public SampleSource {
   /// The hand is gone, or a number was not finite: fade out within 50 ms, until the next plan.
   /// Planner's thread.
   void lose() noexcept;
+  /// Obeys a mute from the next block on: while it is on, output fades as after lose(), and plans
+  /// that come are lost; the first plan after it sounds. @pre before the first fill().
+  void obey(std::shared_ptr<const Mute> mute) noexcept;
 
   int foci() const final;
 

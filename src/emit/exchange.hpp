@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 
 #include "core/latest.hpp"
 #include "emit/emitter.hpp"
@@ -32,6 +34,9 @@ class LongestStep {
   double squared_ = 0.0;
 };
 
+/// What an emitter is told at the beginning of a block.
+enum class News : std::uint8_t { None, Plan, Lost };
+
 struct Emitter::Exchange {
   Exchange(const EmitSettings& s, Method m) : settings(s), method(m) {}
   const EmitSettings settings;
@@ -39,6 +44,17 @@ struct Emitter::Exchange {
   Latest<Message> inbox;
   Latest<EmitStats> published;
   TakeOverLog log;
+  std::shared_ptr<const Mute> mute;  // may be none
+
+  /// Takes the newest message, if one came; counts refused plans. Device's thread.
+  News receive(EmitStats& stats) {
+    const bool fresh = inbox.refresh();
+    const Message& message = inbox.value();
+    stats.refused_plans += fresh && message.refused ? 1 : 0;
+    if (mute && mute->on()) return News::Lost;
+    if (!fresh) return News::None;
+    return message.lost ? News::Lost : News::Plan;
+  }
 
   /// Counts `samples` more of all focal points and makes the counters readable. Device's thread.
   void publish(EmitStats& stats, std::size_t samples, const LongestStep& longest) {

@@ -84,18 +84,14 @@ struct FocusEmitter::Impl {
   void write(Focus& f, double a, FocusSample& out);
 };
 
-/// Takes the newest message, if one came.
+/// Does what the newest message says, if one came.
 void FocusEmitter::Impl::receive(std::int64_t sample) {
-  if (!exchange.inbox.refresh()) return;
-  const Message& message = exchange.inbox.value();
-  fed = !message.lost;
+  const News news = exchange.receive(stats);
+  if (news == News::None) return;
+  fed = news == News::Plan;
   since_plan = 0;
-  next = message.lost ? Next::Rest : Next::TakeOver;
-  if (message.lost) {
-    stats.refused_plans += message.refused ? 1 : 0;
-  } else {
-    exchange.log.arrive(message.plan.id, 1.0, sample);
-  }
+  next = fed ? Next::TakeOver : Next::Rest;
+  if (fed) exchange.log.arrive(exchange.inbox.value().plan.id, 1.0, sample);
 }
 
 /// Gives each focal point its focus of the plan, (B5); the others fall silent where they are.

@@ -92,12 +92,11 @@ PathEmitter::Impl::Impl(Exchange& e, double sample_rate)
   }
 }
 
-/// Takes the newest message, if one came.
+/// Does what the newest message says, if one came.
 void PathEmitter::Impl::receive(std::int64_t sample) {
-  if (!exchange.inbox.refresh()) return;
-  const Message& message = exchange.inbox.value();
-  if (message.lost) {
-    stats.refused_plans += message.refused ? 1 : 0;
+  const News news = exchange.receive(stats);
+  if (news == News::None) return;
+  if (news == News::Lost) {
     fed = false;
     release();
     return;

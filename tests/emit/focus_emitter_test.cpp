@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <set>
 
 #include "emit/envelope.hpp"
@@ -164,6 +165,27 @@ TEST(FocusEmitter, LossIsSilentFromTheNextZeroOn) {
   player.submit({focus_at(0.0, 0.01, 1.0)}, 2);
   player.play(200);
   EXPECT_NEAR(player.intensity(850 + 100), 1.0, 1e-6);
+  EXPECT_TRUE(player.watch.holds());
+}
+
+TEST(FocusEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
+  const auto mute = std::make_shared<Mute>();
+  Player player(settings_for(1));
+  player.emitter.obey(mute);
+  player.submit({focus_at(0.0, 0.0, 1.0)});
+  player.play(250);
+  mute->set(MuteReason::Calibration, true);
+  player.play(500);
+  player.submit({focus_at(0.0, 0.01, 1.0)}, 2);
+  player.play(500);
+  EXPECT_GT(player.intensity(399), 0.0);
+  for (std::size_t k = 400; k < 1250; ++k) EXPECT_EQ(player.intensity(k), 0.0) << k;
+  mute->set(MuteReason::Calibration, false);
+  player.play(200);
+  player.submit({focus_at(0.0, 0.01, 1.0)}, 3);
+  player.play(200);
+  EXPECT_EQ(player.intensity(1250 + 100), 0.0) << "what was planned before is lost";
+  EXPECT_NEAR(player.intensity(1450 + 100), 1.0, 1e-6);
   EXPECT_TRUE(player.watch.holds());
 }
 

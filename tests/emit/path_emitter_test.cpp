@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -328,6 +330,38 @@ TEST(PathEmitter, LossFadesWithin50Milliseconds) {
   player.submit({ring(kCentre, 0.140, 50, 1.0)});
   const auto back = player.play(3);
   EXPECT_EQ(back[back.size() - 2].intensity + back[back.size() - 1].intensity, 1.0F);
+  EXPECT_TRUE(player.watch.holds());
+}
+
+TEST(PathEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
+  const auto mute = std::make_shared<Mute>();
+  Player player(settings_for(2));
+  player.emitter.obey(mute);
+  const auto submit = [&] {
+    player.submit({ring(kCentre, 0.140, 50, 1.0), point(kCentre + Vec3(0.05, 0, 0), 1.0)});
+  };
+  const auto silent = [](std::span<const FocusSample> samples) {
+    return std::all_of(samples.begin(), samples.end(),
+                       [](const FocusSample& s) { return s.intensity == 0.0F; });
+  };
+  submit();
+  EXPECT_FALSE(silent(player.play(10)));
+  mute->set(MuteReason::Calibration, true);
+  mute->set(MuteReason::NoHand, true);
+  EXPECT_GT(player.play(5)[0].intensity, 0.3F);  // a fade of 10 ms, not a cut
+  player.play(6);
+  for (int i = 0; i < 100; ++i) {
+    if (i % 40 == 0) submit();
+    // for one reason as for two, and no stall is counted
+    mute->set(MuteReason::NoHand, i < 50);
+    ASSERT_TRUE(silent(player.play(1))) << i;
+  }
+  mute->set(MuteReason::Calibration, false);
+  EXPECT_TRUE(silent(player.play(10))) << "what was planned before is lost";
+  submit();
+  EXPECT_FALSE(silent(player.play(3)));
+  EXPECT_EQ(player.emitter.stats().stalls, 0);
+  EXPECT_EQ(player.emitter.stats().refused_plans, 0);
   EXPECT_TRUE(player.watch.holds());
 }
 
