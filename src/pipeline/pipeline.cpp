@@ -115,6 +115,7 @@ SmokeStage::SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSou
 
 void SmokeStage::adopt(SmokeStage& other) {
   hands_ = std::move(other.hands_);
+  mute_ = other.mute_;
   X_DT_ = other.X_DT_;
   if (fluid_.grid() == other.fluid_.grid()) fluid_.copy_state(other.fluid_);
 }
@@ -136,6 +137,7 @@ void SmokeStage::prepare(double dt) {
 
 void SmokeStage::take(double time, ContactFrame& out) {
   hands_->sample(time, out.hands);
+  if (mute_) mute_->set(MuteReason::NoHand, out.hands.hands.empty());
   out.taken = time;
   out.arrival = time - out.hands.age;
   since_taken_ = 0.0;
@@ -228,12 +230,16 @@ void play_until(SimulatedArray& device, double time) {
   if (blocks > 0) device.pull(static_cast<int>(blocks));
 }
 
-Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands)
+Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+                   std::shared_ptr<Mute> mute)
     : settings_(settings),
+      mute_(std::move(mute)),
       smoke_(std::make_unique<SmokeStage>(settings, std::move(hands))),
       plans_(std::make_unique<PlanStage>(settings, smoke_->max_cells(),
                                          smoke_->scene().full_scale_pressure)),
       device_(settings.simulated_array, settings.transducers, Medium{}) {
+  if (settings.simulated_array.realtime) smoke_->tell(mute_);
+  plans_->emitter().obey(mute_);
   if (device_.start(plans_->emitter()) != DeviceStatus::Running)
     throw std::invalid_argument(device_.problem());
 }
@@ -248,6 +254,7 @@ void Pipeline::reconfigure(const PipelineSettings& settings) {
     plans =
         std::make_unique<PlanStage>(settings, next.max_cells(), next.scene().full_scale_pressure);
     plans->continue_from(*plans_);
+    plans->emitter().obey(mute_);
     const std::string problem = restart(plans->emitter());
     if (!problem.empty()) throw std::invalid_argument(problem);
   }

@@ -70,6 +70,8 @@ class SmokeStage {
   void set_tracker_pose(const Pose& X_DT) { X_DT_ = X_DT; }
   const Pose& tracker_pose() const { return X_DT_; }
   void set_steps_per_plan(int steps) { steps_per_plan_ = steps; }
+  /// From now on take() says there whether hands are there (MuteReason::NoHand).
+  void tell(std::shared_ptr<Mute> mute) { mute_ = std::move(mute); }
 
   const FluidStats& fluid_stats() const { return fluid_stats_; }  ///< of the last whole step
   const Fluid& fluid() const { return fluid_; }
@@ -80,6 +82,7 @@ class SmokeStage {
 
  private:
   std::unique_ptr<HandSource> hands_;
+  std::shared_ptr<Mute> mute_;  // none without a clock
   HandFilter filter_;
   Pose X_DT_;
   Scene scene_;
@@ -138,8 +141,11 @@ class PlanStage {
 /// two ways.
 class Pipeline {
  public:
+  /// @param mute what else silences the output; not null. In real time it is also on while a step
+  /// finds no hand, so that the output does not wait for the next plan to fade.
   /// @throws std::invalid_argument with a sentence.
-  Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands);
+  Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+           std::shared_ptr<Mute> mute = std::make_shared<Mute>());
 
   /// One fluid step of dt [s]: the device plays up to it, then the line runs top to bottom. True
   /// when a plan update came with it: see plan(). @pre settings.simulated_array.realtime is false.
@@ -169,6 +175,7 @@ class Pipeline {
   std::string restart(Emitter& emitter);
 
   PipelineSettings settings_;
+  std::shared_ptr<Mute> mute_;
   std::unique_ptr<SmokeStage> smoke_;
   std::unique_ptr<PlanStage> plans_;
   SimulatedArray device_;

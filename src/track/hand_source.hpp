@@ -18,6 +18,9 @@ struct TrackerStatus {
   bool connected = false;
   std::int64_t frames = 0;      ///< that came in
   std::int64_t dropped = 0;     ///< of these, refused for what they hold
+  std::int64_t repeated = 0;    ///< of these, with a time that had been seen already
+  std::int64_t unsure = 0;      ///< hands not taken: below TrackSettings::least_confidence
+  std::int64_t frozen = 0;      ///< hands not taken: no joint moved for TrackSettings::freeze_time
   std::int64_t reconnects = 0;  ///< connections after the first one
   std::string sentence;         ///< what to tell: where it is, and what is wrong
 };
@@ -55,6 +58,9 @@ struct TrackSettings {
                               ///< at all [s]
   double prediction_limit = 0.015;  ///< no joint is predicted farther than this [m]
   double max_gap = 0.060;  ///< a hand missing for longer than this between two frames is gone [s]
+  double least_confidence = 0.1;  ///< hands that the tracker trusts less are not taken, 0 to 1
+  double freeze_time = 0.5;  ///< a live tracker's hand none of whose joints moves for so long is
+                             ///< not taken until it moves again [s]
   double filter_position =
       0.3;  ///< α of the filter on still joints at the pipeline's rate, (0, 1]; 1 = no filter
   double filter_velocity =

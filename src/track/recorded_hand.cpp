@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "track/hand_ids.hpp"
 #include "track/hand_source.hpp"
@@ -50,6 +51,7 @@ class RecordedHand final : public HandSource {
       : settings_(settings), loop_(loop) {
     validate(settings);
     validate_recording(recording);
+    leave_out_unsure(settings, recording);
     validate_step(step);
     keep_ids(recording, settings);
     for (const HandFrame& frame : recording.frames) times_.push_back(frame.time);

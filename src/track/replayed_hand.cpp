@@ -17,6 +17,7 @@ class ReplayedHand final : public HandSource {
   ReplayedHand(HandRecording recording, const TrackSettings& settings, bool loop, double step)
       : recording_(std::move(recording)), track_(settings), loop_(loop) {
     validate_recording(recording_);
+    leave_out_unsure(settings, recording_);
     validate_step(step);
     keep_ids(recording_, settings);
     length_ = recording_.frames.back().time;

@@ -1,5 +1,6 @@
 #include "track/track_settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -23,6 +24,8 @@ void TrackSettings::visit(SettingsVisitor& v) {
   v.field("smoothing_time", smoothing_time);
   v.field("max_speed", max_speed);
   v.field("max_gap", max_gap);
+  v.field("least_confidence", least_confidence);
+  v.field("freeze_time", freeze_time);
   v.field("prediction", prediction);
   v.field("prediction_limit", prediction_limit);
   v.field("filter_position", filter_position);
@@ -43,6 +46,8 @@ void validate(const TrackSettings& settings) {
   require_between("smoothing_time", settings.smoothing_time, 0.001, 0.5, "s");
   require_between("max_speed", settings.max_speed, 0.01, 100.0, "m/s");
   require_between("max_gap", settings.max_gap, 0.001, 10.0, "s");
+  require_between("least_confidence", settings.least_confidence, 0.0, 1.0, "");
+  require_between("freeze_time", settings.freeze_time, 0.05, 60.0, "s");
   require_between("prediction", settings.prediction, 0.0, 0.2, "s");
   require_between("prediction_limit", settings.prediction_limit, 0.0, 0.1, "m");
   require_factor("filter_position", settings.filter_position);
@@ -78,6 +83,27 @@ void validate_recording(const HandRecording& recording) {
     }
     last = frame.time;
   }
+}
+
+void leave_out_unsure(const TrackSettings& settings, HandRecording& recording) {
+  std::size_t hands = 0, left = 0;
+  double most = 0.0;
+  for (HandFrame& frame : recording.frames) {
+    hands += frame.hands.size();
+    for (const Hand& hand : frame.hands) most = std::max(most, hand.confidence);
+    const auto unsure = [&](const Hand& hand) {
+      return hand.confidence < settings.least_confidence;
+    };
+    frame.hands.erase(std::remove_if(frame.hands.begin(), frame.hands.end(), unsure),
+                      frame.hands.end());
+    left += frame.hands.size();
+  }
+  if (hands == 0 || left > 0) return;
+  std::ostringstream sentence;
+  sentence << "all " << hands << " hands of the recording have a confidence of at most " << most
+           << ", below least_confidence = " << settings.least_confidence
+           << " of [track]; lower it to play them";
+  throw std::invalid_argument(sentence.str());
 }
 
 void validate_step(double step) {

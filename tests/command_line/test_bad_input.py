@@ -119,6 +119,19 @@ def test_bad_recordings(refuses, tmp_path, fault):
     refuses("run", "--hand", path, "--grid", "32", words=["bad.hands.jsonl"])
 
 
+def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
+    header, frames = hand_lines()
+    for frame in frames:
+        frame["hands"][0]["conf"] = 0.05
+    path = tmp_path / "unsure.hands.jsonl"
+    path.write_text("\n".join(json.dumps(line) for line in [header] + frames) + "\n")
+    run = ["run", "--hand", path, "--grid", "32", "--seconds", "0.1", "--stepped"]
+    refuses(*run, words=["all 5 hands", "0.05", "least_confidence = 0.1"])
+    settings = tmp_path / "all.toml"
+    settings.write_text("[track]\nleast_confidence = 0\n")
+    prostm(*run, "--settings", settings)
+
+
 @pytest.mark.parametrize(
     "args, words",
     [

@@ -4,6 +4,7 @@
 ///   PROSTM_REPLAY_HANDS    the recording (.hands.jsonl), played over and over from the session's
 ///                          begin
 ///   PROSTM_REPLAY_WITHOUT  an extension that it is to lack
+///   PROSTM_REPLAY_INFERRED how many joints of each hand it does not see: valid, and not tracked
 ///   PROSTM_REPLAY_LOSS     seconds after which each session is lost
 
 #include <ctime>
@@ -41,6 +42,7 @@ double now() {
 /// The one instance with its one session.
 struct Runtime {
   HandRecording recording;
+  std::size_t inferred = 0;           // joints of each hand
   std::optional<double> loss;         // after the session's begin [s]
   std::deque<XrSessionState> events;  // to be polled
   std::optional<double> begun;        // on the steady clock [s]
@@ -85,6 +87,8 @@ XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo*, XrInstance* ins
     runtime.reset();
     return XR_ERROR_RUNTIME_FAILURE;
   }
+  if (const char* inferred = std::getenv("PROSTM_REPLAY_INFERRED"))
+    runtime->inferred = static_cast<std::size_t>(std::atoi(inferred));
   if (const char* loss = std::getenv("PROSTM_REPLAY_LOSS")) runtime->loss = std::atof(loss);
   *instance = handle<XrInstance>(instance_handle);
   return XR_SUCCESS;
@@ -204,8 +208,10 @@ const HandFrame& frame_at(double time) {
 void set_joint(const Hand& hand, std::size_t j, XrHandJointLocationEXT& joint) {
   const auto single = [](double x) { return static_cast<float>(x); };
   joint.locationFlags =
-      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT |
-      XR_SPACE_LOCATION_POSITION_TRACKED_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+      XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+  if (j >= runtime->inferred)
+    joint.locationFlags |=
+        XR_SPACE_LOCATION_POSITION_TRACKED_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
   const prostm::Vec3& p = hand.position[j];
   const prostm::Quat& q = hand.orientation[j];
   joint.pose.position = {single(p.x()), single(p.y()), single(p.z())};

@@ -131,6 +131,82 @@ TEST(LeapClient, ComesBackAfterACutAndTheHandIsGoneMeanwhile) {
   ASSERT_TRUE(eventually([&] { return !hands->tracker_status()->connected; }));
 }
 
+TEST(LeapClient, WithoutAConnectionThereIsNoHand) {
+  auto server = std::make_unique<LeapServer>(messages_of(scripted_frames(110)), true);
+  const auto hands = make_live_hand(make_leap_tracker(address_of(*server)), {});
+  HandFrame frame;
+  ASSERT_TRUE(eventually([&] {
+    hands->sample(0.0, frame);
+    return !frame.hands.empty();
+  }));
+  server.reset();
+  while (hands->tracker_status()->connected) hands->sample(0.0, frame);
+  hands->sample(0.0, frame);
+  EXPECT_TRUE(frame.hands.empty())
+      << "although the last frame is not " << TrackSettings().max_gap << " s old";
+}
+
+/// A service that plays its script for a moment and is stuck then, in one of several ways.
+struct Stuck {
+  const char* name;
+  bool new_ids, time_goes_on;
+};
+class StuckLeap : public testing::TestWithParam<Stuck> {};
+INSTANTIATE_TEST_SUITE_P(LeapClient, StuckLeap,
+                         testing::Values(Stuck{"one_frame", false, false},
+                                         Stuck{"new_ids", true, false},
+                                         Stuck{"time_goes_on", false, true},
+                                         Stuck{"new_ids_and_time", true, true}),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+TEST_P(StuckLeap, HasNoHandAfterAMomentAndSaysWhy) {
+  const Stuck& kind = GetParam();
+  std::vector<HandFrame> frames = scripted_frames(20);
+  std::vector<LeapServer::Message> messages = messages_of(frames);
+  HandFrame stuck = frames.back();
+  for (double time = stuck.time; messages.size() < 150;) {
+    time += 0.01;
+    if (kind.time_goes_on) stuck.time = time;
+    if (kind.new_ids) ++stuck.hands[0].id;
+    messages.push_back({time, test::leap_json(stuck).dump()});
+  }
+  LeapServer server(messages);
+  TrackSettings settings;
+  settings.freeze_time = 0.2;
+  const auto hands = make_live_hand(make_leap_tracker(address_of(server)), settings);
+  HandFrame frame;
+  const auto count = [&] {
+    hands->sample(0.0, frame);
+    return frame.hands.size();
+  };
+  const auto all = [&] {
+    return hands->tracker_status()->frames == static_cast<std::int64_t>(messages.size());
+  };
+  ASSERT_TRUE(eventually([&] { return count() == 1; }));
+  // by then it is stuck, and stays so
+  bool gone = false, came_back = false;
+  ASSERT_TRUE(eventually([&] {
+    const bool there = count() == 1;
+    came_back = came_back || (gone && there);
+    gone = gone || (!there && hands->tracker_status()->frames > 75);
+    return all();
+  }));
+  EXPECT_TRUE(gone);
+  EXPECT_FALSE(came_back);
+  const TrackerStatus status = *hands->tracker_status();
+  EXPECT_TRUE(status.connected);
+  EXPECT_EQ(status.dropped, 0);
+  if (kind.time_goes_on) {
+    EXPECT_EQ(status.repeated, 0);
+    EXPECT_GT(status.frozen, 50);
+    EXPECT_THAT(status.sentence, testing::HasSubstr("has not moved at all for 0.2 s"));
+  } else {
+    EXPECT_EQ(status.repeated, 130);
+    EXPECT_EQ(status.frozen, 0);
+    EXPECT_THAT(status.sentence, testing::HasSubstr("130 frames were not taken"));
+  }
+}
+
 TEST(LeapClient, HandsComeAndGo) {
   std::vector<HandFrame> frames = scripted_frames(110);
   for (std::size_t i = 50; i < 100; ++i) frames[i].hands.clear();
@@ -221,7 +297,7 @@ TEST(StampClock, TakesTheJitterOfTheWayOut) {
   for (int i = 0; i < 200; ++i) {
     const double stamp = 500.0 + 0.009 * i, way = i % 3 == 0 ? 0.002 : 0.002 + 0.001 * (i % 10);
     const double arrival = 100.0 + 0.009 * i + way;
-    const double time = clock.time_of(stamp, arrival);
+    const double time = clock.time_of(stamp, arrival).value();
     EXPECT_LE(time, arrival);
     if (i > 0) {
       EXPECT_NEAR(time - last, 0.009, 1e-4);
@@ -229,8 +305,21 @@ TEST(StampClock, TakesTheJitterOfTheWayOut) {
     last = time;
   }
   // a clock that was set anew, backwards or forwards
-  EXPECT_NEAR(clock.time_of(3.0, 200.0), 200.0, 1e-9);
-  EXPECT_NEAR(clock.time_of(9000.0, 200.1), 200.1, 1e-9);
+  EXPECT_NEAR(clock.time_of(3.0, 200.0).value(), 200.0, 1e-9);
+  EXPECT_NEAR(clock.time_of(9000.0, 200.1).value(), 200.1, 1e-9);
+}
+
+TEST(StampClock, AStampThatWasSeenIsNoFrameHoweverLateItComes) {
+  StampClock clock;
+  EXPECT_TRUE(clock.time_of(5.0, 100.0));
+  for (double arrival = 100.0; arrival < 110.0; arrival += 0.01)
+    ASSERT_FALSE(clock.time_of(5.0, arrival)) << arrival;
+  EXPECT_FALSE(clock.time_of(4.95, 110.0)) << "one that was overtaken on its way";
+  EXPECT_NEAR(clock.time_of(5.01, 110.0).value(), 110.0, 1e-9);
+  // nor does it become new by another connection
+  clock.reset();
+  EXPECT_FALSE(clock.time_of(5.01, 111.0));
+  EXPECT_NEAR(clock.time_of(5.02, 111.0).value(), 111.0, 1e-9);
 }
 
 }  // namespace

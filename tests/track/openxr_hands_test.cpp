@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "core/file.hpp"
 #include "io/hand_file.hpp"
@@ -37,11 +38,22 @@ class OpenXr : public testing::Test {
   std::string recording_file() {
     const std::string flapping = test::shared_file("data/hands/flapping.hands.jsonl");
     if (std::filesystem::exists(flapping)) return flapping;
+    return scripted_file({}, 300);
+  }
+  /// Two hands that do not move at all.
+  std::string still_file() {
+    ScriptedHandSettings still;
+    still.still = true;
+    return scripted_file(still, 2);
+  }
+
+ private:
+  std::string scripted_file(const ScriptedHandSettings& settings, int frames) {
     std::string text =
         json{{"format", "hand-frames"}, {"version", 1}, {"units", "m"}}.dump() + "\n";
-    const auto source = make_scripted_hand({}, {});
+    const auto source = make_scripted_hand(settings, {});
     HandFrame frame;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < frames; ++i) {
       source->sample(5.0 + 0.01 * i, frame);
       json hands = json::array();
       for (const bool left : {true, false}) hands.push_back(neutral(frame.hands.at(0), left));
@@ -50,8 +62,6 @@ class OpenXr : public testing::Test {
     write_file(folder_.file("two.hands.jsonl"), text);
     return folder_.file("two.hands.jsonl");
   }
-
- private:
   static json neutral(const Hand& hand, bool left) {
     json p = json::array(), q = json::array(), r = json::array();
     for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -128,6 +138,47 @@ TEST_F(OpenXr, ALostSessionIsAskedForAgain) {
   EXPECT_THAT(hands->tracker_status()->sentence, testing::HasSubstr("is over"));
   ASSERT_TRUE(eventually([&] { return count() == 2; }));
   EXPECT_GE(hands->tracker_status()->reconnects, 1);
+}
+
+TEST_F(OpenXr, ConfidenceIsTheShareOfJointsThatAreTracked) {
+  for (const auto& [inferred, confidence] : {std::pair{"0", 1.0}, {"6", 20.0 / 26.0}}) {
+    set("PROSTM_REPLAY_INFERRED", inferred);
+    const auto hands = make_live_hand(make_openxr_tracker(), {});
+    HandFrame frame;
+    ASSERT_TRUE(eventually([&] {
+      hands->sample(0.0, frame);
+      return frame.hands.size() == 2;
+    }));
+    EXPECT_NEAR(frame.hands[0].confidence, confidence, 1e-12);
+    EXPECT_EQ(hands->tracker_status()->unsure, 0);
+  }
+  // who is nearly all guessed is not taken
+  set("PROSTM_REPLAY_INFERRED", "24");
+  const auto hands = make_live_hand(make_openxr_tracker(), {});
+  HandFrame frame;
+  ASSERT_TRUE(eventually([&] {
+    hands->sample(0.0, frame);
+    EXPECT_TRUE(frame.hands.empty());
+    return hands->tracker_status()->unsure > 50;
+  }));
+  EXPECT_THAT(hands->tracker_status()->sentence, testing::HasSubstr("below 0.1"));
+}
+
+TEST_F(OpenXr, AHandThatDoesNotMoveAtAllIsThatOfAFrozenTracker) {
+  set("PROSTM_REPLAY_HANDS", still_file());
+  TrackSettings settings;
+  settings.freeze_time = 0.1;
+  const auto hands = make_live_hand(make_openxr_tracker(), settings);
+  HandFrame frame;
+  const auto count = [&] {
+    hands->sample(0.0, frame);
+    return frame.hands.size();
+  };
+  ASSERT_TRUE(eventually([&] { return count() == 2; }));
+  ASSERT_TRUE(eventually([&] { return count() == 0; }));
+  EXPECT_GT(hands->tracker_status()->frozen, 0);
+  EXPECT_THAT(hands->tracker_status()->sentence,
+              testing::HasSubstr("a hand has not moved at all for 0.1 s"));
 }
 
 TEST_F(OpenXr, SaysWhatIsMissing) {

@@ -242,6 +242,50 @@ TEST(RecordedHand, RefusesWhatItCannotPlay) {
   }
 }
 
+TEST(RecordedHand, HandsBelowTheLeastConfidenceAreNotTaken) {
+  HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1, 0, 0), 20, 1);
+  const double length = recording.frames.back().time, middle = recording.frames[9].time;
+  for (std::size_t i = 10; i < 20; ++i) recording.frames[i].hands[0].confidence = 0.05;
+  for (const auto make : {make_recorded_hand, make_replayed_hand}) {
+    const auto source = make(recording, {}, false, kStep);
+    HandFrame frame;
+    source->sample(0.5 * middle, frame);
+    EXPECT_EQ(frame.hands.size(), 1u);
+    source->sample(length, frame);
+    EXPECT_EQ(frame.hands.size(), 0u);
+    TrackSettings all;
+    all.least_confidence = 0.05;
+    const auto unbounded = make(recording, all, false, kStep);
+    unbounded->sample(length, frame);
+    EXPECT_EQ(frame.hands.size(), 1u);
+  }
+  // nothing would be played: that is said, not done
+  for (HandFrame& frame : recording.frames) frame.hands[0].confidence = 0.0;
+  for (const auto make : {make_recorded_hand, make_replayed_hand}) {
+    try {
+      make(recording, {}, false, kStep);
+      FAIL();
+    } catch (const std::invalid_argument& e) {
+      EXPECT_STREQ(e.what(),
+                   "all 20 hands of the recording have a confidence of at most 0, below "
+                   "least_confidence = 0.1 of [track]; lower it to play them");
+    }
+  }
+}
+
+// a recording may stand still, as no live tracker does
+TEST(RecordedHand, AHandThatDoesNotMoveIsPlayedOnAndOn) {
+  for (const auto make : {make_recorded_hand, make_replayed_hand}) {
+    const auto source =
+        make(linear_recording(Vec3(0, 0.2, 0), Vec3::Zero(), 300, 1), {}, false, kStep);
+    HandFrame frame;
+    for (double time = 0.0; time <= source->duration(); time += kStep) {
+      source->sample(time, frame);
+      ASSERT_EQ(frame.hands.size(), 1u) << time;
+    }
+  }
+}
+
 TEST(RecordedHand, RealRecordingsPlayWithFiniteClampedVelocities) {
   for (const char* name :
        {"flapping", "rollAndPitchWithEntry", "HandSplay-110fps", "pinch-57fps"}) {

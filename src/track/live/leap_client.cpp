@@ -74,6 +74,9 @@ class LeapTracker final : public LiveTracker {
   }
 
   bool next(HandFrame& frame) override { return ring_.pop(frame); }
+  bool connected() const noexcept override {
+    return link_.load(std::memory_order_relaxed) == Link::Connected;
+  }
 
   TrackerStatus status() const override {
     TrackerStatus status;
@@ -81,12 +84,17 @@ class LeapTracker final : public LiveTracker {
     status.connected = link == Link::Connected;
     status.frames = frames_.load(std::memory_order_relaxed);
     status.dropped = dropped_.load(std::memory_order_relaxed);
+    status.repeated = repeated_.load(std::memory_order_relaxed);
     status.reconnects = std::max<std::int64_t>(connections_.load(std::memory_order_relaxed) - 1, 0);
     status.sentence = sentence(link);
     if (status.dropped > 0) {
       const std::lock_guard lock(problem_mutex_);
       status.sentence +=
           fmt::format("; {} frames were dropped, the last since {}", status.dropped, problem_);
+    }
+    if (status.repeated > 0) {
+      status.sentence += fmt::format("; {} frames were not taken: their time had been seen already",
+                                     status.repeated);
     }
     return status;
   }
@@ -171,7 +179,12 @@ class LeapTracker final : public LiveTracker {
       return;
     }
     wait_ = kFirstRetry;
-    frame_.time = clock_.time_of(frame_.time, arrival);
+    const std::optional<double> time = clock_.time_of(frame_.time, arrival);
+    if (!time) {
+      repeated_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    frame_.time = *time;
     ring_.push(frame_);
   }
 
@@ -200,7 +213,7 @@ class LeapTracker final : public LiveTracker {
 
   SpscRing<HandFrame> ring_{kFramesKept};
   std::atomic<Link> link_{Link::Connecting};
-  std::atomic<std::int64_t> frames_{0}, dropped_{0}, connections_{0};
+  std::atomic<std::int64_t> frames_{0}, dropped_{0}, repeated_{0}, connections_{0};
   mutable std::mutex problem_mutex_;  // neither who plans nor who emits ever waits for it
   std::string problem_;
 

@@ -22,7 +22,7 @@ LeapAddress leap_address(const std::string& text);
 /// service that it reads in the background and that the device lies on a desk, and takes in
 /// frames. When nothing answers, the connection is lost, or nothing came for 2 s, it tries again,
 /// first after 50 ms and then after up to 1 s. Frames that leap_message() refuses are dropped and
-/// counted.
+/// counted, and so are frames with a time that was seen already (StampClock).
 /// @throws InputError when `address.host` is no address and the name of none.
 std::unique_ptr<LiveTracker> make_leap_tracker(const LeapAddress& address);
 

@@ -252,6 +252,7 @@ class Session {
     if (!was_there) ids_[side] = ++last_id_;
     hand.id = ids_[side];
     hand.side = side == 0 ? Side::Left : Side::Right;
+    hand.confidence = tracked_share(joints);
     frame.hands.push_back(hand);
     return true;
   }
@@ -262,6 +263,17 @@ class Session {
     return std::all_of(joints.begin(), joints.end(), [](const XrHandJointLocationEXT& joint) {
       return (joint.locationFlags & kNeeded) == kNeeded;
     });
+  }
+
+  /// Of the joints, that the runtime sees now; others are inferred, or where they were last.
+  static double tracked_share(const std::array<XrHandJointLocationEXT, kJointCount>& joints) {
+    constexpr XrSpaceLocationFlags kTracked =
+        XR_SPACE_LOCATION_POSITION_TRACKED_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+    const auto tracked =
+        std::count_if(joints.begin(), joints.end(), [](const XrHandJointLocationEXT& joint) {
+          return (joint.locationFlags & kTracked) == kTracked;
+        });
+    return static_cast<double>(tracked) / static_cast<double>(joints.size());
   }
 
   /// False for joints that no hand has.
@@ -307,10 +319,11 @@ class OpenXrTracker final : public LiveTracker {
   }
 
   bool next(HandFrame& frame) override { return ring_.pop(frame); }
+  bool connected() const noexcept override { return connected_.load(std::memory_order_relaxed); }
 
   TrackerStatus status() const override {
     TrackerStatus status;
-    status.connected = connected_.load(std::memory_order_relaxed);
+    status.connected = connected();
     status.frames = frames_.load(std::memory_order_relaxed);
     status.dropped = dropped_.load(std::memory_order_relaxed);
     status.reconnects = reconnects_.load(std::memory_order_relaxed);

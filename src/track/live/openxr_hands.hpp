@@ -9,8 +9,9 @@ namespace prostm {
 
 /// Locates the joints of both hands 100 times a second on its own thread, in the runtime's STAGE
 /// space where it has one, else in LOCAL; OpenXR's axes are those of T. A hand is there when the
-/// runtime says that all of its joints are and no bone is absurd; radii are clamped to 3 to 40 mm.
-/// When the session ends or is lost, it asks for another one every second.
+/// runtime says that all of its joints are and no bone is absurd; its confidence is the share of
+/// them that the runtime calls tracked, not inferred; radii are clamped to 3 to 40 mm. When the
+/// session ends or is lost, it asks for another one every second.
 /// @throws InputError with a sentence when there is no runtime, or it cannot track hands without a
 /// display.
 std::unique_ptr<LiveTracker> make_openxr_tracker();
