@@ -138,8 +138,18 @@ void Progress::show(double done, double all, const char* unit) {
   std::fflush(stderr);
 }
 
-Progress::~Progress() {
+void Progress::say(std::FILE* out, const std::string& line) {
+  clear();
+  fmt::print(out, "{}\n", line);
+  std::fflush(out);
+}
+
+void Progress::clear() {
   if (shown_) fmt::print(stderr, "\r\033[K");
+}
+
+Progress::~Progress() {
+  clear();
 }
 
 std::FILE* prose(const std::string& json_option) {

@@ -50,8 +50,12 @@ class Progress {
   explicit Progress(std::string what) : what_(std::move(what)) {}
   ~Progress();
   void show(double done, double all, const char* unit);
+  /// A line that stays, above the one that is rewritten.
+  void say(std::FILE* out, const std::string& line);
 
  private:
+  void clear();
+
   std::string what_;
   double last_ = -1.0;
   bool shown_ = false;

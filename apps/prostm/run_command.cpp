@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "common.hpp"
@@ -43,6 +44,7 @@ class Observer final : public RunObserver {
   }
 
   bool on_progress(double time) override {
+    say_whether_muted();
     if (!reported_) progress_.show(time, seconds_, "s");
     return !interrupt_.requested();
   }
@@ -52,6 +54,11 @@ class Observer final : public RunObserver {
     reported_ = true;
     recorder_ = nullptr;
     picture_at_.reset();
+  }
+  /// Says on `out` when a calibration mutes the array, and when it ends.
+  void follow(std::shared_ptr<const Mute> mute, std::FILE* out) {
+    mute_ = std::move(mute);
+    out_ = out;
   }
   /// What is done when the run's seconds are over and it goes on.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
@@ -63,13 +70,23 @@ class Observer final : public RunObserver {
   const PlanFrame& plan() const { return plan_; }
 
  private:
+  void say_whether_muted() {
+    const bool muted = mute_ && mute_->on(MuteReason::Calibration);
+    if (muted == muted_) return;
+    muted_ = muted;
+    progress_.say(out_, muted ? "The array is muted for the calibration of the tracker."
+                              : "The calibration is over: the array is not muted any more.");
+  }
+
   Recorder* recorder_;
   std::optional<double> picture_at_;
   double seconds_, away_ = std::numeric_limits<double>::infinity();
   ContactFrame contact_;
   PlanFrame plan_;
   std::function<void(const RunSummary&)> report_;
-  bool reported_ = false;
+  bool reported_ = false, muted_ = false;
+  std::shared_ptr<const Mute> mute_;
+  std::FILE* out_ = nullptr;
   Interrupt interrupt_;
   Progress progress_{"running"};
 };
@@ -150,7 +167,8 @@ int run_command(const RunOptionsGiven& given) {
     options.stay = given.stay;
   }
   const Interrupt from_here_on;  // a Ctrl-C as soon as the page is announced ends in a summary
-  Pipeline pipeline(settings, std::move(hands));
+  const auto mute = view ? view->link().mute : std::make_shared<Mute>();
+  Pipeline pipeline(settings, std::move(hands), mute);
   if (view) view->serve(pipeline, prose(given.common.json));
 
   std::unique_ptr<Recorder> recorder;
@@ -162,6 +180,7 @@ int run_command(const RunOptionsGiven& given) {
   std::optional<double> picture_at;
   if (settings.side_view) picture_at = given.figure_at.value_or(0.5 * options.seconds);
   Observer observer(recorder.get(), picture_at, options.seconds);
+  observer.follow(mute, prose(given.common.json));
   const auto report = [&](const RunSummary& summary) {
     nlohmann::ordered_json json = summary_json(summary, settings);
     json["hand"] = given.hand;
@@ -174,8 +193,11 @@ int run_command(const RunOptionsGiven& given) {
     }
     print_summary(prose(given.common.json), summary, settings);
     if (tracker) {
-      fmt::print(prose(given.common.json), "tracker: {} ({} frames, {} dropped, {} reconnects)\n",
-                 tracker->sentence, tracker->frames, tracker->dropped, tracker->reconnects);
+      fmt::print(prose(given.common.json),
+                 "tracker: {} ({} frames, {} dropped, {} repeated, {} reconnects; hands not taken: "
+                 "{} unsure, {} frozen)\n",
+                 tracker->sentence, tracker->frames, tracker->dropped, tracker->repeated,
+                 tracker->reconnects, tracker->unsure, tracker->frozen);
     }
     write_json(given.common.json, json);
     if (!given.common.figure.empty()) {

@@ -137,11 +137,10 @@ void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& 
 
 nlohmann::ordered_json tracker_json(const std::optional<TrackerStatus>& tracker) {
   if (!tracker) return nullptr;
-  return {{"connected", tracker->connected},
-          {"frames", tracker->frames},
-          {"dropped", tracker->dropped},
-          {"reconnects", tracker->reconnects},
-          {"sentence", tracker->sentence}};
+  return {{"connected", tracker->connected},   {"frames", tracker->frames},
+          {"dropped", tracker->dropped},       {"repeated", tracker->repeated},
+          {"unsure", tracker->unsure},         {"frozen", tracker->frozen},
+          {"reconnects", tracker->reconnects}, {"sentence", tracker->sentence}};
 }
 
 }  // namespace prostm::app

@@ -80,7 +80,8 @@ class LiveControl {
 struct LiveLink {
   Snapshots snapshots;
   LiveControl control;
-  LiveSettings settings;  ///< at the start
+  LiveSettings settings;                                  ///< at the start
+  std::shared_ptr<Mute> mute = std::make_shared<Mute>();  ///< that the pipeline was made with
   std::shared_ptr<PageHand> page_hand;
   HandSwitch* hands = nullptr;  ///< those of the pipeline
   /// Hands by the name of their source, behind the page's. @throws InputError.

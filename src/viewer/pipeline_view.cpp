@@ -64,14 +64,14 @@ Json transport_json(const LiveState& state, bool page_hand) {
 
 Json tracker_json(const std::optional<TrackerStatus>& tracker) {
   if (!tracker) return nullptr;
-  return {{"connected", tracker->connected},
-          {"sentence", tracker->sentence},
-          {"frames", tracker->frames},
-          {"dropped", tracker->dropped}};
+  return {{"connected", tracker->connected}, {"sentence", tracker->sentence},
+          {"frames", tracker->frames},       {"dropped", tracker->dropped},
+          {"repeated", tracker->repeated},   {"unsure", tracker->unsure},
+          {"frozen", tracker->frozen}};
 }
 
 Json calibration_json(const std::optional<CalibrationGuide>& steps, bool saved,
-                      const std::string& file) {
+                      const std::string& file, bool muted) {
   if (!steps) return nullptr;
   Json json = {{"marks", Json::array()}, {"residual_mm", nullptr}};
   for (const CalibrationMark& mark : steps->marks()) {
@@ -86,6 +86,7 @@ Json calibration_json(const std::optional<CalibrationGuide>& steps, bool saved,
   json["file"] = file;
   json["saved"] = saved;
   json["sentence"] = steps->sentence();
+  json["muted"] = muted;
   return json;
 }
 
@@ -101,6 +102,7 @@ struct PipelineView::Impl {
   bool known = false;             // the run has begun
   bool page_hand = false;         // as told
   std::optional<CalibrationGuide> calibration;
+  std::uint32_t calibrator = 0;       // the page that it listened to last, 0: that one is gone
   Pose pose_kept = Pose::Identity();  // of the tracker: when it began, or what was saved since
   bool calibration_saved = false, calibration_changed = false;
 
@@ -180,6 +182,8 @@ std::string PipelineView::Impl::begin_calibration() {
   if (!calibration) pose_kept = state.X_DT;
   calibration.emplace(hello.transducers);
   calibration_saved = false;
+  // a finger is going to touch the array
+  link.mute->set(MuteReason::Calibration, true);
   return {};
 }
 
@@ -217,13 +221,16 @@ std::string PipelineView::Impl::end_calibration(std::uint32_t page) {
   LiveCommand pose{LiveCommand::Kind::TrackerPose, page};
   pose.X_DT = pose_kept;
   const std::string wrong = ask(pose);
-  if (wrong.empty()) calibration.reset();
-  return wrong;
+  if (!wrong.empty()) return wrong;
+  calibration.reset();
+  link.mute->set(MuteReason::Calibration, false);
+  return {};
 }
 
 std::string PipelineView::Impl::take(std::uint32_t page, const CalibrationMessage& m) {
   using Do = CalibrationMessage::Do;
   calibration_changed = true;
+  calibrator = page;
   if (m.what == Do::Begin) return begin_calibration();
   if (!calibration) return "no calibration has begun";
   switch (m.what) {
@@ -274,6 +281,9 @@ std::string PipelineView::hello() {
 
 bool PipelineView::refresh_state(std::string& out) {
   Impl& i = *impl_;
+  // nobody is left to end it
+  if (i.calibration && i.calibrator == 0 && i.end_calibration(0).empty())
+    i.calibration_changed = true;
   const bool fresh = i.link.control.refresh();
   const bool page_hand = i.link.snapshots.run().page_hand;
   i.known = i.known || fresh;  // before the run begins there is nothing to tell
@@ -286,7 +296,8 @@ bool PipelineView::refresh_state(std::string& out) {
     json["controls"].push_back(control_json(control, state.settings));
   json["transport"] = transport_json(state, page_hand);
   json["tracker"] = tracker_json(state.tracker);
-  json["calibration"] = calibration_json(i.calibration, i.calibration_saved, i.link.pose_file);
+  json["calibration"] = calibration_json(i.calibration, i.calibration_saved, i.link.pose_file,
+                                         i.link.mute->on(MuteReason::Calibration));
   out = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   return true;
 }
@@ -305,6 +316,7 @@ bool PipelineView::next_refusal(std::uint32_t& page, std::string& sentence) {
 
 void PipelineView::forget(std::uint32_t page) {
   if (page == impl_->hand_holder) impl_->link.page_hand->release();
+  if (page == impl_->calibrator) impl_->calibrator = 0;
 }
 
 }  // namespace prostm

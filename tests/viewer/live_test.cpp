@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -63,7 +64,8 @@ Pose true_pose() {
   return X_DT;
 }
 
-/// A tracker that sees one hand, the tip of whose index finger rests on a corner of the array.
+/// A tracker that sees one hand, the tip of whose index finger rests on a corner of the array; or,
+/// with corner −1, the hand over its middle.
 class TouchingHand final : public HandSource {
  public:
   TouchingHand(const std::atomic<int>& corner, const PipelineSettings& s)
@@ -86,6 +88,7 @@ class TouchingHand final : public HandSource {
   }
   void sample(double time, HandFrame& out) override {
     hand_->sample(time, out);
+    if (corner_ < 0) return;
     Hand& hand = out.hands.at(0);
     const Vec3 shift = tip(corner_, Pose::Identity()) - hand.position[kIndexTip];
     for (Vec3& p : hand.position) p += shift;
@@ -126,7 +129,7 @@ class LiveRun {
     auto hands = link_.make_hands("scripted", settings);
     hands->set_tracker_pose(default_tracker_pose());
     link_.hands = hands.get();
-    pipeline_ = std::make_unique<Pipeline>(settings, std::move(hands));
+    pipeline_ = std::make_unique<Pipeline>(settings, std::move(hands), link_.mute);
     view_ = std::make_unique<PipelineView>(
         link_, ViewHello{"0", "usx", settings.transducers.position, Vec3::Zero(), 0.36});
     ViewSettings view;
@@ -161,6 +164,18 @@ class LiveRun {
   }
   int fluid_steps() const { return numbers().at("run").at("fluid_steps"); }
   int plan_updates() const { return numbers().at("run").at("plan_updates"); }
+  const SimulatedArray& device() const { return pipeline_->device(); }
+  /// The strongest intensity of samples first … last − 1.
+  float loudest(std::int64_t first, std::int64_t last) const {
+    float most = 0.0F;
+    for (const FocusSample& s : device().read_back(first, last - first))
+      most = std::max(most, s.intensity);
+    return most;
+  }
+  bool sounds() const {
+    const std::int64_t n = device().samples();
+    return n > 400 && loudest(n - 400, n) > 0.1F;
+  }
   unsigned flags() const { return numbers().at("run").at("flags"); }
 
   std::atomic<int> corner{0};          // that the finger of "leap" is on
@@ -449,6 +464,60 @@ TEST(Live, ATrackersPoseIsFoundFromTouches) {
   say("cancel");
   ASSERT_TRUE(becomes([](const Json& c) { return c.is_null(); }));
   EXPECT_TRUE(finger_is_at(hand.tip(2, true_pose()))) << "what was saved stays";
+}
+
+/// Whether the array is silent for a fifth of a second, from 50 ms after now on, while plans go on.
+void expect_silence(const LiveRun& run) {
+  const std::int64_t silent = run.device().samples() + 2000, end = silent + 8000;
+  const int updates = run.plan_updates();
+  ASSERT_TRUE(eventually([&] { return run.device().samples() >= end; }));
+  EXPECT_EQ(run.loudest(silent, end), 0.0F);
+  EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates; }));
+}
+
+TEST(Live, TheArrayIsSilentDuringACalibration) {
+  LiveRun run;
+  run.corner = -1;
+  Page page(run.port());
+  page.next_text("state");
+  set(page, "source", "leap");
+  ASSERT_TRUE(transport_becomes(page, "base", "leap"));
+  const auto say = [](Page& who, const char* what) {
+    who.say(Json{{"type", "calibration"}, {"do", what}}.dump());
+  };
+  const auto calibrates = [&](bool muted) {
+    for (int i = 0; i < 100; ++i) {
+      const Json calibration = page.next_text("state").at("calibration");
+      if (calibration.is_null() != muted) {
+        EXPECT_TRUE(!muted || calibration.at("muted") == true) << calibration;
+        return true;
+      }
+    }
+    return false;
+  };
+
+  ASSERT_TRUE(eventually([&] { return run.sounds(); }));
+  say(page, "begin");
+  ASSERT_TRUE(calibrates(true));
+  expect_silence(run);
+  // another method has another emitter, which is silent too
+  set(page, "method", "am");
+  state_with(page, "method", "am");
+  expect_silence(run);
+  say(page, "begin");
+  expect_silence(run);
+  say(page, "cancel");
+  ASSERT_TRUE(calibrates(false));
+  EXPECT_TRUE(eventually([&] { return run.sounds(); }));
+
+  {
+    Page other(run.port());
+    say(other, "begin");
+    ASSERT_TRUE(calibrates(true));
+    expect_silence(run);
+  }
+  ASSERT_TRUE(calibrates(false)) << "a calibration ends with its page";
+  EXPECT_TRUE(eventually([&] { return run.sounds(); }));
 }
 
 // sliders that are dragged by several people at once, while pages come and go

@@ -45,6 +45,9 @@ export interface Tracker {
   sentence: string;
   frames: number;
   dropped: number;
+  repeated: number;
+  unsure: number;
+  frozen: number;
 }
 export interface Mark {
   name: string;
@@ -58,6 +61,7 @@ export interface Calibration {
   file: string | null;
   saved: boolean;
   sentence: string;
+  muted: boolean;
 }
 export interface State {
   type: "state";

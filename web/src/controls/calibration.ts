@@ -53,6 +53,7 @@ export class CalibrationGuide {
     const focused = document.activeElement instanceof HTMLElement ? document.activeElement.dataset.mark : undefined;
     this.steps.replaceChildren(...rows);
     this.sentence.textContent = calibration.sentence;
+    find("calibration-muted").textContent = calibration.muted ? "The array is muted for the calibration." : "";
     const found = calibration.residual_mm !== null;
     find("calibration-residual").textContent = found ? `Residual ${short(calibration.residual_mm ?? NaN)} mm` : "";
     this.save.disabled = !found;

@@ -41,7 +41,8 @@ export class Transport {
     this.scrub.max = String(this.length);
     this.source.textContent = kSources[source] ?? source;
     const { tracker } = state;
-    const sentence = tracker === null ? "" : `${tracker.sentence} · ${tracker.frames} frames, ${tracker.dropped} dropped`;
+    const sentence = tracker === null ? "" : `${tracker.sentence} · ${tracker.frames} frames, ` +
+      `${tracker.dropped} dropped, ${tracker.repeated} repeated; hands not taken: ${tracker.unsure} unsure, ${tracker.frozen} frozen`;
     find("tracker").textContent = sentence;
     find("tracker").classList.toggle("bad", tracker !== null && !tracker.connected);
   }

@@ -69,6 +69,8 @@ const end = async () => {
 describe("the calibration of a tracker", () => {
   it("says why a mark or a pose cannot be taken", async () => {
     await begin();
+    expect(await page.locator("#calibration-muted").textContent()).toBe("The array is muted for the calibration.");
+    await expect.poll(() => program.printed).toContain("The array is muted for the calibration of the tracker.\n");
     await page.locator("#calibration-solve").click();
     await until(page, () => (document.querySelector("#calibration-error")?.textContent ?? "").includes("at least 3"), 0, "a sentence in the dialog");
     expect(await page.locator("#calibration-save").isDisabled()).toBe(true);
@@ -83,6 +85,7 @@ describe("the calibration of a tracker", () => {
     await end();
     await tipIsAt(seen(tip, believed), "the finger where it was before");
     expect(existsSync(file)).toBe(false);
+    await expect.poll(() => program.printed).toContain("The calibration is over: the array is not muted any more.\n");
   }, 120_000);
 
   it("writes the pose that it finds, and keeps it", async () => {

@@ -51,6 +51,8 @@ export class Program {
       child.on("exit", () => reject(new Error(`the program ended before it said where its page is:\n${this.output}`)));
     });
   }
+  /// What it has said so far.
+  get printed(): string { return this.output; }
   get port(): number { return Number(new URL(this.address).port); }
 
   async stop(signal: NodeJS.Signals = "SIGKILL"): Promise<void> {

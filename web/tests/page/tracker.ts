@@ -13,6 +13,7 @@ export const kFlesh = 0.8 * 0.0085; // radius of the tip, as the program makes i
 export class FakeTracker {
   /// Where the tip is, in the frame of the tracker [m].
   readonly tip = new Vector3(0, 0.2, 0);
+  private noise = 2e-5; // of every coordinate [m]
   private readonly timer: NodeJS.Timeout;
   private readonly begun = performance.now();
 
@@ -40,7 +41,9 @@ export class FakeTracker {
   private frame(): string {
     const { joints } = skeleton(new Matrix4(), 0.1, "right");
     const at = (joint: number) => new Vector3().fromArray(joints, 8 * joint);
-    const shift = this.tip.clone().sub(at(kIndexTip));
+    // as a real tracker, it is never quite still: joints that do not move at all are not taken
+    this.noise = -this.noise;
+    const shift = this.tip.clone().sub(at(kIndexTip)).addScalar(this.noise);
     const place = (joint: number) => at(joint).add(shift).multiplyScalar(1000).toArray();
     const axes = (joint: number) => {
       const turn = new Quaternion().fromArray(joints, 8 * joint + 3);
