@@ -89,8 +89,7 @@ def test_bad_npy_and_png(refuses, tmp_path):
 
 
 def hand_lines():
-    joints = ["joint"] * 26
-    header = {"format": "hand-frames", "version": 1, "units": "m", "joint_order": "OpenXR", "joints": joints}
+    header = {"format": "hand-frames", "version": 1, "units": "m"}
     position = [c for j in range(26) for c in (0.02 * (j % 5), 0.15 + 0.01 * (j // 5), 0.03 * (j // 5))]
     hand = {"id": 1, "side": "R", "conf": 1, "inferred": 0, "p": position, "q": [0, 0, 0, 1] * 26, "r": [0.01] * 26}
     return header, [{"t": 0.01 * i, "hands": [dict(hand)]} for i in range(5)]
