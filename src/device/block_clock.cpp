@@ -2,11 +2,11 @@
 
 namespace prostm {
 
-BlockClock::BlockClock(Time start, Duration period, int queue_blocks, int most_blocks)
+BlockClock::BlockClock(Time start, Duration period, int least_blocks, int most_blocks)
     : period_(period),
-      least_(queue_blocks * period),
-      most_(std::max(queue_blocks, most_blocks) * period) {
-  shifts_.push_back({0, start, least_});
+      least_(least_blocks * period),
+      most_(std::max(least_blocks, most_blocks) * period) {
+  shifts_.push_back({0, start, most_});
 }
 
 const BlockClock::Shift& BlockClock::shift_of(std::int64_t block) const {
@@ -29,19 +29,18 @@ BlockClock::Filled BlockClock::fill(std::int64_t block, Time now) {
   // blocks that a longer queue asks for at once are asked for when it grew
   const Duration delay = now - std::max(ask_time(block), grown_at_);
   filled.late = delay > period_;
+  delays_.front() = std::max(delays_.front(), delay);
   const Time play = play_time(block);
   if (now <= play) {
-    watch(block, delay, now);
-    return filled;
+    lengthen(block, delay, now);
+  } else {
+    // the queue has run dry: play at the next period's start
+    filled.missed = (now - play) / period_ + 1;
+    const Duration missed = filled.missed * period_,
+                   longer = std::min(missed, most_ - shifts_.back().queue);
+    shift(block, missed - longer, longer);
   }
-
-  // the queue has run dry: play at the next period's start
-  filled.missed = (now - play) / period_ + 1;
-  const Duration missed = filled.missed * period_,
-                 longer = std::min(missed, most_ - shifts_.back().queue);
-  shift(block, missed - longer, longer);
-  watched_since_ = block;
-  longest_delay_ = {};
+  if ((block + 1) % kCalm == 0) shorten(block);
   return filled;
 }
 
@@ -57,18 +56,20 @@ BlockClock::Duration BlockClock::needed(Duration delay) const {
   return std::clamp((delay / period_ + 2) * period_, least_, most_);
 }
 
-/// Lengthens a queue that was nearly dry, and shortens one that was longer than needed for a while.
-void BlockClock::watch(std::int64_t block, Duration delay, Time now) {
-  longest_delay_ = std::max(longest_delay_, delay);
-  const Duration spare = shifts_.back().queue - needed(longest_delay_);
-  if (spare < Duration::zero()) {
-    shift(block + 1, spare, -spare);
-    grown_at_ = now;
-  }
-  if (block - watched_since_ < kCalm) return;
-  if (spare > Duration::zero()) shift(block + 1, spare, -spare);
-  watched_since_ = block;
-  longest_delay_ = {};
+/// Where the queue was nearly dry.
+void BlockClock::lengthen(std::int64_t block, Duration delay, Time now) {
+  const Duration lacks = needed(delay) - shifts_.back().queue;
+  if (lacks <= Duration::zero()) return;
+  shift(block + 1, -lacks, lacks);
+  grown_at_ = now;
+}
+
+/// By one period, where less was enough for as long as is remembered.
+void BlockClock::shorten(std::int64_t block) {
+  const Duration longest = *std::max_element(delays_.begin(), delays_.end());
+  if (shifts_.back().queue > needed(longest)) shift(block + 1, period_, -period_);
+  std::shift_right(delays_.begin(), delays_.end(), 1);
+  delays_.front() = {};
 }
 
 }  // namespace prostm

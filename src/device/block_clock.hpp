@@ -2,6 +2,7 @@
 /// When the blocks of a stream are asked for, due, and played.
 
 #include <algorithm>
+#include <array>
 #include <boost/container/static_vector.hpp>
 #include <chrono>
 #include <cstdint>
@@ -14,22 +15,25 @@ namespace prostm {
 /// as missed, and the stream goes on with block k at the next one: the schedule shifts, no sample
 /// is skipped.
 ///
-/// The queue is as long as the machine's delays ask for, up to a bound: one period more than those
-/// that the longest delay from asking to filling reached into. When a delay calls for more, blocks
-/// are asked for earlier at once, and none is missed. A queue that ran dry all the same grows by
-/// the periods that were missed, since blocks are played later by as many and asked for no later.
-/// When for kCalm blocks less was enough, blocks are asked for later until the queue is as long as
-/// was needed, and no shorter than at the start. No clock of its own: times come from the caller.
+/// The queue begins as long as it may get, and shortens while the machine proves calm. It needs one
+/// period more than those that the longest delay from asking to filling reached into, of the last
+/// kRemembered times kCalm blocks, and no less than a bound. After kCalm blocks each, while it is
+/// longer than that, blocks are asked for a period later. When a delay calls for more than there
+/// is, blocks are asked for earlier at once, and none is missed. A queue that ran dry all the same
+/// grows by the periods that were missed, since blocks are played later by as many and asked for no
+/// later. No clock of its own: times come from the caller.
 class BlockClock {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Duration = std::chrono::steady_clock::duration;
 
-  static constexpr std::int64_t kCalm = 20'000;  ///< blocks
+  static constexpr std::int64_t kCalm = 1'000;  ///< blocks
+  static constexpr std::size_t kRemembered = 20;
 
-  /// Block 0 is asked for at `start`. @param most_blocks that the queue grows to; where it is not
-  /// above queue_blocks, the queue stays as it is.
-  BlockClock(Time start, Duration period, int queue_blocks, int most_blocks = 0);
+  /// Block 0 is asked for at `start`. @param least_blocks that the queue shortens to.
+  /// @param most_blocks that it begins with; where that is not above least_blocks, it stays at
+  /// least_blocks.
+  BlockClock(Time start, Duration period, int least_blocks, int most_blocks = 0);
 
   /// As the schedule stands for blocks not filled yet; as it was for the others, back to 64 shifts.
   Time ask_time(std::int64_t block) const;
@@ -55,13 +59,14 @@ class BlockClock {
   const Shift& shift_of(std::int64_t block) const;
   void shift(std::int64_t block, Duration later, Duration longer);
   Duration needed(Duration delay) const;
-  void watch(std::int64_t block, Duration delay, Time now);
+  void lengthen(std::int64_t block, Duration delay, Time now);
+  void shorten(std::int64_t block);
 
   Duration period_, least_, most_;                          // of a block, and of the queue
   boost::container::static_vector<Shift, kShifts> shifts_;  // oldest first, never empty
-  std::int64_t watched_since_ = 0;                          // block
-  Time grown_at_{};           // when blocks were last asked for earlier
-  Duration longest_delay_{};  // from asking to filling, of the blocks since then
+  Time grown_at_{};  // when blocks were last asked for earlier
+  std::array<Duration, kRemembered>
+      delays_{};  // the longest of each kCalm blocks, the newest first
 };
 
 }  // namespace prostm

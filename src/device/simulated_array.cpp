@@ -167,6 +167,7 @@ DeviceStatus SimulatedArray::Impl::begin(SampleSource& s) {
     const double period = settings.block_samples / settings.sample_rate;
     stream.clock.emplace(SteadyClock::now(), to_duration(period), settings.queue_blocks,
                          settings.most_queue_blocks);
+    stream.stats.queue_blocks = stream.clock->queue_blocks();
   }
   {
     const std::lock_guard lock(mutex);

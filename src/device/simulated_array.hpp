@@ -12,13 +12,14 @@
 namespace prostm {
 
 struct SimulatedArraySettings {
-  double sample_rate = 40e3;   ///< [Hz], 1 kHz to 1 MHz
-  int block_samples = 40;      ///< a block is 1 ms; 1..4096
-  int max_foci = 8;            ///< 1..8
-  int queue_blocks = 3;        ///< 1..10; each costs a block of latency and covers for one of delay
-  int most_queue_blocks = 10;  ///< queue_blocks..10; that the queue grows to where it runs dry
-  double history = 4.0;        ///< kept for reading back [s], up to 600
-  bool realtime = true;        ///< false: no thread and no clock, pull() is called by hand
+  double sample_rate = 40e3;  ///< [Hz], 1 kHz to 1 MHz
+  int block_samples = 40;     ///< a block is 1 ms; 1..4096
+  int max_foci = 8;           ///< 1..8
+  int queue_blocks = 3;       ///< 1..10; each costs a block of latency and covers for one of delay;
+                              ///< the queue shortens to so many while the machine is calm
+  int most_queue_blocks = 10;       ///< queue_blocks..10; that the queue begins with, and grows to
+  double history = 4.0;             ///< kept for reading back [s], up to 600
+  bool realtime = true;             ///< false: no thread and no clock, pull() is called by hand
   std::string solver = "weighted";  ///< of `output`: or superposition, gs-pat
   bool memoryless = false;          ///< transducers follow their drives at once, against (A9)
 

@@ -56,70 +56,104 @@ TEST(BlockClock, ManyShifts) {
   }
 }
 
-TEST(BlockClock, AQueueThatRanDryGrowsByWhatItLacked) {
-  BlockClock clock(kStart, 1ms, 3, 6);
-  EXPECT_EQ(clock.queue_blocks(), 3);
-  EXPECT_EQ(clock.fill(0, kStart).missed, 0);
-  // block 1 was to be played at 4 ms and comes at 5.5 ms: played at 6 ms
-  EXPECT_EQ(clock.fill(1, kStart + 5500us).missed, 2);
-  EXPECT_EQ(clock.queue_blocks(), 5);
-  EXPECT_EQ(clock.play_time(1), kStart + 6ms);
-  EXPECT_EQ(clock.ask_time(1), kStart + 1ms);  // as before
-  EXPECT_EQ(clock.play_time(0), kStart + 3ms);
-  EXPECT_EQ(clock.ask_time(2), kStart + 2ms);
-  EXPECT_EQ(clock.play_time(2), kStart + 7ms);
-  EXPECT_EQ(clock.fill(2, kStart + 3500us).missed, 0);
-  // 5 ms too late: the queue may grow by one block only, the schedule shifts by the other four
-  EXPECT_EQ(clock.fill(3, clock.play_time(3) + 4500us).missed, 5);
-  EXPECT_EQ(clock.queue_blocks(), 6);
-  EXPECT_EQ(clock.ask_time(3), kStart + 7ms);
-  EXPECT_EQ(clock.play_time(3), kStart + 13ms);
+/// Fills blocks in order, each `delay` after it is asked for, and holds that none is missed and
+/// that they play without a gap, whatever becomes of the queue.
+class Filler {
+ public:
+  explicit Filler(BlockClock& clock) : clock_(clock) {}
+  void fill_until(std::int64_t block, std::chrono::microseconds delay) {
+    for (; block_ < block; ++block_) {
+      now_ = std::max(now_, clock_.ask_time(block_) + delay);
+      EXPECT_EQ(clock_.fill(block_, now_).missed, 0) << block_;
+      if (block_ > 0) {
+        EXPECT_EQ(clock_.play_time(block_), played_ + 1ms) << block_;
+      }
+      played_ = clock_.play_time(block_);
+    }
+  }
+  void fill(int blocks, std::chrono::microseconds delay) { fill_until(block_ + blocks, delay); }
+  std::int64_t block() const { return block_; }
+
+ private:
+  BlockClock& clock_;
+  std::int64_t block_ = 0;  // the next
+  BlockClock::Time now_ = kStart, played_;
+};
+
+TEST(BlockClock, TheQueueBeginsLongAndShortensWhileTheMachineIsCalm) {
+  BlockClock clock(kStart, 1ms, 3, 10);
+  EXPECT_EQ(clock.queue_blocks(), 10);
+  EXPECT_EQ(clock.play_time(0), kStart + 10ms);
+  Filler filler(clock);
+  filler.fill_until(2, 8ms);  // what a machine does that has just begun misses nothing
+  EXPECT_EQ(clock.queue_blocks(), 10);
+
+  BlockClock calm(kStart, 1ms, 3, 10);
+  Filler calm_filler(calm);
+  for (int queue = 10; queue > 3; --queue) {
+    EXPECT_EQ(calm.queue_blocks(), queue);
+    calm_filler.fill(BlockClock::kCalm, 100us);
+  }
+  EXPECT_EQ(calm.queue_blocks(), 3);
+  calm_filler.fill(5 * BlockClock::kCalm, 100us);
+  EXPECT_EQ(calm.queue_blocks(), 3);
 }
 
-TEST(BlockClock, AQueueThatWasNearlyDryGrowsWithoutAMiss) {
+TEST(BlockClock, DelaysAreRememberedForAWhile) {
+  BlockClock clock(kStart, 1ms, 2, 10);
+  Filler filler(clock);
+  // delays of up to 3.2 ms need five blocks: one more than the four periods they reach into
+  filler.fill(1, 3200us);
+  const auto remembered = static_cast<std::int64_t>(BlockClock::kRemembered) * BlockClock::kCalm;
+  filler.fill_until(remembered - 1, 100us);
+  EXPECT_EQ(clock.queue_blocks(), 5);
+  filler.fill_until(remembered + 4 * BlockClock::kCalm, 100us);
+  EXPECT_EQ(clock.queue_blocks(), 2);
+}
+
+TEST(BlockClock, AQueueThatIsNearlyDryGrowsWithoutAMiss) {
   BlockClock clock(kStart, 1ms, 3, 10);
-  EXPECT_EQ(clock.fill(0, kStart + 1300us).missed, 0);
+  Filler filler(clock);
+  filler.fill(8 * BlockClock::kCalm, 100us);
+  ASSERT_EQ(clock.queue_blocks(), 3);
+  filler.fill(1, 1300us);
   EXPECT_EQ(clock.queue_blocks(), 3);  // 1.3 ms reach into the second period
-  EXPECT_EQ(clock.fill(1, kStart + 3500us).missed, 0);
+  const std::int64_t k = filler.block();
+  const BlockClock::Time asked = clock.ask_time(k + 1);
+  filler.fill(1, 2500us);
   EXPECT_EQ(clock.queue_blocks(), 4);  // 2.5 ms into the third
   // what comes is played as before, and asked for a period earlier
-  EXPECT_EQ(clock.play_time(1), kStart + 4ms);
-  EXPECT_EQ(clock.play_time(2), kStart + 5ms);
-  EXPECT_EQ(clock.ask_time(2), kStart + 1ms);
-  EXPECT_EQ(clock.ask_time(5), kStart + 4ms);
+  EXPECT_EQ(clock.ask_time(k + 1), asked - 1ms);
   // the blocks that were due before the queue grew are asked for when it grew: they are not late
-  for (int k = 2; k <= 4; ++k) EXPECT_FALSE(clock.fill(k, kStart + 3600us).late);
+  const BlockClock::Time grown = clock.ask_time(k) + 2500us;
+  for (int i = 1; i <= 3; ++i) EXPECT_FALSE(clock.fill(k + i, grown + 100us).late);
   EXPECT_EQ(clock.queue_blocks(), 4);
-  clock.fill(5, kStart + 4ms);
   // no delay makes it longer than it may be
-  EXPECT_EQ(clock.fill(6, clock.play_time(6)).missed, 0);
-  EXPECT_EQ(clock.fill(7, clock.play_time(7)).missed, 0);
-  EXPECT_EQ(clock.fill(8, clock.play_time(8)).missed, 0);
+  for (int i = 4; i < 10; ++i) EXPECT_EQ(clock.fill(k + i, clock.play_time(k + i)).missed, 0);
   EXPECT_LE(clock.queue_blocks(), 10);
 }
 
-TEST(BlockClock, AQueueThatIsLongerThanNeededShortensWithoutAMiss) {
-  BlockClock clock(kStart, 1ms, 2, 10);
-  EXPECT_EQ(clock.fill(0, kStart + 7500us).missed, 6);
-  EXPECT_EQ(clock.queue_blocks(), 8);
-  std::int64_t k = 1;
-  BlockClock::Time played = clock.play_time(0);
-  const auto go_on = [&](std::int64_t until, std::chrono::microseconds delay) {
-    for (; k < until; ++k) {
-      EXPECT_EQ(clock.fill(k, clock.ask_time(k) + delay).missed, 0) << k;
-      EXPECT_EQ(clock.play_time(k), played + 1ms) << k;  // no gap, whatever the queue
-      played = clock.play_time(k);
-    }
-  };
-  // delays of up to 3.2 ms need five blocks: one more than the four periods they reach into
-  go_on(BlockClock::kCalm, 3200us);
-  EXPECT_EQ(clock.queue_blocks(), 8);
-  go_on(BlockClock::kCalm + 2, 100us);
+TEST(BlockClock, AQueueThatRanDryGrowsByWhatItLacked) {
+  BlockClock clock(kStart, 1ms, 3, 6);
+  Filler filler(clock);
+  filler.fill(4 * BlockClock::kCalm, 100us);
+  ASSERT_EQ(clock.queue_blocks(), 3);
+  const std::int64_t k = filler.block();
+  const BlockClock::Time asked = clock.ask_time(k);
+  // a block that was to be played 3 ms later comes after 4.5 ms: played after 5 ms
+  EXPECT_EQ(clock.fill(k, asked + 4500us).missed, 2);
   EXPECT_EQ(clock.queue_blocks(), 5);
-  go_on(2 * BlockClock::kCalm + 5, 100us);
-  EXPECT_EQ(clock.queue_blocks(), 2);
-  go_on(4 * BlockClock::kCalm, 100us);
-  EXPECT_EQ(clock.queue_blocks(), 2);
+  EXPECT_EQ(clock.play_time(k), asked + 5ms);
+  EXPECT_EQ(clock.ask_time(k), asked);  // as before
+  EXPECT_EQ(clock.play_time(k - 1), asked + 2ms);
+  EXPECT_EQ(clock.ask_time(k + 1), asked + 1ms);
+  EXPECT_EQ(clock.play_time(k + 1), asked + 6ms);
+  EXPECT_EQ(clock.fill(k + 1, asked + 4600us).missed, 0);
+  // 5 ms too late: the queue may grow by one block only, the schedule shifts by the other four
+  EXPECT_EQ(clock.fill(k + 2, clock.play_time(k + 2) + 4500us).missed, 5);
+  EXPECT_EQ(clock.queue_blocks(), 6);
+  EXPECT_EQ(clock.ask_time(k + 2), asked + 6ms);
+  EXPECT_EQ(clock.play_time(k + 2), asked + 12ms);
 }
 
 TEST(BlockClock, RandomDelaysNeverBreakTheSchedule) {

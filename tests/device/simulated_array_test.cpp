@@ -195,6 +195,7 @@ TEST(SimulatedArray, KeepsRealTime) {
   Counter counter;
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(array.start(counter), DeviceStatus::Running);
+  EXPECT_EQ(array.stats().queue_blocks, 10) << "it begins with the longest queue";
   ASSERT_TRUE(eventually([&] { return array.stats().blocks >= 200; }));
   const auto now = [] {
     return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
