@@ -18,6 +18,7 @@ namespace {
 
 constexpr haddr_t kMaxAddress = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
 constexpr std::size_t kPageBytes = 16384;
+constexpr std::size_t kStructureBytes = 1 << 19;  // of a file's structure that are kept in memory
 
 /// HDF5's driver information, which comes with the access properties.
 struct Report {
@@ -217,6 +218,19 @@ hid_t registered_driver() {
   return id;
 }
 
+/// HDF5's cache of a file's structure at one size: left to itself it grows with the file.
+void bound_cache(hid_t access) {
+  H5AC_cache_config_t cache{};
+  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  H5Pget_mdc_config(access, &cache);
+  cache.set_initial_size = true;
+  cache.initial_size = cache.min_size = cache.max_size = kStructureBytes;
+  cache.incr_mode = H5C_incr__off;
+  cache.flash_incr_mode = H5C_flash_incr__off;
+  cache.decr_mode = H5C_decr__off;
+  H5Pset_mdc_config(access, &cache);
+}
+
 }  // namespace
 
 Id create_file(const std::string& path, int& error) {
@@ -225,6 +239,7 @@ Id create_file(const std::string& path, int& error) {
   const Report report{&error};
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  bound_cache(access.get());
   if (H5Pset_driver(access.get(), registered_driver(), &report) < 0) return {};
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose};
 }

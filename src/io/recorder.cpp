@@ -330,6 +330,10 @@ void Recorder::set_attribute(const std::string& name, const std::string& value) 
     impl_->give_up();
 }
 
+bool Recorder::open() const {
+  return impl_->file.valid();
+}
+
 void Recorder::close() {
   Impl& r = *impl_;
   if (!r.file.valid()) return;

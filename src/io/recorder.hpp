@@ -31,6 +31,7 @@ class Recorder {
   /// Writes an attribute of the whole recording, e.g. the run's summary.
   void set_attribute(const std::string& name, const std::string& value);
   void close();
+  bool open() const;  ///< neither closed nor given up on a full disk
 
  private:
   struct Impl;
