@@ -69,7 +69,9 @@ RunSummary run_once(const Arrangement& a, const Options& given) {
                                         1.0 / a.settings.fluid_rate);
   Pipeline pipeline(a.settings, std::move(hands));
   NoObserver observer;
-  return run(pipeline, a.settings, a.options, observer);
+  const RunSummary summary = run(pipeline, a.settings, a.options, observer);
+  if (summary.failure) std::rethrow_exception(summary.failure);
+  return summary;
 }
 
 /// How late a thread wakes that sleeps until every next millisecond, alone on the machine: what no

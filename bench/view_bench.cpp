@@ -142,6 +142,7 @@ void measure_run(const Options& given, int readers, bool one_stops, Measured& ou
   out.skipped = server.stats().skipped_frames;
   observer.stop = true;
   running.join();
+  if (out.run.failure) std::rethrow_exception(out.run.failure);
 }
 
 /// The same run that nobody can look at.
@@ -151,7 +152,9 @@ RunSummary measure_alone(const Options& given) {
   UntilToldToStop observer;
   RunOptions options;
   options.seconds = given.seconds + 2.0;
-  return run(pipeline, settings, options, observer);
+  const RunSummary summary = run(pipeline, settings, options, observer);
+  if (summary.failure) std::rethrow_exception(summary.failure);
+  return summary;
 }
 
 /// What the pipeline's threads do for those who look, a call at a time [µs].

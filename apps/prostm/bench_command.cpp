@@ -245,7 +245,7 @@ int bench_command(const BenchOptionsGiven& given) {
     if (!complete) break;
   }
   write_json(given.common.json, rows);
-  return interrupt.requested() ? kInterrupted : 0;
+  return interrupt.status();
 }
 
 }  // namespace prostm::app

@@ -25,7 +25,7 @@ class Capture final : public RunObserver {
     return taken_ < frames_ && !interrupt_.requested();
   }
   int taken() const { return taken_; }
-  bool interrupted() const { return interrupt_.requested(); }
+  const Interrupt& interrupt() const { return interrupt_; }
 
  private:
   Recorder& recorder_;
@@ -53,13 +53,14 @@ int capture_command(const CaptureOptionsGiven& given) {
   options.mode = RunMode::AsFastAsPossible;
   options.seconds = 120.0 + 10.0 * given.frames * settings.steps_per_plan() / settings.fluid_rate;
   Capture capture(recorder, given.frames);
-  run(pipeline, settings, options, capture);
+  const RunSummary summary = run(pipeline, settings, options, capture);
+  if (summary.failure) std::rethrow_exception(summary.failure);
   recorder.close();
   fmt::print(prose(given.common.json), "{}: {} fields of {}\n", given.out, capture.taken(),
              settings.scene);
   write_json(given.common.json,
              {{"file", given.out}, {"scene", settings.scene}, {"frames", capture.taken()}});
-  if (capture.interrupted()) return kInterrupted;
+  if (capture.interrupt().requested()) return capture.interrupt().status();
   if (capture.taken() < given.frames) {
     throw InputError(
         fmt::format("only {} of {} fields had pressure in {:.0f} s of {}; is the hand in the box?",

@@ -4,9 +4,13 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include <new>
+#include <stdexcept>
+#include <system_error>
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
@@ -22,10 +26,10 @@
 namespace prostm::app {
 namespace {
 
-std::atomic<int> interrupts{0};  // set by the signal handler alone
+std::atomic<int> interrupt{0};  // the signal's number; set by the handler alone
 
-void on_signal(int) {
-  if (interrupts.fetch_add(1) > 0) _exit(kInterrupted);
+void on_signal(int signal) {
+  if (interrupt.exchange(signal) != 0) _exit(128 + signal);
 }
 
 std::vector<SettingsGroup> groups_of(PipelineSettings& settings) {
@@ -122,10 +126,60 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
 Interrupt::Interrupt() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool Interrupt::requested() const {
-  return interrupts.load() > 0;
+  return interrupt.load() != 0;
+}
+
+int Interrupt::status() const {
+  return requested() ? 128 + interrupt.load() : 0;
+}
+
+namespace {
+
+/// Also of a thread, which needs room for its stack.
+bool lacks_memory(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return true;
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  return system != nullptr && (system->code() == std::errc::resource_unavailable_try_again ||
+                               system->code() == std::errc::not_enough_memory);
+}
+
+}  // namespace
+
+std::string sentence_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const InputError& error) {
+    return error.what();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  } catch (const std::exception& error) {
+    if (!lacks_memory(error)) return std::string("unexpected: ") + error.what();
+    return "there is not enough memory for this; free some, raise its limit (ulimit -v), or ask "
+           "for "
+           "less, such as a smaller --grid or field";
+  } catch (...) {
+    return "unexpected: something that is no std::exception was thrown";
+  }
+}
+
+int tell(const std::exception_ptr& failure) {
+  std::fprintf(stderr, "prostm: %s\n", sentence_of(failure).c_str());
+  try {
+    std::rethrow_exception(failure);
+  } catch (const InputError&) {
+    return kBadInput;
+  } catch (const std::invalid_argument&) {
+    return kBadInput;
+  } catch (const std::exception& error) {
+    return lacks_memory(error) ? kBadInput : 1;
+  } catch (...) {
+    return 1;
+  }
 }
 
 void Progress::show(double done, double all, const char* unit) {
@@ -134,7 +188,8 @@ void Progress::show(double done, double all, const char* unit) {
   if (t - last_ < 0.2) return;
   last_ = t;
   shown_ = true;
-  fmt::print(stderr, "\r{}  {:.0f} of {:.0f} {} ", what_, done, all, unit);
+  // a terminal that has gone does not end the work
+  std::fputs(fmt::format("\r{}  {:.0f} of {:.0f} {} ", what_, done, all, unit).c_str(), stderr);
   std::fflush(stderr);
 }
 
@@ -145,7 +200,8 @@ void Progress::say(std::FILE* out, const std::string& line) {
 }
 
 void Progress::clear() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
 }
 
 Progress::~Progress() {
@@ -154,6 +210,14 @@ Progress::~Progress() {
 
 std::FILE* prose(const std::string& json_option) {
   return json_option == "-" ? stderr : stdout;
+}
+
+void flush(std::FILE* out) {
+  const int error = std::fflush(out) == 0 ? 0 : errno;
+  if (error == 0 && std::ferror(out) == 0) return;
+  throw InputError(
+      fmt::format("standard {} cannot be written ({})", out == stdout ? "output" : "error",
+                  error != 0 ? std::generic_category().message(error) : "a write before failed"));
 }
 
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value) {

@@ -1,6 +1,7 @@
 #pragma once
-/// What the commands share: settings, hands, progress, Ctrl-C, and JSON.
+/// What the commands share: settings, hands, progress, signals, failures and JSON.
 
+#include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,12 +37,41 @@ std::string settings_json(PipelineSettings settings);
 std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
                                        double& duration);
 
-/// From construction on, Ctrl-C (SIGINT) and SIGTERM only set a flag; a second one ends the program
-/// at once.
+/// From construction on, Ctrl-C (SIGINT), SIGTERM and a terminal that goes (SIGHUP, unless it is
+/// ignored, as under nohup) only set a flag; a second one ends the program at once. And a reader of
+/// the output that goes is an error of writing, no signal.
 class Interrupt {
  public:
   Interrupt();
   bool requested() const;
+  /// Exit status of a command that was cut short but kept its results: 128 and the signal's number;
+  /// 0 where there was none.
+  int status() const;
+};
+
+/// What went wrong, in words.
+std::string sentence_of(const std::exception_ptr& failure);
+/// Prints that to standard error. @return the exit status it asks for.
+int tell(const std::exception_ptr& failure);
+
+/// Does several things, each whatever became of the others.
+class Attempts {
+ public:
+  template <class Function>
+  void add(Function&& f) {
+    try {
+      f();
+    } catch (...) {
+      if (!first_) first_ = std::current_exception();
+    }
+  }
+  /// @throws what the first that failed threw.
+  void finish() const {
+    if (first_) std::rethrow_exception(first_);
+  }
+
+ private:
+  std::exception_ptr first_;
 };
 
 /// One line on a terminal, rewritten a few times a second; silent elsewhere.
@@ -52,10 +82,9 @@ class Progress {
   void show(double done, double all, const char* unit);
   /// A line that stays, above the one that is rewritten.
   void say(std::FILE* out, const std::string& line);
+  void clear();  ///< the line, so that something else can be printed
 
  private:
-  void clear();
-
   std::string what_;
   double last_ = -1.0;
   bool shown_ = false;
@@ -65,6 +94,9 @@ class Progress {
 /// the JSON.
 std::FILE* prose(const std::string& json_option);
 
+/// Writes what was printed. @throws InputError when it cannot be.
+void flush(std::FILE* out);
+
 /// Writes JSON to what `--json` names; numbers that are not finite become null. Nothing when it
 /// names nothing.
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value);
@@ -72,6 +104,6 @@ void write_json(const std::string& json_option, const nlohmann::ordered_json& va
 nlohmann::ordered_json to_json(const Summary& summary, double unit);
 nlohmann::ordered_json to_json(const Metrics& metrics);
 
-inline constexpr int kInterrupted = 130;  ///< exit status after Ctrl-C
+inline constexpr int kBadInput = 2;  ///< exit status, also for files that cannot be written
 
 }  // namespace prostm::app

@@ -224,12 +224,12 @@ int field_command(const FieldOptionsGiven& given) {
       progress.show(done, of, "samples");
       return !interrupt.requested();
     };
-    if (!loop_drives(array, air, loop, settings, go_on, drives)) return kInterrupted;
+    if (!loop_drives(array, air, loop, settings, go_on, drives)) return interrupt.status();
   }
   const PackedArray packed(array, air);
   WorkerPool pool(all.threads);
   const PhysicalField field = physical_field(packed, air, input.raster, loop, drives, pool);
-  if (interrupt.requested()) return kInterrupted;
+  if (interrupt.requested()) return interrupt.status();
 
   PhysicalReport report;
   report.plan = given.plan;

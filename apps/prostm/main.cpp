@@ -8,8 +8,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <new>
-#include <stdexcept>
 #include <system_error>
 
 #include "common.hpp"
@@ -22,21 +20,11 @@ namespace {
 
 using namespace prostm::app;
 
-constexpr int kBadInput = 2;
-
 /// What the command line asks for: done once it has been parsed and its files have been checked.
 struct Work {
   const Files* files = nullptr;
   std::function<int()> run;
 };
-
-/// Also of a thread, which needs room for its stack.
-bool lacks_memory(const std::exception& error) {
-  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return true;
-  const auto* system = dynamic_cast<const std::system_error*>(&error);
-  return system != nullptr && (system->code() == std::errc::resource_unavailable_try_again ||
-                               system->code() == std::errc::not_enough_memory);
-}
 
 void only(CLI::App& command, const std::string& option, const std::string& built,
           const std::vector<std::string>& unbuilt, const std::string& help) {
@@ -302,9 +290,8 @@ void add_unbuilt(CLI::App& app) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// Parses and runs a command. @return the exit status.
+int obey(int argc, char** argv) {
   CLI::App app(
       "prostm: touch in mid-air from pressure fields, by path routing optimisation for ultrasound");
   app.set_version_flag("--version", PROSTM_VERSION);
@@ -326,20 +313,23 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
     std::fprintf(stderr, "prostm: %s; see prostm --help\n", error.what());
     return kBadInput;
-  } catch (const prostm::InputError& error) {
-    std::fprintf(stderr, "prostm: %s\n", error.what());
-    return kBadInput;
-  } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "prostm: %s\n", error.what());
-    return kBadInput;
-  } catch (const std::exception& error) {
-    if (lacks_memory(error)) {
-      std::fprintf(stderr,
-                   "prostm: there is not enough memory for this; free some, raise its limit "
-                   "(ulimit -v), or ask for less, such as a smaller --grid or field\n");
-      return kBadInput;
-    }
-    std::fprintf(stderr, "prostm: unexpected: %s\n", error.what());
-    return 1;
+  } catch (const std::system_error&) {
+    // what could not be printed is told at the end
+    return std::ferror(stdout) != 0 ? kBadInput : tell(std::current_exception());
+  } catch (...) {
+    return tell(std::current_exception());
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int status = obey(argc, argv);
+  try {
+    flush(stdout);
+  } catch (...) {
+    const int unprinted = tell(std::current_exception());
+    return status == 0 ? unprinted : status;
+  }
+  return status;
 }

@@ -19,12 +19,14 @@
 namespace prostm::app {
 namespace {
 
-/// Records, keeps the instant nearest to one for the picture, and watches for Ctrl-C.
+/// Records, keeps the instant nearest to one for the picture, and watches for signals and for a
+/// page's server that fails.
 class Observer final : public RunObserver {
  public:
   /// @param picture_at time of the picture, when there is to be one [s].
-  Observer(Recorder* recorder, std::optional<double> picture_at, double seconds)
-      : recorder_(recorder), picture_at_(picture_at), seconds_(seconds) {}
+  Observer(Recorder* recorder, const View* view, std::optional<double> picture_at,
+           const RunOptions& options, std::FILE* out)
+      : recorder_(recorder), view_(view), picture_at_(picture_at), options_(options), out_(out) {}
 
   bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
     if (recorder_ != nullptr) {
@@ -45,26 +47,33 @@ class Observer final : public RunObserver {
 
   bool on_progress(double time) override {
     say_whether_muted();
-    if (!reported_) progress_.show(time, seconds_, "s");
+    if (view_ != nullptr) view_->check();
+    if (!reported_) progress_.show(time, options_.seconds, "s");
     return !interrupt_.requested();
   }
 
   void on_summary(const RunSummary& summary) override {
-    report_(summary);
     reported_ = true;
     recorder_ = nullptr;
     picture_at_.reset();
+    progress_.clear();
+    report_(summary);
   }
-  /// Says on `out` when a calibration mutes the array, and when it ends.
-  void follow(std::shared_ptr<const Mute> mute, std::FILE* out) {
-    mute_ = std::move(mute);
-    out_ = out;
+  void on_abandoned_pause(double time) override {
+    progress_.say(
+        out_, fmt::format("No page is connected any more, so the paused run goes on, {}.",
+                          options_.stay ? "until Ctrl-C"
+                                        : fmt::format("for {:.1f} s", options_.seconds - time)));
   }
+  /// Says when a calibration mutes the array, and when it ends.
+  void follow(std::shared_ptr<const Mute> mute) { mute_ = std::move(mute); }
   /// What is done when the run's seconds are over and it goes on.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
   bool reported() const { return reported_; }
+  /// Nothing more comes.
+  void end() { progress_.clear(); }
 
-  bool interrupted() const { return interrupt_.requested(); }
+  const Interrupt& interrupt() const { return interrupt_; }
   bool has_instant() const { return std::isfinite(away_); }
   const ContactFrame& contact() const { return contact_; }
   const PlanFrame& plan() const { return plan_; }
@@ -79,24 +88,23 @@ class Observer final : public RunObserver {
   }
 
   Recorder* recorder_;
+  const View* view_;
   std::optional<double> picture_at_;
-  double seconds_, away_ = std::numeric_limits<double>::infinity();
+  const RunOptions& options_;
+  std::FILE* out_;
+  double away_ = std::numeric_limits<double>::infinity();
   ContactFrame contact_;
   PlanFrame plan_;
   std::function<void(const RunSummary&)> report_;
   bool reported_ = false, muted_ = false;
   std::shared_ptr<const Mute> mute_;
-  std::FILE* out_ = nullptr;
   Interrupt interrupt_;
   Progress progress_{"running"};
 };
 
+/// @pre the observer has an instant.
 void draw_instant(const Observer& observer, const PipelineSettings& settings, const GridShape& grid,
                   const std::string& path) {
-  if (!observer.has_instant()) {
-    throw InputError("no picture was drawn in " + path +
-                     ": no pressure reached a hand during the run");
-  }
   const ContactFrame& contact = observer.contact();
   SceneFigure figure;
   figure.nx = grid.nx;
@@ -126,6 +134,17 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   figure.plan = observer.plan().plan;
   figure.title = fmt::format("{} at {:.2f} s", settings.scene, contact.target.time);
   draw_scene(figure, path);
+}
+
+/// A run that was cut short may have nothing to draw.
+void draw_or_say_why(const Observer& observer, const RunSummary& summary,
+                     const PipelineSettings& settings, const GridShape& grid,
+                     const std::string& path, std::FILE* out) {
+  if (observer.has_instant()) return draw_instant(observer, settings, grid, path);
+  const std::string why =
+      "no picture was drawn in " + path + ": no pressure reached a hand during the run";
+  if (!summary.stopped) throw InputError(why);
+  fmt::print(out, "{}\n", why);
 }
 
 }  // namespace
@@ -179,37 +198,49 @@ int run_command(const RunOptionsGiven& given) {
   }
   std::optional<double> picture_at;
   if (settings.side_view) picture_at = given.figure_at.value_or(0.5 * options.seconds);
-  Observer observer(recorder.get(), picture_at, options.seconds);
-  observer.follow(mute, prose(given.common.json));
+  std::FILE* out = prose(given.common.json);
+  Observer observer(recorder.get(), view.get(), picture_at, options, out);
+  observer.follow(mute);
   const auto report = [&](const RunSummary& summary) {
+    const std::optional<TrackerStatus> tracker = pipeline.smoke().hands().tracker_status();
     nlohmann::ordered_json json = summary_json(summary, settings);
     json["hand"] = given.hand;
-    const std::optional<TrackerStatus> tracker = pipeline.smoke().hands().tracker_status();
     json["tracker"] = tracker_json(tracker);
     json["settings"] = nlohmann::ordered_json::parse(settings_json(settings));
-    if (recorder) {
+    Attempts attempts;
+    attempts.add([&] {
+      if (!recorder || !recorder->open()) return;
       recorder->set_attribute("summary", json.dump());
       recorder->close();
-    }
-    print_summary(prose(given.common.json), summary, settings);
-    if (tracker) {
-      fmt::print(prose(given.common.json),
-                 "tracker: {} ({} frames, {} dropped, {} repeated, {} reconnects; hands not taken: "
-                 "{} unsure, {} frozen)\n",
-                 tracker->sentence, tracker->frames, tracker->dropped, tracker->repeated,
-                 tracker->reconnects, tracker->unsure, tracker->frozen);
-    }
-    write_json(given.common.json, json);
-    if (!given.common.figure.empty()) {
-      draw_instant(observer, settings, pipeline.smoke().fluid().grid(), given.common.figure);
-    }
-    if (given.stay && !observer.interrupted()) view->announce(prose(given.common.json));
+    });
+    attempts.add([&] { write_json(given.common.json, json); });
+    attempts.add([&] {
+      if (given.common.figure.empty()) return;
+      draw_or_say_why(observer, summary, settings, pipeline.smoke().fluid().grid(),
+                      given.common.figure, out);
+    });
+    attempts.add([&] {
+      print_summary(out, summary, settings);
+      if (tracker) {
+        fmt::print(out,
+                   "tracker: {} ({} frames, {} dropped, {} repeated, {} reconnects; hands not "
+                   "taken: {} unsure, {} frozen)\n",
+                   tracker->sentence, tracker->frames, tracker->dropped, tracker->repeated,
+                   tracker->reconnects, tracker->unsure, tracker->frozen);
+      }
+      flush(out);
+    });
+    attempts.finish();
+    if (given.stay && !summary.stopped) view->announce(out);
   };
   observer.on_report(report);
   const RunSummary summary = run(pipeline, settings, options, observer);
-  if (observer.reported()) return 0;
+  observer.end();
+  // at once, whatever becomes of the files
+  const int failed = summary.failure ? tell(summary.failure) : 0;
+  if (observer.reported()) return failed;
   report(summary);
-  return observer.interrupted() ? kInterrupted : 0;
+  return failed != 0 ? failed : observer.interrupt().status();
 }
 
 }  // namespace prostm::app

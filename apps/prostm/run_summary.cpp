@@ -64,6 +64,8 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
           {"method", settings.method},
           {"seconds", s.seconds},
           {"stopped", s.stopped},
+          {"failure", s.failure ? nlohmann::ordered_json(sentence_of(s.failure))
+                                : nlohmann::ordered_json(nullptr)},
           {"fluid_steps", s.fluid_steps},
           {"skipped_fluid_steps", s.skipped_fluid_steps},
           {"fluid_rate_hz", s.seconds > 0 ? static_cast<double>(s.fluid_steps) / s.seconds : 0.0},

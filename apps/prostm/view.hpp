@@ -27,6 +27,8 @@ class View {
   std::unique_ptr<HandSource> behind_the_page(std::unique_ptr<HandSource> base);
   /// Starts the server, and prints where it is.
   void serve(Pipeline& pipeline, std::FILE* out);
+  /// @throws when the server has failed.
+  void check() const { server_->check(); }
   /// Says that the run goes on, and where.
   void announce(std::FILE* out) const;
 

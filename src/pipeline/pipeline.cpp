@@ -201,7 +201,7 @@ PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, do
       emitter_(make_emitter(method_from_name(settings.method), emit_settings_,
                             settings.simulated_array.sample_rate)) {}
 
-void PlanStage::run(const ContactFrame& contact, PlanFrame& out) noexcept {
+void PlanStage::run(const ContactFrame& contact, PlanFrame& out) {
   StageTimer timer;
   out.id = ++updates_;
   out.start = contact.taken;
@@ -269,8 +269,7 @@ void Pipeline::reconfigure(const PipelineSettings& settings) {
 }
 
 std::string Pipeline::restart(Emitter& emitter) {
-  fade_out();
-  device_.stop();
+  silence();
   device_before_ = device_stats();
   if (device_.start(emitter) == DeviceStatus::Running) {
     add(plans_->emitter().stats(), emit_before_);
@@ -281,15 +280,30 @@ std::string Pipeline::restart(Emitter& emitter) {
   return problem;
 }
 
-/// Until what was asked for before has been played, and the fade after it.
+void Pipeline::silence() {
+  fade_out();
+  device_.stop();
+}
+
+/// Until a block that follows the fade is played, however late the device's thread is.
 void Pipeline::fade_out() {
+  constexpr double kLongest = 1.0;  // [s], for a device that plays nothing any more
   const SimulatedArraySettings& device = settings_.simulated_array;
   if (!device.realtime) return;
   plans_->emitter().lose();
-  const int blocks = device_.stats().queue_blocks + 1;  // and the one that is being filled
-  const double queue = blocks * device.block_samples / device.sample_rate;
-  std::this_thread::sleep_for(
-      std::chrono::duration<double>(queue + settings_.emit.stall_fade_time));
+  const double fade = method_from_name(settings_.method) == Method::Am
+                          ? 1.0 / settings_.emit.am_frequency
+                          : settings_.emit.stall_fade_time;
+  // the block that is being filled has not heard of it
+  const std::int64_t silent =
+      device_.stats().blocks + 2 +
+      std::llround(std::ceil(fade * device.sample_rate)) / device.block_samples;
+  const double end = steady_now() + kLongest;
+  const auto waiting = [&] {
+    return device_.status() == DeviceStatus::Running && steady_now() < end &&
+           (device_.stats().blocks <= silent || device_.samples() <= silent * device.block_samples);
+  };
+  while (waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 DeviceStats Pipeline::device_stats() const {

@@ -119,7 +119,7 @@ class PlanStage {
 
   /// Plans a target and hands the result to the emitter; without a plan the output fades. Writes
   /// `start` = `taken` of the target.
-  void run(const ContactFrame& contact, PlanFrame& out) noexcept;
+  void run(const ContactFrame& contact, PlanFrame& out);
 
   /// Counts on from the updates of a stage that this one stands in for.
   void continue_from(const PlanStage& other) { updates_ = other.updates_; }
@@ -161,6 +161,9 @@ class Pipeline {
   /// @throws std::invalid_argument with a sentence; then everything is as it was.
   void reconfigure(const PipelineSettings& settings);
 
+  /// Fades the output out and stops the device. @pre no other thread uses the pipeline.
+  void silence();
+
   SmokeStage& smoke() { return *smoke_; }
   PlanStage& plans() { return *plans_; }
   SimulatedArray& device() { return device_; }
@@ -168,7 +171,7 @@ class Pipeline {
   EmitStats emit_stats() const;      ///< of all emitters that there were
 
  private:
-  /// Fades in real time, so that nothing clicks when the device stops.
+  /// In real time, so that nothing clicks when the device stops, or plays on.
   void fade_out();
   /// The device plays another emitter, after the fade of the one before. @return why it cannot, and
   /// plays the one before; or nothing.

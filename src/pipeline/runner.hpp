@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <exception>
 
 #include "core/distribution.hpp"
 #include "pipeline/latency.hpp"
@@ -28,12 +29,17 @@ struct RunOptions {
   bool prepare_early = true;
   LiveLink* live = nullptr;  ///< lets onlookers see and steer a run in real time
   bool stay = false;         ///< goes on after `seconds`, until the observer stops it
+  /// A run that is paused goes on when nobody has looked at it for this long [s].
+  double pause_kept = 3.0;
 };
 
 /// The numbers of a run; times in seconds, lengths in metres.
 struct RunSummary {
   double seconds = 0;    ///< of run time, shorter than asked when stopped
-  bool stopped = false;  ///< by the observer
+  bool stopped = false;  ///< by the observer, or by what failed
+  /// What ended the run, null where nothing failed: what an observer, the hands, a stage or the
+  /// device's end threw. Of several the first.
+  std::exception_ptr failure;
   std::int64_t fluid_steps = 0, skipped_fluid_steps = 0, plans = 0, empty_updates = 0,
                skipped_updates = 0;
   std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
@@ -52,7 +58,7 @@ struct RunSummary {
 };
 
 /// Sees every plan update on the thread that called run(). Slow observers delay nothing in real
-/// time: what they miss is counted in RunSummary::unobserved.
+/// time: what they miss is counted in RunSummary::unobserved. What an observer throws ends the run.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
@@ -62,11 +68,15 @@ class RunObserver {
   virtual bool on_progress(double time) = 0;
   /// The run's seconds are over, and it goes on (RunOptions::stay).
   virtual void on_summary(const RunSummary& summary) { static_cast<void>(summary); }
+  /// Nobody looks any more at a run that is paused, and it goes on from this run time [s].
+  virtual void on_abandoned_pause(double time) { static_cast<void>(time); }
 };
 
-/// Runs `pipeline` from its beginning. @return the summary of options.seconds, or of less when it
-/// was stopped. @pre not run or stepped before; settings.simulated_array.realtime as the mode asks;
-/// options.live and options.stay only in real time.
+/// Runs `pipeline` from its beginning. However it ends, whatever fails and on whichever thread, all
+/// threads have ended then, the output has faded out, and the device is stopped. @return the
+/// summary of options.seconds, or of less when it was stopped; what failed is in it. @pre not run
+/// or stepped before; settings.simulated_array.realtime as the mode asks; options.live and
+/// options.stay only in real time.
 RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
                RunObserver& observer);
 

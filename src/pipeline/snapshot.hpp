@@ -54,7 +54,8 @@ struct PlanSnapshot {
 
 /// Counters, and what holds between steps, a few dozen times a second.
 struct RunSnapshot {
-  double time = 0.0;  ///< run time [s]
+  double time = 0.0;                         ///< run time [s]
+  double fluid_rate = 0.0, plan_rate = 0.0;  ///< over the last second [Hz]
   bool paused = false, page_hand = false, fading = false;
   DeviceStats device;  ///< since the start of the run, as are the next
   EmitStats emit;

@@ -62,6 +62,12 @@ void Steering::attend() {
   publish_state();
 }
 
+void Steering::play() {
+  state_.playing = true;
+  updates_asked_ = 0;
+  publish_state();
+}
+
 bool Steering::next_update() {
   if (updates_asked_ == 0) return false;
   --updates_asked_;
@@ -107,12 +113,16 @@ void Steering::publish_state() {
   told_ = steady_now();
 }
 
-void Steering::show(double time, bool fading) {
+void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fading) {
   const double t = steady_now();
   if (t - shown_ < kShowPeriod) return;
   shown_ = t;
+  step_rate_.add(t, steps);
+  plan_rate_.add(t, plans);
   RunSnapshot& run = link_.snapshots.run_draft();
   run.time = time;
+  run.fluid_rate = step_rate_.rate();
+  run.plan_rate = plan_rate_.rate();
   run.paused = !state_.playing;
   run.page_hand = link_.hands != nullptr && link_.hands->page_in_charge();
   run.fading = fading;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/live.hpp"
+#include "pipeline/recent_rate.hpp"
 
 namespace prostm {
 
@@ -15,6 +16,8 @@ class Steering {
 
   bool pending() { return link_.control.pending(); }
   bool playing() const { return state_.playing; }
+  /// Lets a run go on that is paused.
+  void play();
   /// Does everything that is asked. @pre no other thread uses the pipeline.
   void attend();
   /// Whether one more plan update is asked of a run that is paused.
@@ -22,8 +25,9 @@ class Steering {
 
   Snapshots& snapshots() { return link_.snapshots; }
   /// Publishes the counters, a few dozen times a second at most. @param time run time [s].
-  /// @param fading no plan came for a while.
-  void show(double time, bool fading);
+  /// @param steps, plans of the fluid, and plan updates, so far. @param fading no plan came for a
+  /// while.
+  void show(double time, std::int64_t steps, std::int64_t plans, bool fading);
 
  private:
   void apply(const LiveSettings& wanted, const std::vector<std::uint32_t>& senders);
@@ -37,6 +41,7 @@ class Steering {
   std::shared_ptr<const PipelineSettings> planned_with_;
   int updates_asked_ = 0;
   double shown_ = 0.0, told_ = 0.0;  // when last [s of the clock]
+  RecentRate step_rate_, plan_rate_;
 };
 
 }  // namespace prostm

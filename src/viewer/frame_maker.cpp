@@ -139,13 +139,6 @@ double Recent::quantile(double p) {
   return sorted_[static_cast<std::size_t>(rank)];
 }
 
-double Recent::rate() const {
-  if (entries_.size() < 2) return 0.0;
-  const double seconds =
-      std::chrono::duration<double>(entries_.back().at - entries_.front().at).count();
-  return seconds > 0.0 ? (entries_.back().value - entries_.front().value) / seconds : 0.0;
-}
-
 // ---- frames ----
 
 void FrameMaker::refresh(ViewFrame& frame, ViewNews& news) {
@@ -203,10 +196,8 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   set(frame, kPlanMs, kMs * plan.plan_time);
   set(frame, kLiftMs, kMs * plan.lift_time);
   set(frame, kStepMs, kMs * (step.track_time + step.hand_time + step.fluid_time + plan_time));
-  steps_.add(now, static_cast<double>(step.step));
-  plans_.add(now, static_cast<double>(plan.id));
-  set(frame, kFluidHz, steps_.rate());
-  set(frame, kPlanHz, plans_.rate());
+  set(frame, kFluidHz, run.fluid_rate);
+  set(frame, kPlanHz, run.plan_rate);
 
   double latency = 0.0;
   while (snapshots_.next_latency(latency)) latencies_.add(now, latency);

@@ -19,8 +19,6 @@ class Recent {
   void trim(Clock::time_point now);
   /// The share p of the values are not above this; NaN without any.
   double quantile(double p);
-  /// Growth a second from the oldest value to the newest; 0 with fewer than two.
-  double rate() const;
 
  private:
   struct Entry {
@@ -45,7 +43,7 @@ class FrameMaker {
 
   Snapshots& snapshots_;
   RenderedPlan rendered_;
-  Recent steps_{1.0}, plans_{1.0}, latencies_{10.0};
+  Recent latencies_{10.0};
 };
 
 }  // namespace prostm::viewer

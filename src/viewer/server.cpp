@@ -4,10 +4,12 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <ctime>
+#include <stdexcept>
 #include <thread>
 
 #include "core/input_error.hpp"
@@ -58,7 +60,7 @@ struct ViewServer::Impl {
     accept();
     tick_at = Clock::now();
     tick();
-    thread = std::thread([this] { io.run(); });
+    thread = std::thread([this] { serve(); });
   }
 
   ~Impl() {
@@ -67,6 +69,15 @@ struct ViewServer::Impl {
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+
+  void serve() noexcept {
+    try {
+      io.run();
+    } catch (const std::exception& error) {
+      failure = error.what();
+      failed.store(true, std::memory_order_release);
+    }
+  }
 
   void listen(const asio::ip::address& address) {
     const std::optional<int> asked = hub.settings.port;
@@ -149,6 +160,8 @@ struct ViewServer::Impl {
   tcp::acceptor acceptor{io};
   asio::steady_timer timer{io}, pause{io};
   Clock::time_point tick_at;
+  std::string failure;  // once `failed`
+  std::atomic<bool> failed{false};
   std::thread thread;
 };
 
@@ -178,6 +191,11 @@ bool ViewServer::loopback() const {
 ViewStats ViewServer::stats() const {
   const auto& count = impl_->hub.count;
   return {count.frames, count.skipped, count.bytes, count.dropped, count.pages};
+}
+
+void ViewServer::check() const {
+  if (impl_->failed.load(std::memory_order_acquire))
+    throw std::runtime_error("the page's server has failed: " + impl_->failure);
 }
 
 double ViewServer::cpu_time() const {

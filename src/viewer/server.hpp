@@ -48,6 +48,8 @@ class ViewServer {
   std::string url() const;  ///< "http://127.0.0.1:8470/"
   bool loopback() const;    ///< whether this machine alone can reach it
   ViewStats stats() const;  ///< any thread
+  /// Any thread. @throws std::runtime_error when the server has failed and serves no longer.
+  void check() const;
   double cpu_time() const;  ///< of the server's thread so far [s], any thread
 
  private:

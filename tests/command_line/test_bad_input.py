@@ -259,22 +259,6 @@ def test_a_lack_of_memory_is_said_as_such(program, tmp_path):
         assert done.returncode == 2 and done.stderr.startswith("prostm: there is not enough memory"), done.stderr
 
 
-def test_ctrl_c_leaves_valid_files(program, tmp_path):
-    recording, summary = tmp_path / "run.h5", tmp_path / "run.json"
-    running = subprocess.Popen(
-        [str(program), "run", "--grid", "32", "--seconds", "600", "--realtime", "--record", str(recording),
-         "--json", str(summary)], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    time.sleep(4.0)
-    running.send_signal(signal.SIGINT)
-    running.communicate(timeout=30)
-    assert running.returncode == 130
-    result = json.loads(summary.read_text())
-    assert result["stopped"] and 1.0 < result["seconds"] < 60.0
-    with h5py.File(recording) as h5:
-        assert len(h5.keys()) > 0
-    assert not list(tmp_path.glob("*.part*"))
-
-
 def test_a_killed_recording_still_opens(program, tmp_path):
     recording = tmp_path / "run.h5"
     running = subprocess.Popen(

@@ -78,15 +78,35 @@ def test_listens_on_this_machine_alone(program, tmp_path):
     assert status == 130
 
 
-def test_ctrl_c_leaves_whole_files(program, tmp_path):
-    process, address = start(program, tmp_path, "--seconds", "600", "--json", "summary.json", "--record", "run.h5")
-    wait_for(lambda: numbers(address)["run"]["plan_updates"] > 5)
-    status, out = end(process)
-    assert status == 130
-    assert "fluid steps" in out
-    summary = json.loads((tmp_path / "summary.json").read_text())
-    assert summary["stopped"] is True and summary["plans"] + summary["empty_updates"] > 0
-    assert (tmp_path / "run.h5").exists() and not (tmp_path / "run.part.h5").exists()
+def test_a_run_that_nothing_touched_ends_whole_too(program, tmp_path):
+    process, _ = start(program, tmp_path, "--seconds", "600", "--json", "summary.json", "--figure", "run.png", "--hand", "page")
+    process.send_signal(signal.SIGTERM)
+    out, errors = process.communicate(timeout=60)
+    assert process.returncode == 143 and errors == ""
+    assert "no picture was drawn in run.png: no pressure reached a hand" in out
+    assert json.loads((tmp_path / "summary.json").read_text())["stopped"] is True
+
+
+def page_says(address, message):
+    """A page that connects and says something; whoever closes what this gives has left."""
+    port = int(address.rstrip("/").rsplit(":", 1)[1])
+    page = socket.create_connection(("127.0.0.1", port), timeout=60)
+    page.sendall(f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                 "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n".encode())
+    assert page.recv(64).startswith(b"HTTP/1.1 101")
+    text = json.dumps(message).encode()
+    page.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
+    return page
+
+
+def test_a_run_that_a_page_paused_and_left_ends(program, tmp_path):
+    process, address = start(program, tmp_path, "--seconds", "2", "--json", "summary.json")
+    with page_says(address, {"type": "transport", "do": "pause"}):
+        wait_for(lambda: numbers(address)["run"]["flags"] & 1)
+    out, errors = process.communicate(timeout=60)
+    assert process.returncode == 0 and errors == ""
+    assert out.startswith("No page is connected any more, so the paused run goes on, for ")
+    assert json.loads((tmp_path / "summary.json").read_text())["seconds"] == pytest.approx(2.0, abs=0.05)
 
 
 def test_stays_after_its_seconds(program, tmp_path):

@@ -32,8 +32,16 @@ class UntilToldToStop final : public RunObserver {
  public:
   bool on_plan(const ContactFrame&, const PlanFrame&) override { return !stop; }
   bool on_progress(double) override { return !stop; }
+  void on_abandoned_pause(double time) override { abandoned_at = time; }
   std::atomic<bool> stop{false};
+  std::atomic<double> abandoned_at{-1.0};  // run time of the last one [s]
 };
+
+RunOptions for_long() {
+  RunOptions options;
+  options.seconds = 3600.0;
+  return options;
+}
 
 PipelineSettings small_settings() {
   PipelineSettings s;
@@ -110,7 +118,8 @@ class TouchingHand final : public HandSource {
 /// A run, its server and the numbers that it tells.
 class LiveRun {
  public:
-  explicit LiveRun(const PipelineSettings& settings = small_settings()) {
+  explicit LiveRun(const PipelineSettings& settings = small_settings(),
+                   RunOptions options = for_long()) {
     link_.settings.pipeline = settings;
     link_.settings.source = "scripted";
     link_.settings.sources = {"scripted", "recording", "page", "leap"};
@@ -135,8 +144,6 @@ class LiveRun {
     ViewSettings view;
     view.port = 0;
     server_ = std::make_unique<ViewServer>(view, *view_, std::span<const PageFile>());
-    RunOptions options;
-    options.seconds = 3600.0;
     options.live = &link_;
     thread_ = std::thread(
         [this, settings, options] { summary_ = run(*pipeline_, settings, options, observer_); });
@@ -149,9 +156,15 @@ class LiveRun {
 
   RunSummary stop() {
     observer_.stop = true;
+    return wait();
+  }
+  /// Until the run ends by itself.
+  RunSummary wait() {
     thread_.join();
     return summary_;
   }
+  /// Run time at which a pause was given up; −1 before [s].
+  double abandoned_at() const { return observer_.abandoned_at; }
   int port() const { return server_->port(); }
   /// As /numbers.json tells them.
   Json numbers() const {
@@ -322,15 +335,24 @@ TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
   Page page(run.port());
   page.next_text("state");
   ASSERT_TRUE(eventually([&] { return run.plan_updates() > 3; }));
-  page.say(R"({"type":"transport","do":"pause"})");
-  EXPECT_TRUE(transport_becomes(page, "playing", false));
-  ASSERT_TRUE(eventually([&] { return (run.flags() & kViewPaused) != 0; }));
-  const int steps = run.fluid_steps(), updates = run.plan_updates();
-  EXPECT_TRUE(eventually([&] { return (run.flags() & kViewFading) != 0; }));
-  EXPECT_EQ(run.fluid_steps(), steps);
-  page.say(R"({"type":"transport","do":"step"})");
-  EXPECT_TRUE(eventually([&] { return run.plan_updates() == updates + 1; }));
-  EXPECT_LE(run.fluid_steps(), steps + 2);
+  int updates = 0;
+  for (int round = 0; round < 3; ++round) {
+    page.say(R"({"type":"transport","do":"pause"})");
+    EXPECT_TRUE(transport_becomes(page, "playing", false));
+    ASSERT_TRUE(eventually([&] { return (run.flags() & kViewPaused) != 0; }));
+    const int steps = run.fluid_steps();
+    updates = run.plan_updates();
+    EXPECT_EQ(steps % 2, 0) << "a pause follows a whole update";
+    EXPECT_TRUE(eventually([&] { return (run.flags() & kViewFading) != 0; }));
+    EXPECT_EQ(run.fluid_steps(), steps);
+    page.say(R"({"type":"transport","do":"step"})");
+    EXPECT_TRUE(eventually([&] { return run.plan_updates() == updates + 1; }));
+    EXPECT_EQ(run.fluid_steps(), steps + 2);
+    if (round == 2) break;
+    page.say(R"({"type":"transport","do":"play"})");
+    EXPECT_TRUE(transport_becomes(page, "playing", true));
+    EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates + 1; }));
+  }
   {
     // whoever comes now sees the smoke too
     Page late(run.port());
@@ -338,6 +360,37 @@ TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
   }
   page.say(R"({"type":"transport","do":"play"})");
   EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates + 3; }));
+}
+
+TEST(Live, APauseEndsWhenNobodyLooksAnyMore) {
+  RunOptions options;
+  options.seconds = 1.5;
+  options.pause_kept = 0.5;
+  LiveRun run(small_settings(), options);
+  {
+    Page page(run.port());
+    page.say(R"({"type":"transport","do":"pause"})");
+    EXPECT_TRUE(transport_becomes(page, "playing", false));
+    // a page that looks keeps the pause, however long
+    ASSERT_TRUE(eventually([&] { return (run.flags() & kViewPaused) != 0; }));
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    EXPECT_NE(run.flags() & kViewPaused, 0U);
+    EXPECT_EQ(run.abandoned_at(), -1.0);
+  }
+  const RunSummary summary = run.wait();
+  EXPECT_GE(run.abandoned_at(), 0.0);
+  EXPECT_LT(run.abandoned_at(), 1.5);
+  EXPECT_FALSE(summary.stopped);
+  EXPECT_NEAR(summary.seconds, 1.5, 0.021);
+}
+
+TEST(Live, RatesAreThoseOfTheRunHoweverSeldomTheyAreAskedFor) {
+  LiveRun run;
+  EXPECT_TRUE(eventually([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    const Json numbers = run.numbers().at("numbers");
+    return numbers.at("fluid_hz") > 0.0 && numbers.at("plan_hz") > 0.0;
+  }));
 }
 
 TEST(Live, RecordingsAreSoughtIn) {

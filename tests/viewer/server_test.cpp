@@ -48,6 +48,21 @@ class Server : public testing::Test {
   int port_ = server_.port();
 };
 
+TEST_F(Server, TellsWhenItHasFailed) {
+  EXPECT_NO_THROW(server_.check());
+  source_.fails = true;
+  get(port_, "/numbers.json");
+  EXPECT_TRUE(eventually([&] {
+    try {
+      server_.check();
+      return false;
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "the page's server has failed: the stand-in fell down");
+      return true;
+    }
+  }));
+}
+
 // ---- HTTP ----
 
 TEST_F(Server, GivesThePagesFilesByTheirExactPathsAlone) {

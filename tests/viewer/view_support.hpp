@@ -13,6 +13,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,7 @@ class StandIn final : public ViewSource {
   explicit StandIn(std::uint32_t smoke_cells = 32) { smoke_cells_ = smoke_cells; }
   void watch(bool somebody) override { watched = somebody; }
   void refresh(ViewFrame& frame, ViewNews& news) override {
+    if (fails) throw std::runtime_error("the stand-in fell down");
     frame.run.fluid_steps = static_cast<std::uint32_t>(++refreshed);
     frame.numbers.fill(std::numeric_limits<float>::quiet_NaN());
     frame.numbers[kFluidMs] = 7.25F;
@@ -73,7 +75,7 @@ class StandIn final : public ViewSource {
     return taken_;
   }
 
-  std::atomic<bool> watched{false}, new_smoke{true};
+  std::atomic<bool> watched{false}, new_smoke{true}, fails{false};
   std::atomic<int> state_version{1}, forgotten{0};
   std::atomic<std::int64_t> refreshed{0};
 

@@ -1,0 +1,118 @@
+"""How commands end early: by signals and by disks that are full. What was made until then is kept, and told."""
+
+import json
+import resource
+import signal
+import subprocess
+import time
+
+import h5py
+import pytest
+
+
+def start(program, folder, *arguments, limit=None):
+    """A run that would take ten minutes, and records; no file grows beyond `limit` [bytes]."""
+
+    def prepare():
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+        if limit is not None:  # stands for a full disk
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    return subprocess.Popen(
+        [str(program), "run", "--grid", "32", "--seconds", "600", "--record", "run.h5", "--json", "run.json",
+         "--figure", "run.png", *arguments],
+        cwd=folder, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        preexec_fn=prepare, restore_signals=False)
+
+
+def wait_for(condition):
+    for _ in range(600):
+        if condition():
+            return
+        time.sleep(0.1)
+    raise AssertionError("it did not happen within a minute")
+
+
+@pytest.mark.parametrize("name, status", [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
+def test_a_signal_ends_a_run_whole(program, tmp_path, name, status):
+    running = start(program, tmp_path)
+    part = tmp_path / "run.h5.part.h5"
+    wait_for(part.exists)
+    empty = part.stat().st_size
+    wait_for(lambda: part.stat().st_size > empty)
+    running.send_signal(getattr(signal, name))
+    out, errors = running.communicate(timeout=60)
+    assert running.returncode == status and errors == ""
+    assert "fluid steps" in out
+    summary = json.loads((tmp_path / "run.json").read_text())
+    assert summary["stopped"] is True and summary["failure"] is None and summary["seconds"] < 60
+    with h5py.File(tmp_path / "run.h5") as h5:
+        assert json.loads(h5.attrs["summary"])["fluid_steps"] == summary["fluid_steps"]
+        assert len(h5["frame/time"]) > 0
+    assert not part.exists()
+    assert (tmp_path / "run.png").exists() or "no picture was drawn in run.png" in out
+
+
+def test_a_second_signal_ends_at_once_as_the_shell_says(program, tmp_path):
+    running = start(program, tmp_path, "--as-fast-as-possible")
+    wait_for((tmp_path / "run.h5.part.h5").exists)
+    running.send_signal(signal.SIGSTOP)
+    running.send_signal(signal.SIGTERM)
+    running.send_signal(signal.SIGHUP)
+    running.send_signal(signal.SIGCONT)
+    running.communicate(timeout=60)
+    assert running.returncode in (128 + signal.SIGTERM, 128 + signal.SIGHUP)
+
+
+def test_a_hangup_that_is_ignored_stays_ignored(program, tmp_path):
+    running = subprocess.Popen([str(program), "run", "--grid", "32", "--seconds", "2", "--json", "run.json"], cwd=tmp_path,
+                               stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    time.sleep(1.0)
+    running.send_signal(signal.SIGHUP)
+    assert running.wait(timeout=60) == 0
+    assert json.loads((tmp_path / "run.json").read_text())["stopped"] is False
+
+
+@pytest.mark.parametrize("pace", ["--realtime", "--as-fast-as-possible", "--stepped"])
+def test_a_full_disk_ends_a_run(program, tmp_path, pace):
+    running = start(program, tmp_path, pace, limit=200_000)
+    out, errors = running.communicate(timeout=120)
+    assert running.returncode == 2
+    lines = errors.splitlines()
+    assert len(lines) == 1 and lines[0].startswith("prostm: run.h5 cannot be written (File too large); ")
+    assert "fluid steps" in out
+    summary = json.loads((tmp_path / "run.json").read_text())
+    assert summary["stopped"] is True and "prostm: " + summary["failure"] == lines[0]
+    assert not (tmp_path / "run.h5").exists()
+    assert "what was recorded until then is in run.h5.part.h5" in lines[0]
+    with h5py.File(tmp_path / "run.h5.part.h5") as h5:
+        assert len(h5["frame/time"]) > 0
+
+
+@pytest.mark.parametrize("arguments", [
+    ["devices"],
+    ["devices", "--json", "-"],
+    ["--help"],
+    ["run", "--help"],
+    ["--version"],
+    ["run", "--stepped", "--grid", "32", "--seconds", "0.1"],
+    ["run", "--stepped", "--grid", "32", "--seconds", "0.1", "--json", "-"],
+])
+def test_a_full_standard_output_is_told(program, tmp_path, arguments):
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([str(program), *arguments], cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=full,
+                              stderr=subprocess.PIPE, text=True, timeout=60)
+    assert done.returncode == 2
+    told = [line for line in done.stderr.splitlines() if line.startswith("prostm: ")]
+    assert len(told) == 1 and told[0].startswith("prostm: standard output cannot be written (")
+
+
+def test_files_are_whole_where_standard_output_is_full(program, tmp_path):
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([str(program), "run", "--stepped", "--grid", "32", "--seconds", "1", "--json", "run.json",
+                               "--record", "run.h5"], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+    assert done.returncode == 2
+    assert json.loads((tmp_path / "run.json").read_text())["fluid_steps"] == 50
+    with h5py.File(tmp_path / "run.h5") as h5:
+        assert len(h5["frame/time"]) == 25
