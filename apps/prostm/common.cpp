@@ -215,6 +215,7 @@ std::FILE* prose(const std::string& json_option) {
 void flush(std::FILE* out) {
   const int error = std::fflush(out) == 0 ? 0 : errno;
   if (error == 0 && std::ferror(out) == 0) return;
+  std::clearerr(out);  // told once
   throw InputError(
       fmt::format("standard {} cannot be written ({})", out == stdout ? "output" : "error",
                   error != 0 ? std::generic_category().message(error) : "a write before failed"));
