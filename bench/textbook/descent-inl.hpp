@@ -14,6 +14,7 @@
 #include <cmath>
 #include <vector>
 
+#include "target/pressure_share.hpp"
 #include "textbook/kernel.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -83,7 +84,7 @@ Bicubic::Bicubic(const Field& field, double maximum)
                         static_cast<std::size_t>(i);
       const auto to = static_cast<std::size_t>(j + kBorder) * static_cast<std::size_t>(stride_) +
                       static_cast<std::size_t>(i + kBorder);
-      if (field.skin[from] != 0) value_[to] = field.pressure[from] / maximum;
+      if (field.skin[from] != 0) value_[to] = pressure_share(field.pressure[from], maximum);
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include "core/random.hpp"
 #include "core/stage_timer.hpp"
+#include "target/pressure_share.hpp"
 
 // The baseline is compiled for every kind of machine and chosen where it runs, so that one program
 // runs everywhere and loses nothing to one that was compiled for the machine at hand.
@@ -32,14 +33,16 @@ double maximum_on_skin(const Field& field) {
 
 Points strong_points(const Field& field, double maximum, double weak) {
   Points points;
+  const double least = pressure_share(weak, 1.0);  // rounded as the cells are
   for (int j = 0; j < field.rows; ++j) {
     for (int i = 0; i < field.cols; ++i) {
       const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(field.cols) +
                       static_cast<std::size_t>(i);
-      if (field.skin[at] == 0 || field.pressure[at] / maximum < weak) continue;
+      const double share = pressure_share(field.pressure[at], maximum);
+      if (field.skin[at] == 0 || share < least) continue;
       points.x.push_back(field.cell * i);
       points.y.push_back(field.cell * j);
-      points.weight.push_back(field.pressure[at] / maximum);
+      points.weight.push_back(share);
     }
   }
   return points;

@@ -9,6 +9,7 @@
 #include "core/stage_timer.hpp"
 #include "plan/clustering.hpp"
 #include "plan/patches.hpp"
+#include "target/pressure_share.hpp"
 
 namespace prostm {
 
@@ -22,21 +23,22 @@ constexpr double kLeastShare = 1e-12;
 using Places = boost::container::static_vector<Vec2, kMaxPaths>;
 
 /// (B1): the cells of highest pressure that lie farther than `apart` from each other, one after the
-/// other; of equals the first in the raster. Fewer than `count` where no more fit. @param least
-/// pressure that counts.
-Places greedy_start(const TargetField& target, int count, double apart, double least) {
+/// other; of equals the first in the raster. Fewer than `count` where no more fit.
+/// @param maximum the target's largest pressure.
+Places greedy_start(const TargetField& target, int count, double apart, double maximum) {
   Places places;
   while (static_cast<int>(places.size()) < count) {
-    double highest = least;
+    double highest = kLeastShare;
     std::size_t best = target.size();
     for (std::size_t i = 0; i < target.size(); ++i) {
-      if (target.skin[i] == 0 || !(target.pressure[i] > highest)) continue;
+      const double share = pressure_share(target.pressure[i], maximum);
+      if (target.skin[i] == 0 || !(share > highest)) continue;
       const Vec2 x = target.position(i);
       const bool free = std::all_of(places.begin(), places.end(), [&](const Vec2& place) {
         return (x - place).squaredNorm() > apart * apart;
       });
       if (!free) continue;
-      highest = target.pressure[i];
+      highest = share;
       best = i;
     }
     if (best == target.size()) break;
@@ -71,10 +73,10 @@ void AmPlanner::Scratch::plan_patch(const TargetField& target, int patch, int fo
   StageTimer timer;
   kmeans.clear();
   for (std::size_t i = 0; i < target.size(); ++i) {
-    const double weight = target.skin[i] != 0 ? target.pressure[i] / maximum : 0.0;
+    const double weight = target.skin[i] != 0 ? pressure_share(target.pressure[i], maximum) : 0.0;
     if (weight > kLeastShare) kmeans.add(target.position(i), weight);
   }
-  const Places start = greedy_start(target, foci, settings.sigma, kLeastShare * maximum);
+  const Places start = greedy_start(target, foci, settings.sigma, maximum);
   stats.init += timer.lap();
 
   stats.lloyd_iterations +=

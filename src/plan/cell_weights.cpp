@@ -1,5 +1,7 @@
 #include "plan/cell_weights.hpp"
 
+#include "target/pressure_share.hpp"
+
 namespace prostm::planning {
 
 CellWeights::CellWeights(const TargetField& target, double maximum)
@@ -7,7 +9,7 @@ CellWeights::CellWeights(const TargetField& target, double maximum)
   double counted = 0.0, all = 0.0;
   for (std::size_t i = 0; i < target.size(); ++i) {
     if (target.skin[i] == 0) continue;
-    const double p = target.pressure[i] / maximum;
+    const double p = pressure_share(target.pressure[i], maximum);
     all += p;
     counted += share(i) * p;
   }

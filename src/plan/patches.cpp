@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plan/raster_rows.hpp"
+#include "target/pressure_share.hpp"
 
 namespace prostm::planning {
 namespace {
@@ -49,8 +50,9 @@ double total_pressure(const TargetField& target) {
 
 std::array<int, kMaxPatches> share_out(const PatchPressures& pressure, int count) {
   std::array<int, kMaxPatches> share{};
+  const double most = *std::max_element(pressure.begin(), pressure.end());
   const auto need = [&](std::size_t i) {
-    return std::pair(share[i] == 0, pressure[i] / (share[i] + 1));
+    return std::pair(share[i] == 0, pressure_share(pressure[i], most) / (share[i] + 1));
   };
   for (int given = 0; given < count; ++given) {
     std::size_t neediest = kMaxPatches;

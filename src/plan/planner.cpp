@@ -13,6 +13,7 @@
 #include "plan/settings_check.hpp"
 #include "plan/tours.hpp"
 #include "plan/validity.hpp"
+#include "target/pressure_share.hpp"
 
 namespace prostm {
 
@@ -72,12 +73,13 @@ struct Planner::Scratch {
 void Planner::Scratch::collect_points(const TargetField& target, double maximum) {
   raster.set(target, maximum);
   kmeans.clear();
+  const double weak = pressure_share(settings.weak_pressure, 1.0);  // rounded as the cells are
   const double cell = kMmPerMetre * target.cell;
   for (int row = 0; row < target.rows; ++row) {
     for (int col = 0; col < target.cols; ++col) {
       const std::size_t i = target.index(row, col);
-      const double p = target.skin[i] != 0 ? target.pressure[i] / maximum : 0.0;
-      if (p >= settings.weak_pressure) kmeans.add(cell * Vec2(col, row), p);
+      const double p = target.skin[i] != 0 ? pressure_share(target.pressure[i], maximum) : 0.0;
+      if (p >= weak) kmeans.add(cell * Vec2(col, row), p);
     }
   }
 }

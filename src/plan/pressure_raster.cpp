@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "target/pressure_share.hpp"
+
 namespace prostm::planning {
 namespace {
 
@@ -25,7 +27,7 @@ void PressureRaster::set(const TargetField& target, double maximum) {
   cell_ = kMmPerMetre * target.cell;
   value_.resize(target.size());
   for (std::size_t i = 0; i < value_.size(); ++i) {
-    value_[i] = target.skin[i] != 0 ? target.pressure[i] / maximum : 0.0;
+    value_[i] = target.skin[i] != 0 ? pressure_share(target.pressure[i], maximum) : 0.0;
   }
 }
 

@@ -13,6 +13,7 @@
 #include "plan/random_fields.hpp"
 #include "score/score.hpp"
 #include "support/heap_guard.hpp"
+#include "target/pressure_share.hpp"
 
 namespace prostm {
 namespace {
@@ -107,6 +108,9 @@ TEST(AmPlanner, IsThePlainAlgorithm) {
       test::add_blobs(target, random);
       for (double& p : target.pressure) p += 1e-6;  // what is below 1e-12 of the highest is none
     }
+    // both decide on the same numbers
+    const double most = max_pressure(target);
+    for (double& p : target.pressure) p = pressure_share(p, most);
     const int count = 1 + random.below(8);
     const double sigma = random.uniform(6e-3, 32e-3);
     const Plan plan = plan_of(target, settings_of(count, sigma));
@@ -309,6 +313,23 @@ TEST(SetPressures, FociThatShareAPlaceLeaveOne) {
   for (int k = 0; k < 3; ++k) foci.push_back({0, target.position(2, 2), 0.0});
   set_pressures(target, kSigma, foci);
   EXPECT_EQ(foci.size(), 1u);
+}
+
+TEST(AmPlanner, TheUnitOfPressureMovesNoFocus) {
+  for (const fields::Pattern pattern : fields::kPatterns) {
+    const TargetField field = fields::make(pattern, 5);
+    const Plan plan = plan_of(field, settings_of(4));
+    for (const double unit : {0.1, 3.7, 10.0, 1000.0, 1e9, 1e-9}) {
+      TargetField scaled = field;
+      for (double& p : scaled.pressure) p *= unit;
+      const Plan other = plan_of(scaled, settings_of(4));
+      ASSERT_EQ(plan.foci.size(), other.foci.size());
+      for (std::size_t k = 0; k < plan.foci.size(); ++k) {
+        EXPECT_LE((plan.foci[k].position - other.foci[k].position).norm(), 1e-9);
+        EXPECT_NEAR(other.foci[k].pressure / (unit * plan.foci[k].pressure), 1.0, 1e-9);
+      }
+    }
+  }
 }
 
 }  // namespace

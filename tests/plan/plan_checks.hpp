@@ -90,4 +90,20 @@ inline void expect_same_plan(const Plan& a, const Plan& b, double scale) {
   }
 }
 
+/// Two plans whose points agree to 1e-9 m, and pressures to 1e-9 once the second one's are divided
+/// by `scale`.
+inline void expect_scaled_plan(const Plan& a, const Plan& b, double scale) {
+  ASSERT_EQ(a.paths.size(), b.paths.size());
+  for (std::size_t k = 0; k < a.paths.size(); ++k) {
+    const FocalPath &p = a.paths[k], &q = b.paths[k];
+    ASSERT_EQ(p.patch, q.patch);
+    ASSERT_EQ(p.points.size(), q.points.size());
+    const double most = *std::max_element(p.pressure.begin(), p.pressure.end());
+    for (std::size_t i = 0; i < p.points.size(); ++i) {
+      ASSERT_LE((p.points[i] - q.points[i]).norm(), 1e-9);
+      ASSERT_NEAR(p.pressure[i], q.pressure[i] / scale, 1e-9 * most);
+    }
+  }
+}
+
 }  // namespace prostm::test

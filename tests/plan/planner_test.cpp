@@ -2,14 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "fields/fields.hpp"
 #include "plan_checks.hpp"
 #include "random_fields.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
+#include "textbook/textbook.hpp"
 
 namespace prostm {
 namespace {
@@ -80,6 +84,76 @@ TEST(Planner, APressureScaleOfAPowerOfTwoScalesThePressuresAlone) {
       planner.plan(field, scaled, stats);
       ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(plan, scaled, 1024.0));
     }
+  }
+}
+
+constexpr std::array kUnits{0.1, 3.7, 10.0, 1000.0, 1e9, 1e-9};
+
+TargetField in_unit(TargetField field, double unit) {
+  for (double& p : field.pressure) p *= unit;
+  return field;
+}
+
+/// The gallery, and fields of random numbers with equal and nearly equal cells.
+std::vector<TargetField> fields_for_units() {
+  std::vector<TargetField> list;
+  for (const Pattern pattern : fields::kPatterns) list.push_back(fields::make(pattern, 5));
+  Random random(11);
+  while (list.size() < 20) {
+    const test::RandomField drawn = test::random_field(random, 40);
+    const double most = drawn.kind == test::FieldKind::Invalid ? 0.0 : max_pressure(drawn.field);
+    if (most > 1e-6 && most < 1e6) list.push_back(drawn.field);
+  }
+  return list;
+}
+
+TEST(Planner, TheUnitOfPressureChangesNoPath) {
+  const std::vector<TargetField> list = fields_for_units();
+  for (const char* name : {"paper", "paper-valid", "best", "fast", "textbook"}) {
+    const bool is_textbook = std::string(name) == "textbook";
+    Planner planner(preset(is_textbook ? "paper" : name), fields::kCells * fields::kCells);
+    const auto plan_of = [&](const TargetField& field) {
+      Plan plan;
+      PlanStats stats;
+      planner.reset();
+      if (is_textbook) {
+        textbook::plan(field, planner.settings(), plan, stats);
+      } else {
+        planner.plan(field, plan, stats);
+      }
+      return plan;
+    };
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Plan plan = plan_of(list[i]);
+      for (const double unit : kUnits) {
+        SCOPED_TRACE(std::string(name) + ", field " + std::to_string(i));
+        ASSERT_NO_FATAL_FAILURE(
+            test::expect_scaled_plan(plan, plan_of(in_unit(list[i], unit)), unit));
+      }
+    }
+  }
+}
+
+TEST(Planner, TheUnitOfPressureGivesNoHandMorePaths) {
+  // two hands with as much to show, summed up in another order
+  TargetFrame frame;
+  frame.patches.push_back(fields::make(Pattern::Noise, 5));
+  frame.patches.push_back(fields::rotated(frame.patches[0]));
+  PlanSettings settings = preset("fast");
+  settings.paths = 3;
+  Planner planner(settings, fields::kCells * fields::kCells);
+  const auto plan_of = [&](const TargetFrame& hands) {
+    Plan plan;
+    PlanStats stats;
+    planner.reset();
+    planner.plan(hands, plan, stats);
+    return plan;
+  };
+  const Plan plan = plan_of(frame);
+  for (const double unit : kUnits) {
+    TargetFrame scaled = frame;
+    for (TargetField& patch : scaled.patches) patch = in_unit(patch, unit);
+    ASSERT_NO_FATAL_FAILURE(test::expect_scaled_plan(plan, plan_of(scaled), unit)) << unit;
   }
 }
 
