@@ -208,13 +208,13 @@ void check_model(double sigma, const GainLaw& gain, int patch) {
 }
 
 py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma,
-                             const GainLaw& gain, int patch) {
+                             const GainLaw& gain, int patch, const SegmentPressures* instead) {
   check_model(sigma, gain, patch);
   py::array_t<double> out({raster.rows, raster.cols});
   const std::span<double> cells(out.mutable_data(), raster.size());
   {
     const py::gil_scoped_release unlocked;
-    quasi_static_field(plan, patch, raster, sigma, gain, cells);
+    quasi_static_field(plan, patch, raster, sigma, gain, cells, instead);
   }
   return out;
 }

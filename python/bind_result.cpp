@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
@@ -15,10 +16,21 @@
 namespace prostm::python {
 namespace {
 
-Metrics metrics_of(const PlanResult& result, int patch) {
+constexpr double kSampleRate = 40e3;  // unless another is given [Hz]
+
+Metrics metrics_of(const PlanResult& result, int patch, const EmitSettings* emission,
+                   double sample_rate) {
   const TargetField& field = result.patch(patch);
+  const SegmentPressures played = result.played(emission, sample_rate);
   const py::gil_scoped_release unlocked;
-  return score_plan(field, result.plan, patch, result.sigma(), result.gain_law());
+  return score_plan(field, result.plan, patch, result.sigma(), result.gain_law(), &played);
+}
+
+py::array field_of(const PlanResult& result, int patch, const EmitSettings* emission,
+                   double sample_rate) {
+  const TargetField& field = result.patch(patch);
+  const SegmentPressures played = result.played(emission, sample_rate);
+  return quasi_static_array(result.plan, field, result.sigma(), result.gain_law(), patch, &played);
 }
 
 void write(const PlanResult& result, const std::filesystem::path& path) {
@@ -26,14 +38,20 @@ void write(const PlanResult& result, const std::filesystem::path& path) {
     throw std::invalid_argument("a plan file holds the plan of one TargetField, not of a frame");
   }
   const TargetField& field = result.patch(0);
+  const SegmentPressures played = result.played(nullptr, kSampleRate);
+  PlanQuality quality;
+  quality.sigma = result.sigma();
+  quality.full_scale_pressure = result.emission(nullptr).full_scale_pressure;
   const py::gil_scoped_release unlocked;
-  const Metrics metrics = score_plan(field, result.plan, 0, result.sigma(), result.gain_law());
+  const GainLaw gain = result.gain_law();
+  quality.planned = score_plan(field, result.plan, 0, quality.sigma, gain);
+  quality.played = score_plan(field, result.plan, 0, quality.sigma, gain, &played);
   const SettingsInFile settings(result.settings);
   PlanFileExtras extras;
   extras.method = settings.method;
   extras.preset = settings.preset;
   extras.stats = &result.stats;
-  extras.metrics = &metrics;
+  extras.quality = &quality;
   write_file(path.string(), plan_to_json(result.plan, field, extras, settings.json));
 }
 
@@ -70,6 +88,32 @@ const TargetField& PlanResult::patch(int index) const {
   return frame.patches[static_cast<std::size_t>(index)];
 }
 
+EmitSettings PlanResult::emission(const EmitSettings* given) const {
+  EmitSettings emit = given != nullptr ? *given : EmitSettings{};
+  if (emit.full_scale_pressure != 0.0) return emit;
+  const bool one = py::isinstance<TargetField>(target);
+  const std::size_t patches = one ? 1 : target.cast<const TargetFrame&>().patches.size();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < patches; ++i) {
+    largest = std::max(largest, max_pressure(patch(static_cast<int>(i))));
+  }
+  emit.full_scale_pressure = own_full_scale(gain_law().gain, largest);
+  return emit;
+}
+
+SegmentPressures PlanResult::played(const EmitSettings* given, double sample_rate) const {
+  if (plan.empty()) return {};
+  const EmitSettings emit = emission(given);
+  TargetFrame frame;
+  if (py::isinstance<TargetField>(target)) {
+    frame.patches.push_back(patch(0));
+  } else {
+    frame = target.cast<const TargetFrame&>();
+  }
+  const py::gil_scoped_release unlocked;
+  return played_pressures(plan, frame, emit, sample_rate);
+}
+
 void bind_result(py::module_& m) {
   py::class_<PlanResult>(m, "PlanResult", "What one call of the planner gave, and was given.")
       .def_readonly("status", &PlanResult::status, "PlanStatus: Planned or EmptyTarget.")
@@ -89,15 +133,18 @@ void bind_result(py::module_& m) {
       .def_property_readonly(
           "settings", [](const PlanResult& r) { return AnySettings(r.settings); },
           "A copy of the PlanSettings or AmSettings.")
-      .def("metrics", &metrics_of, "score_plan() with the planner's sigma and gain.",
-           py::arg("patch") = 0)
-      .def(
-          "quasi_static_field",
-          [](const PlanResult& r, int patch) {
-            return quasi_static_array(r.plan, r.patch(patch), r.sigma(), r.gain_law(), patch);
-          },
-          "Eq. (1) on the target's raster with the planner's sigma and gain: (rows, cols).",
-          py::arg("patch") = 0)
+      .def("metrics", &metrics_of,
+           "Metrics of what is played, with the planner's sigma and gain. emission: EmitSettings;\n"
+           "None: the defaults. Without a full scale it is the gain times the target's largest\n"
+           "pressure. score_plan() gives those of the pressures as planned.",
+           py::arg("patch") = 0, py::arg("emission") = py::none(),
+           py::arg("sample_rate") = kSampleRate)
+      .def("quasi_static_field", &field_of,
+           "Eq. (1) of what is played on the target's raster, with the planner's sigma and gain:\n"
+           "(rows, cols). emission, sample_rate: as of metrics(). The function of this name takes\n"
+           "the pressures as planned.",
+           py::arg("patch") = 0, py::arg("emission") = py::none(),
+           py::arg("sample_rate") = kSampleRate)
       .def("write", &write,
            "Writes a plan file (prostm-plan/1) with stage times, metrics and the planner's "
            "settings.",

@@ -7,6 +7,7 @@
 
 #include "am/am_planner.hpp"
 #include "bindings.hpp"
+#include "emit/played.hpp"
 #include "plan/method.hpp"
 #include "plan/planner.hpp"
 
@@ -34,6 +35,12 @@ struct PlanResult {
   /// @throws std::invalid_argument for a patch that the target does not have.
   const TargetField& patch(int index) const;
 
+  /// The emission that it is taken to be played with: `given`, or the defaults. Where they give no
+  /// full scale, γ times the target's largest pressure.
+  EmitSettings emission(const EmitSettings* given) const;
+  /// The pressures that are played. @throws as played_pressures() does.
+  SegmentPressures played(const EmitSettings* given, double sample_rate) const;
+
   py::object target;  ///< the TargetField or TargetFrame
   AnySettings settings;
   PlanStatus status = PlanStatus::EmptyTarget;
@@ -46,6 +53,7 @@ struct PlanResult {
 void check_model(double sigma, const GainLaw& gain, int patch);
 /// Eq. (1) as an array of rows and columns.
 py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma,
-                             const GainLaw& gain, int patch);
+                             const GainLaw& gain, int patch,
+                             const SegmentPressures* instead = nullptr);
 
 }  // namespace prostm::python

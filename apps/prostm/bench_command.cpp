@@ -7,6 +7,7 @@
 #include "am/am_planner.hpp"
 #include "common.hpp"
 #include "core/input_error.hpp"
+#include "emit/played.hpp"
 #include "io/recorder.hpp"
 #include "plan/planner.hpp"
 #include "score/score.hpp"
@@ -66,8 +67,8 @@ struct Column {
 };
 
 void print_column(std::FILE* out, const Column& column) {
-  fmt::print(out, "  {}: mean RMSE {:.3f}, correlation {:.3f}, coverage {:.3f}\n", column.name,
-             column.rmse.summary().mean, column.correlation.summary().mean,
+  fmt::print(out, "  {}, as played: mean RMSE {:.3f}, correlation {:.3f}, coverage {:.3f}\n",
+             column.name, column.rmse.summary().mean, column.correlation.summary().mean,
              column.coverage.summary().mean);
   fmt::print(out, "    {:<10} {:>9} {:>9} {:>9} {:>9} {:>9}  [us]\n", "", "mean", "sd", "p50",
              "p99", "max");
@@ -178,8 +179,12 @@ class FieldBench {
   }
 
  private:
+  /// Of what is played.
   Metrics score(const TargetField& target, const Plan& plan, double sigma) const {
-    return score_plan(target, plan, 0, sigma, settings_.plan.gain_law());
+    const SegmentPressures played =
+        played_pressures(plan, target, emit_settings(settings_, max_pressure(target)),
+                         settings_.simulated_array.sample_rate);
+    return score_plan(target, plan, 0, sigma, settings_.plan.gain_law(), &played);
   }
 
   const PipelineSettings& settings_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "acoustics/focus_width.hpp"
 #include "am/am_planner.hpp"
@@ -10,6 +11,7 @@
 #include "core/input_error.hpp"
 #include "core/random.hpp"
 #include "emit/emitter.hpp"
+#include "emit/played.hpp"
 #include "figure/figures.hpp"
 #include "io/digitised_figure.hpp"
 #include "io/field_file.hpp"
@@ -49,14 +51,20 @@ void print_paths(std::FILE* out, const Plan& plan, const PlanStats& stats) {
   }
 }
 
-void print_metrics(std::FILE* out, const Metrics& metrics, const std::vector<Control>& controls) {
+void print_quality(std::FILE* out, const PlanQuality& quality,
+                   const std::vector<Control>& controls) {
+  fmt::print(out, "  quality of what is played, by Eq. (1) with sigma {:.2f} mm:\n",
+             1e3 * quality.sigma);
   const auto row = [&](const std::string& name, const Metrics& m) {
     fmt::print(out, "  {:<44} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n",
                name, m.rmse, m.correlation, m.coverage, m.skill_0, m.skill_8, m.overlap, m.spill);
   };
   fmt::print(out, "  {:<44} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "", "RMSE", "corr",
              "cover", "S_0", "S_8.5", "overlap", "spill");
-  row("this plan", metrics);
+  row("this plan", quality.played);
+  for (const PlanQuality::At& at : quality.at) {
+    row(fmt::format("this plan, sigma {:.2f} mm", 1e3 * at.sigma), at.played);
+  }
   for (const Control& control : controls) row("control: " + control.name, control.metrics);
 }
 
@@ -86,6 +94,14 @@ TargetField another_target(const TargetField& target, std::uint64_t seed) {
   return other;
 }
 
+/// What is played of a plan on its target.
+SegmentPressures played(const TargetField& target, const Plan& plan,
+                        const PipelineSettings& settings) {
+  if (plan.empty()) return {};
+  return played_pressures(plan, target, emit_settings(settings, max_pressure(target)),
+                          settings.simulated_array.sample_rate);
+}
+
 PlanFigure as_figure(const TargetField& target, const Plan& plan, const PlanTrace& trace,
                      const PipelineSettings& settings) {
   PlanFigure figure;
@@ -93,8 +109,9 @@ PlanFigure as_figure(const TargetField& target, const Plan& plan, const PlanTrac
   figure.plan = &plan;
   figure.trace = &trace;
   figure.reconstruction.resize(target.size());
+  const SegmentPressures pressures = played(target, plan, settings);
   quasi_static_field(plan, 0, target, settings.sigma(), settings.plan.gain_law(),
-                     figure.reconstruction);
+                     figure.reconstruction, &pressures);
   return figure;
 }
 
@@ -110,7 +127,8 @@ void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given,
                                                            *figure.target, s.gain_law(), s.speed);
   PlanFigure beside = as_figure(*figure.target, other.plan, other.trace, settings);
   beside.reconstruction = other.reconstruction;
-  beside.metrics = score_plan(*figure.target, other.plan, 0, s.sigma, s.gain_law());
+  const SegmentPressures pressures = played(*figure.target, other.plan, settings);
+  beside.metrics = score_plan(*figure.target, other.plan, 0, s.sigma, s.gain_law(), &pressures);
   beside.title = given.beside;
   draw_plan(figure, given.common.figure, &beside);
 }
@@ -121,7 +139,8 @@ struct Result {
   Plan plan;
   PlanStats stats;
   PlanTrace trace;
-  Metrics metrics;
+  PlanQuality quality;
+  std::optional<double> weighted;  ///< RMSE by the target's weights, where it has some
   std::vector<Control> controls;
 };
 
@@ -153,12 +172,34 @@ Result plan_foci(const TargetField& target, const PipelineSettings& settings, Pl
   return r;
 }
 
-Result plan_and_score(const TargetField& target, const PipelineSettings& settings, bool traced) {
+/// How good a plan is as it is played. @param widths of the focal point besides that of the
+/// settings [m].
+PlanQuality quality_of(const TargetField& target, const Plan& plan, const SegmentPressures& played,
+                       const PipelineSettings& settings, const std::vector<double>& widths) {
+  const GainLaw gain = settings.plan.gain_law();
+  PlanQuality quality;
+  quality.sigma = settings.sigma();
+  quality.full_scale_pressure = emit_settings(settings, max_pressure(target)).full_scale_pressure;
+  quality.planned = score_plan(target, plan, 0, settings.sigma(), gain);
+  quality.played = score_plan(target, plan, 0, settings.sigma(), gain, &played);
+  for (const double sigma : widths) {
+    quality.at.push_back({sigma, score_plan(target, plan, 0, sigma, gain, &played)});
+  }
+  return quality;
+}
+
+/// @param widths as of quality_of().
+Result plan_and_score(const TargetField& target, const PipelineSettings& settings,
+                      const std::vector<double>& widths, bool traced) {
   const PlanSettings& s = settings.plan;
   Plan other;
   Result r =
       is_am(settings) ? plan_foci(target, settings, other) : plan_paths(target, s, traced, other);
-  r.metrics = score_plan(target, r.plan, 0, settings.sigma(), s.gain_law());
+  const SegmentPressures pressures = played(target, r.plan, settings);
+  r.quality = quality_of(target, r.plan, pressures, settings, widths);
+  if (!target.weight.empty() && !r.plan.empty()) {
+    r.weighted = weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law(), &pressures);
+  }
   if (r.status != PlanStatus::Planned) return r;
   Progress progress("scoring what must lose to the plan");
   r.controls = controls(target, settings.sigma(), s.gain_law(), s.max_length(), &other,
@@ -205,9 +246,17 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   extras.method = method_from_name(settings.method);
   if (extras.method == Method::ProStm) extras.preset = settings.plan.preset;
   extras.stats = &r.stats;
-  extras.metrics = &r.metrics;
+  extras.quality = &r.quality;
   extras.controls = &r.controls;
   write_file(json, plan_to_json(r.plan, target, extras, settings_json(settings)));
+}
+
+/// Whether a plan counts on the width of the array's focus, where that is known; the paper's
+/// presets keep [plan] sigma.
+bool counts_on_own_width(const PipelineSettings& settings) {
+  if (is_am(settings)) return true;
+  const Preset preset = preset_from_name(settings.plan.preset);
+  return preset == Preset::Best || preset == Preset::Fast;
 }
 
 /// σ of the array's focus at the middle of the pressure on the skin, and as the skin lies there;
@@ -242,12 +291,19 @@ int plan_command(const PlanOptionsGiven& given) {
   file_options.cell_mm = given.cell_mm;
   file_options.frame = given.frame;
   const TargetField target = read_field(given.field, file_options);
+  std::optional<double> own_width;
+  std::vector<double> other_widths;
   if (given.common.array) {
-    settings.plan.sigma = settings.am.sigma =
-        sigma_on_skin(settings.transducers, target, settings.sigma());
+    own_width = sigma_on_skin(settings.transducers, target, settings.sigma());
+    if (counts_on_own_width(settings)) {
+      other_widths.push_back(settings.sigma());
+      settings.plan.sigma = settings.am.sigma = *own_width;
+    } else {
+      other_widths.push_back(*own_width);
+    }
   }
 
-  const Result r = plan_and_score(target, settings, !given.common.figure.empty());
+  const Result r = plan_and_score(target, settings, other_widths, !given.common.figure.empty());
   if (r.status == PlanStatus::InvalidTarget) {
     throw InputError(
         given.field +
@@ -256,7 +312,7 @@ int plan_command(const PlanOptionsGiven& given) {
   if (!given.common.json.empty()) write_plan(r, target, settings, given.common.json);
   if (!given.common.figure.empty()) {
     PlanFigure figure = as_figure(target, r.plan, r.trace, settings);
-    figure.metrics = r.metrics;
+    figure.metrics = r.quality.played;
     figure.controls = r.controls;
     figure.title = given.field + (is_am(settings) ? ", method am" : ", preset " + s.preset);
     draw_figure(figure, given, settings);
@@ -270,14 +326,13 @@ int plan_command(const PlanOptionsGiven& given) {
     } else {
       print_paths(out, r.plan, r.stats);
     }
-    print_metrics(out, r.metrics, r.controls);
-    if (given.common.array) {
+    print_quality(out, r.quality, r.controls);
+    if (own_width) {
       fmt::print(out, "  focus of {} on the skin: sigma {:.2f} mm\n", settings.transducers.name,
-                 1e3 * settings.sigma());
+                 1e3 * *own_width);
     }
-    if (!target.weight.empty()) {
-      fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights",
-                 weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law()));
+    if (r.weighted) {
+      fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights", *r.weighted);
     }
     print_power(out, r.plan, settings.emit.power_limit);
   }

@@ -9,6 +9,7 @@
 
 #include "common.hpp"
 #include "core/input_error.hpp"
+#include "emit/played.hpp"
 #include "figure/figures.hpp"
 #include "io/recorder.hpp"
 #include "pipeline/runner.hpp"
@@ -120,6 +121,10 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
     figure.foci.insert(figure.foci.end(), lifted_path.p_D.begin(), lifted_path.p_D.end());
   }
   for (const LiftedFocus& focus : lifted.foci) figure.foci.push_back(focus.p_D);
+  EmitSettings emit = settings.emit;
+  emit.full_scale_pressure = observer.plan().full_scale_pressure;
+  const SegmentPressures played = played_pressures(observer.plan().plan, contact.target, emit,
+                                                   settings.simulated_array.sample_rate);
   const PlanSettings plan = plan_settings(settings);
   for (std::size_t patch = 0; patch < contact.target.patches.size(); ++patch) {
     const TargetField& target = contact.target.patches[patch];
@@ -127,7 +132,7 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
         method_from_name(settings.method) == Method::Am ? settings.am.sigma : plan.sigma_on(target);
     std::vector<double> field(target.size());
     quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, sigma,
-                       settings.plan.gain_law(), field);
+                       settings.plan.gain_law(), field, &played);
     figure.targets.push_back(target);
     figure.reconstructions.push_back(std::move(field));
   }

@@ -9,8 +9,8 @@
 #include "core/units.hpp"
 #include "figure/figures.hpp"
 #include "plan/planner.hpp"
+#include "planner/as_played.hpp"
 #include "planner/sequences.hpp"
-#include "score/score.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -36,7 +36,7 @@ struct AtWeight {
   Distribution sharpest, rms, excess, length;  // of paths [degrees, mm]
 
   void add(const TargetField& field, const Plan& plan, const PlanSettings& s) {
-    const Metrics m = score_plan(field, plan, 0, s.sigma, s.gain_law());
+    const Metrics m = score_as_played(field, plan, s);
     rmse.add(m.rmse);
     skill.add(m.skill_8);
     paths.add(static_cast<double>(plan.paths.size()));

@@ -6,7 +6,7 @@
 #include "fields/fields.hpp"
 #include "figure/figures.hpp"
 #include "plan/quasi_static.hpp"
-#include "score/score.hpp"
+#include "planner/as_played.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -19,8 +19,9 @@ GalleryPlan plan_for_gallery(Contender& contender, const TargetField& target) {
   contender.plan(target, out.plan, stats);
   const PlanSettings& s = contender.settings();
   out.rendered.resize(target.size());
-  quasi_static_field(out.plan, 0, target, s.sigma, s.gain_law(), out.rendered);
-  out.metrics = score_plan(target, out.plan, 0, s.sigma, s.gain_law());
+  const SegmentPressures pressures = played(target, out.plan, s);
+  quasi_static_field(out.plan, 0, target, s.sigma, s.gain_law(), out.rendered, &pressures);
+  out.metrics = score_plan(target, out.plan, 0, s.sigma, s.gain_law(), &pressures);
   return out;
 }
 

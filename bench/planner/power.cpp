@@ -9,8 +9,8 @@
 #include "emit/drive.hpp"
 #include "emit/path_emitter.hpp"
 #include "plan/lifted_plan.hpp"
+#include "planner/as_played.hpp"
 #include "planner/sequences.hpp"
-#include "score/score.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -95,7 +95,7 @@ AtPaths plan_all(int paths, int frames, const TransducerArray& array) {
       PlanStats stats;
       planner.reset();
       planner.plan(target.patches[0], plan, stats);
-      const Metrics m = score_plan(target.patches[0], plan, 0, settings.sigma, settings.gain_law());
+      const Metrics m = score_as_played(target.patches[0], plan, settings);
       out.rmse.add(m.rmse);
       out.coverage.add(m.coverage);
       out.skill.add(m.skill_8);

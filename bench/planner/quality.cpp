@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "planner/as_played.hpp"
 #include "textbook/textbook.hpp"
 
 namespace prostm::bench {
@@ -64,9 +65,7 @@ class FrameScorer {
   FrameScorer(const TargetField& target, const PlanSettings& settings)
       : target_(target), settings_(settings) {}
 
-  Metrics score(const Plan& plan) const {
-    return score_plan(target_, plan, 0, settings_.sigma, settings_.gain_law());
-  }
+  Metrics score(const Plan& plan) const { return score_as_played(target_, plan, settings_); }
   void score(const Plan& plan, Outcome& outcome) const {
     outcome.metrics.push_back(score(plan));
     const std::vector<Disturbance> list = disturbances(settings_.sigma);

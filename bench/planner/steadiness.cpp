@@ -11,7 +11,7 @@
 #include "fields/fields.hpp"
 #include "plan/closest_point.hpp"
 #include "plan/quasi_static.hpp"
-#include "score/score.hpp"
+#include "planner/as_played.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -80,7 +80,7 @@ Steadiness follow_moved(Contender& contender, fields::Pattern pattern) {
     contender.plan(target, plan, stats);
     if (frame >= kFrom) out.motion.add(motion(before, plan));
     if (frame >= kFrom && frame % 5 == 0) {
-      out.rmse.add(score_plan(target, plan, 0, s.sigma, s.gain_law()).rmse);
+      out.rmse.add(score_as_played(target, plan, s).rmse);
     }
     before = plan;
   }

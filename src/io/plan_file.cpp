@@ -53,6 +53,18 @@ Json metrics_json(const Metrics& m) {
           {"spill", m.spill}};
 }
 
+void write_quality(const PlanQuality& quality, Json& document) {
+  document["sigma_mm"] = to_milli(quality.sigma);
+  document["full_scale_pressure"] = quality.full_scale_pressure;
+  document["metrics"] = metrics_json(quality.played);
+  document["planned_metrics"] = metrics_json(quality.planned);
+  if (quality.at.empty()) return;
+  Json& list = document["metrics_at"] = Json::array();
+  for (const PlanQuality::At& at : quality.at) {
+    list.push_back({{"sigma_mm", to_milli(at.sigma)}, {"metrics", metrics_json(at.played)}});
+  }
+}
+
 FocalPath read_path(const JsonNode& node) {
   FocalPath path;
   if (node.has("patch")) path.patch = node.at("patch", "").integer(0, kMaxPatches - 1);
@@ -142,6 +154,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
                               {"crossings", extras.stats->crossings}};
   }
   if (extras.metrics != nullptr) document["metrics"] = metrics_json(*extras.metrics);
+  if (extras.quality != nullptr) write_quality(*extras.quality, document);
   if (extras.controls != nullptr) {
     document["controls"] = Json::array();
     for (const Control& control : *extras.controls) {

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "plan/method.hpp"
 #include "plan/planner.hpp"
@@ -17,12 +18,25 @@ struct PowerShare {
   double limit = 0.0;     ///< largest Σ intensity² that the emission allows
 };
 
+/// How good a plan is, with all that the numbers depend on.
+struct PlanQuality {
+  double sigma = 0.0;                ///< of Eq. (1) [m]
+  double full_scale_pressure = 0.0;  ///< that it is played with [unit of the target]
+  Metrics played, planned;           ///< of what is played, and with the plan's own pressures
+  struct At {
+    double sigma;  ///< [m]
+    Metrics played;
+  };
+  std::vector<At> at;  ///< what is played at other widths of the focal point
+};
+
 /// What a plan file says besides the paths or foci.
 struct PlanFileExtras {
   Method method = Method::ProStm;    ///< am: the plan holds foci, and they are written
   std::string preset;                ///< writes "preset", when given
   const PlanStats* stats = nullptr;  ///< writes "stage_us" and the counts, when given
-  const Metrics* metrics = nullptr;  ///< writes "metrics", when given
+  const Metrics* metrics = nullptr;  ///< writes "metrics", when given, and nothing on what they are
+  const PlanQuality* quality = nullptr;  ///< writes "metrics" and all that they depend on
   const std::vector<Control>* controls = nullptr;
   const PowerShare* power = nullptr;  ///< writes "power", when given
 };

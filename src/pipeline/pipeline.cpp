@@ -37,13 +37,6 @@ void put_back(double time, HandFrame& frame) {
 
 /// γ belongs to full scale: a target at the scene's full-scale pressure is rendered γ times as
 /// strong.
-EmitSettings with_full_scale(const PipelineSettings& settings, double scene_full_scale) {
-  EmitSettings emit = settings.emit;
-  if (emit.full_scale_pressure == 0.0)
-    emit.full_scale_pressure = settings.plan.gain * scene_full_scale;
-  return emit;
-}
-
 /// Settings as a text, to see whether they differ.
 class SettingsText final : public SettingsVisitor {
  public:
@@ -197,7 +190,7 @@ void SmokeStage::view_from_side(SideView& out) const {
 
 PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale)
     : planner_(make_planner(settings, max_cells)),
-      emit_settings_(with_full_scale(settings, full_scale)),
+      emit_settings_(emit_settings(settings, full_scale)),
       emitter_(make_emitter(method_from_name(settings.method), emit_settings_,
                             settings.simulated_array.sample_rate)) {}
 
@@ -206,6 +199,7 @@ void PlanStage::run(const ContactFrame& contact, PlanFrame& out) {
   out.id = ++updates_;
   out.start = contact.taken;
   out.max_skin_length = 0.0;
+  out.full_scale_pressure = full_scale_pressure();
   out.status = std::visit(
       [&](auto& planner) { return planner.plan(contact.target, out.plan, out.stats); }, planner_);
   out.plan_time = timer.lap();

@@ -107,6 +107,7 @@ struct PlanFrame {
   double start = 0.0;                       ///< of the update; run time [s]
   double plan_time = 0.0, lift_time = 0.0;  ///< [s]
   double max_skin_length = 0.0;             ///< longest path on the skin [m]
+  double full_scale_pressure = 0.0;         ///< rendered, at intensity 1 [Pa]
 };
 
 /// Paths or foci from targets: the stages that run at the planner's rate.

@@ -2,6 +2,7 @@
 
 #include "acoustics/focus_width.hpp"
 #include "core/units.hpp"
+#include "emit/played.hpp"
 
 namespace prostm {
 
@@ -41,6 +42,13 @@ PlanSettings plan_settings(const PipelineSettings& settings) {
     out.sigma.push_back(entry.width.sigma());
   }
   return plan;
+}
+
+EmitSettings emit_settings(const PipelineSettings& settings, double largest) {
+  EmitSettings emit = settings.emit;
+  if (emit.full_scale_pressure == 0.0)
+    emit.full_scale_pressure = own_full_scale(settings.plan.gain, largest);
+  return emit;
 }
 
 std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(

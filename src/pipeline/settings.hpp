@@ -59,6 +59,10 @@ struct PipelineSettings {
 /// The planner's settings with the widths that `array_width` asks for: (A22) of `transducers`.
 PlanSettings plan_settings(const PipelineSettings& settings);
 
+/// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest
+/// pressure that is to be rendered [Pa].
+EmitSettings emit_settings(const PipelineSettings& settings, double largest);
+
 /// Every stage's settings under its name in files: "pipeline", "track", "scripted_hand", "fluid", …
 std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(
     PipelineSettings& settings);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "emit/played.hpp"
 #include "plan/quasi_static.hpp"
 
 namespace prostm {
@@ -98,6 +99,7 @@ void Snapshots::plan(const ContactFrame& contact, const PlanFrame& plan, double 
   s.target = contact.target;
   s.plan = plan.plan;
   s.settings = settings_;
+  s.full_scale_pressure = plan.full_scale_pressure;
   s.contact_time = contact.contact_time;
   s.plan_time = plan.plan_time;
   s.lift_time = plan.lift_time;
@@ -109,6 +111,13 @@ void Snapshots::plan(const ContactFrame& contact, const PlanFrame& plan, double 
 void render(const PlanSnapshot& plan, RenderedPlan& out) {
   out.metrics = {};
   out.max_target = 0.0;
+  SegmentPressures played;
+  if (plan.planned) {
+    EmitSettings emit = plan.settings->emit;
+    emit.full_scale_pressure = plan.full_scale_pressure;
+    played =
+        played_pressures(plan.plan, plan.target, emit, plan.settings->simulated_array.sample_rate);
+  }
   double most = 0.0;
   for (std::size_t i = 0; i < plan.target.patches.size(); ++i) {
     const TargetField& target = plan.target.patches[i];
@@ -118,10 +127,11 @@ void render(const PlanSnapshot& plan, RenderedPlan& out) {
     if (!plan.planned) continue;
     const double sigma = sigma_of(*plan.settings, target);
     const GainLaw gain = plan.settings->plan.gain_law();
-    quasi_static_field(plan.plan, patch, target, sigma, gain, out.field[i]);
+    quasi_static_field(plan.plan, patch, target, sigma, gain, out.field[i], &played);
     const double pressure = total_pressure(target);
     if (!(pressure > most)) continue;
     most = pressure;
+    out.sigma = sigma;
     out.metrics = score_field(target, out.field[i], plan_coverage(target, plan.plan, patch, sigma));
   }
 }

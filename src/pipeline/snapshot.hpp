@@ -47,6 +47,7 @@ struct PlanSnapshot {
   TargetFrame target;
   Plan plan;
   std::shared_ptr<const PipelineSettings> settings;       ///< that it was planned with
+  double full_scale_pressure = 0.0;                       ///< rendered, at intensity 1 [Pa]
   double contact_time = 0, plan_time = 0, lift_time = 0;  ///< [s]
   double latency =
       std::numeric_limits<double>::quiet_NaN();  ///< of the last one that was emitted [s]
@@ -106,10 +107,12 @@ class Snapshots {
   std::shared_ptr<const PipelineSettings> settings_;
 };
 
-/// What a plan renders on its target, by Eq. (1) with the width that it was planned with.
+/// What a plan renders on its target as it is played, by Eq. (1) with the width that it was planned
+/// with.
 struct RenderedPlan {
   std::array<std::vector<double>, kMaxPatches> field;  ///< of each patch, unit of the target
   Metrics metrics;                                     ///< of the patch with the most pressure
+  double sigma = 0.0;                                  ///< that they are at [m]
   double max_target = 0.0;                             ///< over all patches [Pa]
 };
 

@@ -146,10 +146,11 @@ Metrics Scorer::field(const std::vector<double>& rendered, double coverage) cons
   return m;
 }
 
-Metrics Scorer::plan(const Plan& plan, int patch, double sigma, const GainLaw& gain) const {
+Metrics Scorer::plan(const Plan& plan, int patch, double sigma, const GainLaw& gain,
+                     const SegmentPressures* instead) const {
   if (!(maximum_ > 0.0)) return {};
   std::vector<double> rendered(target_.size());
-  quasi_static_field(plan, patch, target_, sigma, gain, rendered);
+  quasi_static_field(plan, patch, target_, sigma, gain, rendered, instead);
   return field(rendered, plan_coverage(target_, plan, patch, sigma));
 }
 
@@ -159,16 +160,16 @@ Metrics score_field(const TargetField& target, const std::vector<double>& render
 }
 
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
-                   const GainLaw& gain) {
-  return Scorer(target).plan(plan, patch, sigma, gain);
+                   const GainLaw& gain, const SegmentPressures* instead) {
+  return Scorer(target).plan(plan, patch, sigma, gain, instead);
 }
 
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,
-                     const GainLaw& gain) {
+                     const GainLaw& gain, const SegmentPressures* instead) {
   const double maximum = max_pressure(target), largest = max_weight(target);
   if (!(maximum > 0.0)) return 0.0;
   std::vector<double> rendered(target.size());
-  quasi_static_field(plan, patch, target, sigma, gain, rendered);
+  quasi_static_field(plan, patch, target, sigma, gain, rendered, instead);
   double sum = 0.0, weights = 0.0;
   for (std::size_t i = 0; i < target.size(); ++i) {
     if (target.skin[i] == 0) continue;

@@ -9,6 +9,7 @@
 
 #include "plan/gain.hpp"
 #include "plan/plan.hpp"
+#include "plan/quasi_static.hpp"
 #include "target/target_field.hpp"
 
 namespace prostm {
@@ -35,14 +36,15 @@ Metrics score_field(const TargetField& target, const std::vector<double>& render
 double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma);
 
 /// Scores a plan on one patch through Eq. (1) with σ [m] and the γ of each path; all zeros for a
-/// target without pressure.
+/// target without pressure. @param instead pressures that count in place of the plan's own:
+/// played_pressures() makes it the quality of what is played.
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
-                   const GainLaw& gain);
+                   const GainLaw& gain, const SegmentPressures* instead = nullptr);
 
 /// (Q1) of a plan with each cell's error counted by its weight, √(Σ w (p̂ − p*)² / Σ w); 0 for a
 /// target without pressure. @pre the target has weights, at least one > 0 on skin.
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,
-                     const GainLaw& gain);
+                     const GainLaw& gain, const SegmentPressures* instead = nullptr);
 
 /// One row of the controls' table: what a metric says about something that must lose.
 struct Control {

@@ -16,7 +16,8 @@ class Scorer {
   /// As score_field.
   Metrics field(const std::vector<double>& rendered, double coverage) const;
   /// As score_plan.
-  Metrics plan(const Plan& plan, int patch, double sigma, const GainLaw& gain) const;
+  Metrics plan(const Plan& plan, int patch, double sigma, const GainLaw& gain,
+               const SegmentPressures* instead = nullptr) const;
 
  private:
   const TargetField& target_;

@@ -229,6 +229,8 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   set(frame, kTrackerAgeMs, frame.hand_count > 0 ? kMs * step.hands.age : kNone);
   set(frame, kIntensity, run.intensity);
   set(frame, kSaturated, static_cast<double>(run.emit.saturated));
+  constexpr double kMm = 1e3;
+  set(frame, kSigmaMm, scored ? kMm * rendered_.sigma : kNone);
 }
 
 }  // namespace prostm::viewer

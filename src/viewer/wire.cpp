@@ -14,7 +14,8 @@ constexpr std::array<std::string_view, kViewNumberCount> kNames = {
     "latency_p50_ms", "latency_p99_ms", "latency_max_ms", "blocks",      "late_blocks",
     "missed_blocks",  "queue_blocks",   "rmse",           "correlation", "coverage",
     "skill_0",        "skill_8",        "overlap",        "spill",       "max_target_pa",
-    "full_scale_pa",  "laps_completed", "tracker_age_ms", "intensity",   "saturated"};
+    "full_scale_pa",  "laps_completed", "tracker_age_ms", "intensity",   "saturated",
+    "sigma_mm"};
 
 /// Sections in the order of their ids.
 enum Section : std::uint16_t { kRun = 1, kNumbers, kHands, kSmoke, kFields, kPlan };

@@ -44,6 +44,7 @@ enum ViewNumber : int {
   kTrackerAgeMs,
   kIntensity,
   kSaturated,
+  kSigmaMm,
   kViewNumberCount
 };
 

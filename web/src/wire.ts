@@ -11,7 +11,7 @@ export const kNumbers = [
   "blocks", "late_blocks", "missed_blocks", "queue_blocks",
   "rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill",
   "max_target_pa", "full_scale_pa",
-  "laps_completed", "tracker_age_ms", "intensity", "saturated",
+  "laps_completed", "tracker_age_ms", "intensity", "saturated", "sigma_mm",
 ] as const;
 export type NumberName = (typeof kNumbers)[number];
 

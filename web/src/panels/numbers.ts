@@ -11,8 +11,8 @@ interface Tile {
 const kTiles: Tile[] = [
   { label: "Plans", help: "Plans in the last second", parts: [{ name: "plan_hz", digits: 1, after: "Hz" }] },
   { label: "Latency p50 · p99", help: "From a hand's movement to the first sample planned from it, over the last ten seconds", parts: [{ name: "latency_p50_ms", digits: 1, after: "·" }, { name: "latency_p99_ms", digits: 1, after: "ms" }] },
-  { label: "Correlation", help: "Of the reconstruction with the target", parts: [{ name: "correlation", digits: 3 }] },
-  { label: "RMSE", help: "Of the reconstruction, as a share of the largest target pressure", parts: [{ name: "rmse", digits: 3 }] },
+  { label: "Correlation", help: "Of what is played, by Eq. (1) with sigma_mm, with the target", parts: [{ name: "correlation", digits: 3 }] },
+  { label: "RMSE", help: "Of what is played, by Eq. (1) with sigma_mm, as a share of the largest target pressure", parts: [{ name: "rmse", digits: 3 }] },
   { label: "Largest target", help: "The largest target pressure now", parts: [{ name: "max_target_pa", digits: 2, after: "Pa" }] },
   { label: "Missed", help: "Blocks of samples that the array had to do without, since the start", parts: [{ name: "missed_blocks", digits: 0 }] },
 ];

@@ -1,0 +1,57 @@
+#include "pipeline/snapshot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "emit/played.hpp"
+
+namespace prostm {
+namespace {
+
+/// A plan for one contact so small that pressures along its path change fast.
+PlanSnapshot small_contact() {
+  PlanSnapshot s;
+  s.target.patches.emplace_back();
+  TargetField& field = s.target.patches[0];
+  field.resize(40, 40);
+  field.cell = 4e-3;
+  field.skin.assign(field.size(), 1);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const double d2 = (field.position(i) - Vec2(0.07, 0.08)).squaredNorm();
+    field.pressure[i] = 0.3 * std::exp(-d2 / (2.0 * 6e-3 * 6e-3));
+  }
+  auto settings = std::make_shared<PipelineSettings>();
+  settings->plan.preset = "fast";
+  Planner planner(settings->plan, field.size());
+  PlanStats stats;
+  s.planned = planner.plan(s.target, s.plan, stats) == PlanStatus::Planned;
+  s.settings = settings;
+  return s;
+}
+
+TEST(RenderedPlan, IsWhatIsPlayedAtTheSessionsFullScale) {
+  PlanSnapshot s = small_contact();
+  ASSERT_TRUE(s.planned);
+  const TargetField& field = s.target.patches[0];
+  RenderedPlan out;
+  double rmse = 0.0;
+  for (const double share : {1.4, 0.5}) {
+    s.full_scale_pressure = share * max_pressure(field);
+    render(s, out);
+    EmitSettings emit = s.settings->emit;
+    emit.full_scale_pressure = s.full_scale_pressure;
+    const SegmentPressures played = played_pressures(s.plan, s.target, emit, 40e3);
+    const Metrics expected =
+        score_plan(field, s.plan, 0, s.settings->plan.sigma, s.settings->plan.gain_law(), &played);
+    EXPECT_EQ(out.metrics.rmse, expected.rmse);
+    EXPECT_EQ(out.metrics.skill_8, expected.skill_8);
+    // what the device cannot give is missing from the picture too
+    EXPECT_GT(out.metrics.rmse, 1.2 * rmse);
+    rmse = out.metrics.rmse;
+  }
+}
+
+}  // namespace
+}  // namespace prostm
