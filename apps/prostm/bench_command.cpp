@@ -155,7 +155,7 @@ class FieldBench {
       : settings_(settings),
         am_alone_(method_from_name(settings.method) == Method::Am),
         repeats_(repeats),
-        planner_(settings.plan, kMaxFieldCells),
+        planner_(playable_plan_settings(settings), kMaxFieldCells),
         am_(settings.am, kMaxFieldCells) {}
 
   void measure(const TargetField& target, Columns& columns) {

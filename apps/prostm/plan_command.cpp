@@ -193,8 +193,8 @@ Result plan_and_score(const TargetField& target, const PipelineSettings& setting
                       const std::vector<double>& widths, bool traced) {
   const PlanSettings& s = settings.plan;
   Plan other;
-  Result r =
-      is_am(settings) ? plan_foci(target, settings, other) : plan_paths(target, s, traced, other);
+  Result r = is_am(settings) ? plan_foci(target, settings, other)
+                             : plan_paths(target, playable_plan_settings(settings), traced, other);
   const SegmentPressures pressures = played(target, r.plan, settings);
   r.quality = quality_of(target, r.plan, pressures, settings, widths);
   if (!target.weight.empty() && !r.plan.empty()) {

@@ -87,9 +87,12 @@ void add(const EmitStats& more, EmitStats& sum) {
 
 /// The planner of the method.
 std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
-                                              std::size_t max_cells) {
+                                              std::size_t max_cells, double scene_full_scale) {
   if (method_from_name(settings.method) == Method::Am) return AmPlanner(settings.am, max_cells);
-  return Planner(plan_settings(settings), max_cells);
+  PlanSettings plan = plan_settings(settings);
+  if (plan.full_scale_pressure == 0.0)
+    plan.full_scale_pressure = emit_settings(settings, scene_full_scale).full_scale_pressure;
+  return Planner(plan, max_cells);
 }
 
 }  // namespace
@@ -189,7 +192,7 @@ void SmokeStage::view_from_side(SideView& out) const {
 }
 
 PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale)
-    : planner_(make_planner(settings, max_cells)),
+    : planner_(make_planner(settings, max_cells, full_scale)),
       emit_settings_(emit_settings(settings, full_scale)),
       emitter_(make_emitter(method_from_name(settings.method), emit_settings_,
                             settings.simulated_array.sample_rate)) {}

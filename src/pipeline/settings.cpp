@@ -2,6 +2,7 @@
 
 #include "acoustics/focus_width.hpp"
 #include "core/units.hpp"
+#include "emit/drive.hpp"
 #include "emit/played.hpp"
 
 namespace prostm {
@@ -28,8 +29,17 @@ double PipelineSettings::sigma() const {
   return method_from_name(method) == Method::Am ? am.sigma : plan.sigma;
 }
 
-PlanSettings plan_settings(const PipelineSettings& settings) {
+PlanSettings playable_plan_settings(const PipelineSettings& settings) {
   PlanSettings plan = settings.plan;
+  const double rate = settings.simulated_array.sample_rate;
+  plan.rise_time = 1.0 / (largest_slew(settings.emit.fade_time, rate) * rate);
+  plan.silent_below = settings.emit.silent_below;
+  if (plan.full_scale_pressure == 0.0) plan.full_scale_pressure = settings.emit.full_scale_pressure;
+  return plan;
+}
+
+PlanSettings plan_settings(const PipelineSettings& settings) {
+  PlanSettings plan = playable_plan_settings(settings);
   if (!settings.array_width) return plan;
   FocusWidths& out = plan.widths;
   out.height = {0.10, 0.15, 0.20, 0.25, 0.30, 0.40};

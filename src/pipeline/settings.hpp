@@ -56,7 +56,9 @@ struct PipelineSettings {
   void visit(SettingsVisitor& v);
 };
 
-/// The planner's settings with the widths that `array_width` asks for: (A22) of `transducers`.
+/// The planner's settings with what the emission can play, (P18).
+PlanSettings playable_plan_settings(const PipelineSettings& settings);
+/// The same with the widths that `array_width` asks for, (A22) of `transducers`.
 PlanSettings plan_settings(const PipelineSettings& settings);
 
 /// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest

@@ -41,6 +41,12 @@ Descent::Descent(std::size_t max_tiles, int samples, const FitSettings& settings
 }
 
 void Descent::evaluate(const CellTiles& cells, Fit& fit) {
+  pairs_.clear();
+  evaluate_near(cells, fit);
+}
+
+/// Of paths near those that were evaluated last.
+void Descent::evaluate_near(const CellTiles& cells, Fit& fit) {
   pairs_.update(fit.loops, settings_.shape);
   reconstruct_(cells, fit.loops, settings_.reconstruction, Wanted::PressuresAndGradient, scratch_,
                fit.reconstruction);
@@ -164,7 +170,6 @@ void copy(const Fit& from, Fit& to) {
 }  // namespace
 
 int Descent::run(const CellTiles& cells, Fit& fit, int evaluations, const Deadline& deadline) {
-  pairs_.clear();
   forget();
   evaluate(cells, fit);
   int used = 1;
@@ -195,7 +200,7 @@ int Descent::run(const CellTiles& cells, Fit& fit, int evaluations, const Deadli
         trial_.loops.x[i] = fit.loops.x[i] + length * direction_.x[i];
         trial_.loops.y[i] = fit.loops.y[i] + length * direction_.y[i];
       }
-      evaluate(cells, trial_);
+      evaluate_near(cells, trial_);
       ++used;
       lower = trial_.cost <= fit.cost + kArmijo * length * slope;
       if (lower) break;

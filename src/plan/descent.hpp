@@ -37,7 +37,7 @@ class Descent {
   const std::vector<ReconstructionScratch::TileFit>& fits() const { return scratch_.fits; }
   /// Computes `fit.reconstruction` at `fit.loops`.
   void solve(const CellTiles& cells, Fit& fit);
-  /// The same, and `fit.cost`.
+  /// The same, and `fit.cost`, of any paths.
   void evaluate(const CellTiles& cells, Fit& fit);
   /// Moves the samples downhill for at most `evaluations` evaluations, the last of which begins
   /// before the deadline if it is not the first; the cost never rises.
@@ -49,6 +49,7 @@ class Descent {
   struct Plane {
     alignas(64) NodeArray x, y;
   };
+  void evaluate_near(const CellTiles& cells, Fit& fit);
   void find_direction(const Loops& loops, const Reconstruction& at);
   void precondition(const Loops& loops, Plane& v) const;
   void remember(const Fit& from, const Fit& to);

@@ -47,6 +47,18 @@ class NodePairs {
   /// aligned as a vector is.
   void set(const NodeArray& x, const NodeArray& y, std::size_t nodes, float distance);
 
+  /// Forgets the pairs for which keep(pair) is false.
+  template <typename Keep>
+  void filter(const Keep& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const std::uint32_t packed = packed_[i];
+      packed_[kept] = packed;
+      kept += keep((*this)[i]) ? 1 : 0;
+    }
+    size_ = kept;
+  }
+
   std::size_t size() const { return size_; }
   NodePair operator[](std::size_t i) const { return {packed_[i] & 0xffffU, packed_[i] >> 16U}; }
 

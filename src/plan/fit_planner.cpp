@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "plan/lifted_plan.hpp"
 #include "plan/pressure_raster.hpp"
@@ -12,15 +13,20 @@
 namespace prostm::planning {
 namespace {
 
-constexpr double kSpacingShare = 0.9;  // of σ: what valid paths keep
-constexpr double kAlongShare = 2.0;    // of σ: nearer along the path, spacing is not asked for
-constexpr double kRounding = 1e-4;     // share of a bound that single precision may cost
-constexpr double kFastWidth = 6.0;     // of the cells of preset fast [mm]
-constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4;
+constexpr double kSpacingShare = 0.9;   // of σ: what valid paths keep
+constexpr double kAlongShare = 2.0;     // of σ: nearer along the path, spacing is not asked for
+constexpr double kRounding = 1e-4;      // share of a bound that single precision may cost
+constexpr double kFastWidth = 6.0;      // of the cells of preset fast [mm]
+constexpr double kFastFineWidth = 4.0;  // of those that its pressures are solved on [mm]
+constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4, kFastSmallEvaluations = 4;
 constexpr int kFastRegionPasses = 3, kFastStopPasses = 2;
 constexpr int kMendRounds = 8;      // at most, on uneven skin
 constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
 constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on any skin
+// Output that is so many times what is wanted bounds nothing, and what is wanted above so many
+// times the output counts as that: single precision resolves what lies between.
+constexpr double kAmple = 1e4;
+constexpr int kMostPieces = 2;  // of a segment that is searched for
 
 SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   SearchSettings search;
@@ -31,12 +37,16 @@ SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   if (preset == Preset::Fast) {
     search.starts = 1;
     search.kicks = search.warm_starts = 0;
+    search.fewer_evaluations = 0;
     search.start_evaluations = kFastEvaluations;
+    search.small_evaluations = kFastSmallEvaluations;
     search.warm_evaluations = kFastWarmEvaluations;
     search.final_evaluations = 0;
     search.region_passes = kFastRegionPasses;
     search.stop_passes = kFastStopPasses;
-    search.coarse_width = search.fine_width = kFastWidth;
+    search.coarse_width = kFastWidth;
+    search.fine_width = kFastFineWidth;
+
     return search;
   }
   search.starts = s.fit_starts;
@@ -48,6 +58,12 @@ SearchSettings search_settings(const PlanSettings& s, Preset preset) {
 bool is_constant(const std::vector<double>& values) {
   return values.size() < 2 ||
          std::memcmp(values.data(), values.data() + 1, (values.size() - 1) * sizeof(double)) == 0;
+}
+
+/// Of a segment that is searched for, as many as a plan has room for: a pressure is linear between
+/// samples, and its root, which is what is played, nearly so if they lie close together.
+int pieces_of(int samples) {
+  return std::max(1, std::min(kMostPieces, kMaxPathPoints / samples));
 }
 
 }  // namespace
@@ -68,7 +84,20 @@ FitSettings fit_settings(const PlanSettings& s) {
 
 FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells)
     : settings_(settings),
-      search_(max_cells, fit_settings(settings), search_settings(settings, preset)) {}
+      search_(max_cells, fit_settings(settings), search_settings(settings, preset)),
+      pieces_(pieces_of(search_settings(settings, preset).samples)),
+      solves_dense_(preset == Preset::Best) {}
+
+/// (P18) where a path's rendered pressure is `gain` times what it is felt as.
+PlayBounds FitPlanner::play_bounds(double gain) const {
+  // full output over the target's maximum
+  const double highest = gain * rendered_;
+  const double room = full_scale_ >= kAmple * highest ? kAmple : full_scale_ / highest;
+  const double reach = kMmPerMetre * settings_.speed * settings_.rise_time;  // of a full rise [mm]
+  return PlayBounds::all(static_cast<float>(std::min(1.0, room)),
+                         static_cast<float>(std::sqrt(room) / reach),
+                         static_cast<float>(settings_.silent_below * room));
+}
 
 /// Brings the paths of fit_ to the coordinates of a target with this origin.
 void FitPlanner::move_to(const Vec2& origin) {
@@ -91,11 +120,16 @@ double FitPlanner::skin_factor(const TargetField& target, std::span<const Vec2> 
   return flat > 0.0 ? std::max(skin_length(flat_, target) / flat, 1.0) : 1.0;
 }
 
-/// Copies path k of fit_ to place `to` of points_.
+/// Copies path k of fit_ to place `to` of points_, each segment cut into as many pieces as make
+/// samples_.
 std::span<Vec2> FitPlanner::copy_path(int k, int to) {
   const std::span<Vec2> loop = path_at(to);
-  for (int i = 0; i < fit_.loops.samples; ++i) {
-    loop[static_cast<std::size_t>(i)] = fit_.loops.point(i, k);
+  const int pieces = samples_ / fit_.loops.samples;
+  for (int i = 0; i < samples_; ++i) {
+    const int first = i / pieces, second = (first + 1) % fit_.loops.samples;
+    const double along = static_cast<double>(i % pieces) / pieces;
+    loop[static_cast<std::size_t>(i)] =
+        (1.0 - along) * fit_.loops.point(first, k) + along * fit_.loops.point(second, k);
   }
   return loop;
 }
@@ -142,7 +176,7 @@ int FitPlanner::leave_out_long(const TargetField& target, int paths, double leas
   int kept = 0;
   for (int k = 0; k < paths; ++k) {
     if (is_long(path_at(k))) continue;
-    std::copy_n(path_at(k).begin(), fit_.loops.samples, path_at(kept).begin());
+    std::copy_n(path_at(k).begin(), samples_, path_at(kept).begin());
     ++kept;
   }
   if (kept > 0) return kept;
@@ -155,71 +189,157 @@ int FitPlanner::leave_out_long(const TargetField& target, int paths, double leas
   return 1;
 }
 
-/// Mends length on the skin, spacing and crossings; then pressures are solved again.
-void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
+/// What valid paths keep. @param between from a sample to the one that will be half way to the next
+/// [mm].
+SpacingRule FitPlanner::spacing_rule(double between) const {
   const double sigma = kMmPerMetre * settings_.sigma;
   SpacingRule rule;
-  rule.spacing = (1.0 + kRounding) * kSpacingShare * sigma;
+  rule.spacing = std::hypot((1.0 + kRounding) * kSpacingShare * sigma, between);
   rule.along = (1.0 - kRounding) * kAlongShare * sigma;
   rule.least_length = kMmPerMetre * std::min(settings_.least_length, settings_.max_length());
+  return rule;
+}
 
-  const int n = fit_.loops.samples;
-  int paths = 0;
-  for (const int k : by_pressure()) copy_path(k, paths++);
+/// Makes the paths of points_ keep their length on the skin and the rule. @return how many are
+/// kept.
+int FitPlanner::space_out(const TargetField& target, int paths, SpacingRule rule) {
   // a path that is mended lies on other slopes than before, so its bound is another
   bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
   for (int round = 1; round == 1 || (any_long && round <= kMendRounds); ++round) {
-    const auto size = static_cast<std::size_t>(paths * n);
-    paths = make_spaced(std::span<Vec2>(points_.data(), size), n, rule, spacing_);
+    paths = make_spaced(points_of(paths), samples_, rule, spacing_);
     any_long = bound_lengths(target, paths, 1.0 - round * kMendStep, rule);
   }
-  if (any_long) paths = leave_out_long(target, paths, rule.least_length);
+  return any_long ? leave_out_long(target, paths, rule.least_length) : paths;
+}
 
-  fit_.loops.reset(n, paths);
+/// Copies the paths of points_ to fit_.
+void FitPlanner::take_points(int paths) {
+  const int pieces = samples_ / fit_.loops.samples;
+  fit_.loops.reset(fit_.loops.samples, paths);
   for (int k = 0; k < paths; ++k) {
-    for (int i = 0; i < n; ++i) fit_.loops.set_point(i, k, path_at(k)[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < fit_.loops.samples; ++i)
+      fit_.loops.set_point(i, k, path_at(k)[static_cast<std::size_t>(i * pieces)]);
   }
-  search_.solve(fit_);
+}
+
+/// Mends length on the skin, spacing and crossings; then pressures are solved as they are played.
+void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
+  // first the samples that were searched for, which are fewer and so more easily moved
+  int paths = 0;
+  samples_ = fit_.loops.samples;
+  for (const int k : by_pressure()) copy_path(k, paths++);
+  const double segment = kMmPerMetre * settings_.max_length() / samples_;
+  paths = space_out(target, paths, spacing_rule(pieces_ > 1 ? 0.5 * segment : 0.0));
+  take_points(paths);
+
+  // then those of the plan, most of which are where they may be
+  samples_ *= pieces_;
+  for (int k = 0; k < paths; ++k) copy_path(k, k);
+  const SpacingRule rule = spacing_rule(0.0);
+  if (!are_apart(points_of(paths), samples_, rule, spacing_)) {
+    paths = space_out(target, paths, rule);
+    take_points(paths);
+  }
+  solve_dense(target, paths, stats);
+  while (leave_out_silent(paths)) {
+    take_points(paths);
+    solve_dense(target, paths, stats);
+  }
+}
+
+/// Of fit_ at sample i of points_, linear between its own.
+float FitPlanner::pressure_at(int i, int k) const {
+  const int a = i / pieces_, b = (a + 1) % fit_.loops.samples;
+  const float along = static_cast<float>(i % pieces_) / static_cast<float>(pieces_);
+  const NodeArray& pressure = fit_.reconstruction.pressure;
+  return (1.0F - along) * pressure[fit_.loops.node(a, k)] + along * pressure[fit_.loops.node(b, k)];
+}
+
+/// The pressures of the paths of points_ as they are played.
+void FitPlanner::solve_dense(const TargetField& target, int paths, PlanStats& stats) {
+  dense_.loops.reset(samples_, paths);
+  PlayBounds bounds = play_bounds(settings_.gain);
+  for (int k = 0; k < paths; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    const std::span<Vec2> loop = path_at(k);
+    for (int i = 0; i < samples_; ++i) {
+      Vec2& x = loop[static_cast<std::size_t>(i)];
+      dense_.loops.set_point(i, k, x);
+      x = dense_.loops.point(i, k);  // as the plan has it
+    }
+    factor_[place] = skin_factor(target, loop);
+    period_[place] = loop_length(loop) / kMmPerMetre * factor_[place] / settings_.speed;
+    const PlayBounds own = play_bounds(settings_.gain_law().of(period_[place]));
+    bounds.most[place] = own.most[place];
+    bounds.slope[place] = own.slope[place];
+    bounds.least[place] = own.least[place];
+  }
+  if (solves_dense_) {
+    search_.solve(bounds, dense_);
+  } else {
+    search_.solve(bounds, fit_);
+    // lanes that no path uses count, too
+    std::fill_n(dense_.reconstruction.pressure.begin(), dense_.loops.nodes(), 0.0F);
+    for (int k = 0; k < paths; ++k) {
+      for (int i = 0; i < samples_; ++i)
+        dense_.reconstruction.pressure[dense_.loops.node(i, k)] = pressure_at(i, k);
+    }
+  }
+  make_playable(dense_.loops, bounds, dense_.reconstruction.pressure);
   ++stats.cost_evaluations;
 }
 
-void FitPlanner::append(const TargetField& target, double maximum, int patch, Plan& plan,
-                        PlanStats& stats) {
-  const int n = fit_.loops.samples, paths = fit_.loops.paths;
-  std::array<double, kMaxPaths> factor{}, period{};
+/// Leaves out the path of points_ that is most silent, of several. @return whether there was one.
+bool FitPlanner::leave_out_silent(int& paths) {
+  int weakest = 0;
+  float least = std::numeric_limits<float>::max();
   for (int k = 0; k < paths; ++k) {
-    const std::span<const Vec2> loop = copy_path(k, 0);
-    const auto place = static_cast<std::size_t>(k);
-    factor[place] = skin_factor(target, loop);
-    period[place] = loop_length(loop) / kMmPerMetre * factor[place] / settings_.speed;
+    float highest = 0.0F;
+    for (int i = 0; i < samples_; ++i)
+      highest = std::max(highest, dense_.reconstruction.pressure[dense_.loops.node(i, k)]);
+    if (highest >= least) continue;
+    least = highest;
+    weakest = k;
   }
-  const LapStarts starts = phases_.choose(fit_.loops, period);
+  if (paths == 1 || static_cast<double>(least) >= settings_.weak_pressure) return false;
+  --paths;
+  std::copy(path_at(weakest).end(), path_at(paths).end(), path_at(weakest).begin());
+  return true;
+}
 
+void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanStats& stats) {
+  const int n = samples_, paths = dense_.loops.paths;
+  const LapStarts starts = phases_.choose(
+      fit_.loops, std::span<const double>(period_).first(static_cast<std::size_t>(paths)));
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
+    const LapStart start{pieces_ * starts[place].first, starts[place].reversed};
     FocalPath path;
     path.patch = patch;
     for (int i = 0; i < n; ++i) {
       path.points.push_back(target.origin +
-                            fit_.loops.point(starts[place].sample(i, n), k) / kMmPerMetre);
+                            dense_.loops.point(start.sample(i, n), k) / kMmPerMetre);
     }
     path.length = closed_length(path);
     path.speed = settings_.speed;
-    path.period = path.length * factor[place] / path.speed;
+    path.period = path.length * factor_[place] / path.speed;
     const double gain = settings_.gain_law().of(path.period);
     for (int i = 0; i < n; ++i) {
-      const std::size_t node = fit_.loops.node(starts[place].sample(i, n), k);
-      path.pressure.push_back(gain * maximum *
-                              static_cast<double>(fit_.reconstruction.pressure[node]));
+      const std::size_t node = dense_.loops.node(start.sample(i, n), k);
+      path.pressure.push_back(gain * rendered_ *
+                              static_cast<double>(dense_.reconstruction.pressure[node]));
     }
     plan.paths.push_back(path);
   }
   stats.leaves += paths;
 }
 
-void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch, int paths,
-                            double budget, Plan& plan, PlanStats& stats) {
+void FitPlanner::plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
+                            int paths, double budget, Plan& plan, PlanStats& stats) {
   StageTimer timer;
+  full_scale_ = full_scale;
+  rendered_ = std::min(maximum, kAmple * (full_scale / settings_.gain));
+  search_.set_bounds(play_bounds(settings_.gain));
   is_flat_ = is_constant(target.height);
   if (!settings_.widths.empty()) {
     settings_.sigma = settings_.widths.on(target);
@@ -232,6 +352,7 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
   const bool continues = has_previous_ && fit_.loops.paths <= paths;
   if (!continues) phases_.forget();
   stats.cost_evaluations += search_.run(paths, continues, fit_);
+  samples_ = fit_.loops.samples;
   std::array<float, kMaxPaths> most{};
   for (int k = 0; k < fit_.loops.paths; ++k) {
     most[static_cast<std::size_t>(k)] = static_cast<float>(kMmPerMetre * settings_.max_length() /
@@ -242,7 +363,7 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, int patch
 
   const double start = timer.seconds();
   mend(target, stats);
-  append(target, maximum, patch, plan, stats);
+  append(target, patch, plan, stats);
   search_.learn_ending(timer.seconds() - start);
   has_previous_ = true;
   stats.refine += timer.lap();

@@ -56,8 +56,14 @@ struct PlanSettings {
   int fit_kicks = 8;             ///< tries to lay one or two paths anew
   double budget = 0.0;  ///< time after which `best` tries nothing more [s]; 0: only the counts
                         ///< bind, and the same input gives the same plan
-  FocusWidths widths;   ///< not a field in files. Of presets best and fast: σ of each target by
-                        ///< where it is and how it lies; without entries, `sigma`
+  double full_scale_pressure = 0.0;  ///< rendered pressure at full output, that presets best and
+                                     ///< fast plan for [unit of the target]; 0: γ of the longest
+                                     ///< path times the frame's maximum
+  /// Not fields in files, but what the emission does: the time of an intensity from silence to full
+  /// output [s], and the share of full output's pressure below which it is silent.
+  double rise_time = 1e-3, silent_below = 0.01;
+  FocusWidths widths;  ///< not a field in files. Of presets best and fast: σ of each target by
+                       ///< where it is and how it lies; without entries, `sigma`
 
   /// σ that a target is planned with [m]. @pre the target is valid.
   double sigma_on(const TargetField& target) const;

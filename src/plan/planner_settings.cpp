@@ -59,6 +59,7 @@ void PlanSettings::visit(SettingsVisitor& v) {
   v.field("fit_starts", fit_starts);
   v.field("fit_kicks", fit_kicks);
   v.field("budget", budget);
+  v.field("full_scale_pressure", full_scale_pressure);
 }
 
 double PlanSettings::sigma_on(const TargetField& target) const {
@@ -98,6 +99,9 @@ void check_settings(const PlanSettings& s) {
   require_between("fit_starts", s.fit_starts, 1, 10000);
   require_between("fit_kicks", s.fit_kicks, 0, 100000);
   require_between("budget", s.budget, 0.0, 60.0, "s");
+  require_between("full_scale_pressure", s.full_scale_pressure, 0.0, 1e300);
+  require_between("rise_time", s.rise_time, 1e-6, 1.0, "s");
+  require_between("silent_below", s.silent_below, 0.0, 1.0);
   if (s.budget > 0.0 && preset_from_name(s.preset) != Preset::Best) {
     throw std::invalid_argument("a budget is for preset best, not " + s.preset);
   }

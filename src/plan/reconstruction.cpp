@@ -113,8 +113,10 @@ namespace {
 
 /// The sweeps with the number of lanes known, so that the lanes of a sample become one vector.
 template <std::size_t kLanes>
-void sweep(const Loops& loops, const NodeArray& right, const NodeArray& after,
-           const NodeArray& inverse, float most, NodeArray& pressure) {
+void sweep(const Loops& loops, const PressureEquations& equations, const NodeArray& inverse,
+           const PlayBounds& bounds, NodeArray& pressure) {
+  const auto& [diagonal, after, right] = equations;
+  const auto& most = bounds.most;
   const std::size_t n = loops.nodes();
   const auto relax = [&](std::size_t a) {
     const std::size_t b = a + kLanes < n ? a + kLanes : 0;
@@ -127,7 +129,7 @@ void sweep(const Loops& loops, const NodeArray& right, const NodeArray& after,
     }
     for (std::size_t k = 0; k < kLanes; ++k) pressure[a + k] = p[k] < 0.0F ? 0.0F : p[k];
     for (std::size_t k = 0; k < kLanes; ++k) {
-      pressure[a + k] = pressure[a + k] < most ? pressure[a + k] : most;
+      pressure[a + k] = pressure[a + k] < most[k] ? pressure[a + k] : most[k];
     }
   };
   // red-black where the number of samples is even, so that the nodes of a sweep do not wait for
@@ -143,21 +145,24 @@ void sweep(const Loops& loops, const NodeArray& right, const NodeArray& after,
 void solve_pressures(const Loops& loops, const ReconstructionSettings& settings,
                      const ReconstructionScratch& scratch, Reconstruction& out) {
   const std::size_t n = loops.nodes(), lanes = static_cast<std::size_t>(loops.lanes);
-  alignas(64) NodeArray inverse, after, right;
+  const PlayBounds& bounds = settings.bounds;
+  PressureEquations equations;
+  alignas(64) NodeArray inverse;
   for (std::size_t a = 0, before = n - lanes; a < n; ++a, ++before) {
     if (before == n) before = 0;
-    const float diagonal =
+    equations.diagonal[a] =
         scratch.normal[4 * a] + scratch.normal[4 * before + 2] + 2.0F * settings.smoothing;
-    inverse[a] = 1.0F / diagonal;
-    after[a] = scratch.normal[4 * a + 1] - settings.smoothing;
-    right[a] = scratch.normal[4 * a + 3] + scratch.normal_end[before];
-    out.pressure[a] = std::clamp(right[a] * inverse[a], 0.0F, settings.most_pressure);
+    inverse[a] = 1.0F / equations.diagonal[a];
+    equations.after[a] = scratch.normal[4 * a + 1] - settings.smoothing;
+    equations.right[a] = scratch.normal[4 * a + 3] + scratch.normal_end[before];
+    out.pressure[a] = std::clamp(equations.right[a] * inverse[a], 0.0F, bounds.most[a % lanes]);
   }
   if (lanes == 4) {
-    sweep<4>(loops, right, after, inverse, settings.most_pressure, out.pressure);
+    sweep<4>(loops, equations, inverse, bounds, out.pressure);
   } else {
-    sweep<8>(loops, right, after, inverse, settings.most_pressure, out.pressure);
+    sweep<8>(loops, equations, inverse, bounds, out.pressure);
   }
+  soften(loops, bounds, equations, out.pressure);
 }
 
 void gather_gradient(const Loops& loops, const ReconstructionSettings& settings,
@@ -171,7 +176,8 @@ void gather_gradient(const Loops& loops, const ReconstructionSettings& settings,
     const float change = out.pressure[a] - out.pressure[before];
     roughness += change * change;
   }
-  out.error += settings.smoothing * roughness;
+  out.error += settings.smoothing * roughness +
+               steepness_cost(loops, settings.bounds, out.pressure, out.gradient_x, out.gradient_y);
 }
 
 void reconstruct_plain(const CellTiles& cells, const Loops& loops,

@@ -8,6 +8,7 @@
 
 #include "plan/cell_tiles.hpp"
 #include "plan/loops.hpp"
+#include "plan/playable.hpp"
 
 namespace prostm::planning {
 
@@ -22,7 +23,7 @@ struct ReconstructionSettings {
   float sigma = 8.6F;             ///< σ of Eq. (1) [mm]
   float smoothing = 0.01F;        ///< λ of (P11): how much neighbouring pressures hold together
   float weight_coverage = 0.12F;  ///< of (P12)
-  float most_pressure = 1.0F;     ///< bound of the p_i, over the frame's maximum
+  PlayBounds bounds = PlayBounds::all(1.0F, kAnySlope);  ///< of the p_i, (P18)
 };
 
 /// Effective pressures at the nodes, and the gradient of the error with respect to their places.
@@ -54,9 +55,9 @@ struct ReconstructionScratch {
 /// What a call is to fill in.
 enum class Wanted { Pressures, PressuresAndGradient };
 
-/// min over 0 ≤ p ≤ most of Σ w (p̂ − p*)² + λ Σ (p_{i+1} − p_i)² (P11), and (P12), p̂ of
-/// Eq. (1) at the closest point over all segments, p linear along them. The gradient is exact where
-/// no cell changes its closest segment and no pressure its bound.
+/// min over 0 ≤ p ≤ most of Σ w (p̂ − p*)² + λ Σ (p_{i+1} − p_i)² (P11), (P12) and what is too steep
+/// (P18), p̂ of Eq. (1) at the closest point over all segments, p linear along them. The gradient is
+/// exact where no cell changes its closest segment and no pressure its bound.
 /// @param wanted with Pressures alone, the error and its gradient stay as they are.
 using ReconstructFunction = void (*)(const CellTiles& cells, const Loops& loops,
                                      const ReconstructionSettings& settings, Wanted wanted,
@@ -70,10 +71,11 @@ void reconstruct_plain(const CellTiles& cells, const Loops& loops,
 /// fallback.
 ReconstructFunction fast_reconstruct();
 
-/// The projected Gauss-Seidel solution of the normal equations, shared by the kernels.
+/// The projected Gauss-Seidel solution of the normal equations, made softer where it is too steep;
+/// shared by the kernels.
 void solve_pressures(const Loops& loops, const ReconstructionSettings& settings,
                      const ReconstructionScratch& scratch, Reconstruction& out);
-/// From segments to nodes; adds the smoothing's share of the error.
+/// From segments to nodes; adds the shares of the smoothing and of (P18) in the error.
 void gather_gradient(const Loops& loops, const ReconstructionSettings& settings,
                      const ReconstructionScratch& scratch, Reconstruction& out);
 

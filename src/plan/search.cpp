@@ -49,6 +49,15 @@ int draw_neighbour(const Loops& loops, int first, Random& random) {
   return chosen;
 }
 
+/// The paths of `from` but one.
+void copy_without(const Loops& from, int missing, Loops& out) {
+  out.reset(from.samples, from.paths - 1);
+  for (int k = 0; k < out.paths; ++k) {
+    for (int i = 0; i < out.samples; ++i)
+      out.set_point(i, k, from.point(i, k < missing ? k : k + 1));
+  }
+}
+
 }  // namespace
 
 Search::Search(std::size_t max_cells, const FitSettings& fit, const SearchSettings& settings)
@@ -140,6 +149,7 @@ int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& b
   if (starts == 0) return 0;
   int used = 0;
   const int needed = needed_paths(paths);
+  if (needed == 1) most = std::max(most, settings_.small_evaluations);
   initial_.set(coarse_, static_cast<float>(settings_.weak));
   for (int start = 0; start < starts; ++start) {
     int evaluations = affordable(most);
@@ -193,6 +203,35 @@ int Search::try_kicks(Fit& best) {
   return used;
 }
 
+/// The paths of `from` without the one that is missed least. @return evaluations used.
+int Search::take_away(const Fit& from, Fit& out) {
+  float least = std::numeric_limits<float>::max();
+  for (int missing = 0; missing < from.loops.paths; ++missing) {
+    copy_without(from.loops, missing, without_.loops);
+    descent_.evaluate(coarse_, without_);
+    if (without_.cost >= least) continue;
+    least = without_.cost;
+    out = without_;
+  }
+  return from.loops.paths;
+}
+
+/// Where the field asks for fewer paths: takes them away while that lowers the cost.
+int Search::try_fewer(Fit& best) {
+  int used = 0;
+  if (settings_.fewer_evaluations == 0) return used;
+  const int needed = needed_paths(best.loops.paths);
+  while (best.loops.paths > needed) {
+    const int evaluations = affordable(best.loops.paths + settings_.fewer_evaluations);
+    if (evaluations <= best.loops.paths) break;
+    used += take_away(best, trial_);
+    used += descend(coarse_, evaluations - best.loops.paths, search_end_, trial_);
+    if (trial_.cost >= best.cost) break;
+    best = trial_;
+  }
+  return used;
+}
+
 int Search::run(int paths, bool continues, Fit& best) {
   int used = 0;
   const auto norm = static_cast<float>(coarse_.square_norm());
@@ -215,8 +254,20 @@ int Search::run(int paths, bool continues, Fit& best) {
     used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, most, margin, best);
   }
   used += try_kicks(best);
+  used += try_fewer(best);
   reached_ = std::min(reached_, best.cost / norm);
   return used;
+}
+
+void Search::solve(const PlayBounds& bounds, Fit& fit) {
+  ReconstructionSettings& settings = descent_.settings().reconstruction;
+  const ReconstructionSettings searched = settings;
+  settings.bounds = bounds;
+  // as much for as long a piece of path
+  settings.smoothing *=
+      static_cast<float>(fit.loops.samples) / static_cast<float>(settings_.samples);
+  descent_.solve(fine(), fit);
+  settings = searched;
 }
 
 void Search::learn_ending(double seconds) {

@@ -19,6 +19,8 @@ struct SearchSettings {
   int start_evaluations = 30;  ///< of each start
   int kicks = 20;              ///< tries to lay one or two paths anew
   int kick_evaluations = 25;   ///< of each kick
+  int fewer_evaluations = 15;  ///< of the paths that are left when one is taken away; 0: none is
+  int small_evaluations = 0;   ///< of each start where one path could do, at least
   int warm_starts = 1;         ///< laid anew beside a plan before
   int warm_evaluations = 20;   ///< of the plan before on the new target
   int final_evaluations = 30;  ///< of the winner, on the fine cells
@@ -45,12 +47,15 @@ class Search {
   int run(int paths, bool continues, Fit& best);
   /// Of focal points, from the next target on [mm].
   void set_sigma(double sigma);
+  /// What the emission can play, from the next target on.
+  void set_bounds(const PlayBounds& bounds) { descent_.settings().reconstruction.bounds = bounds; }
   /// Lowers the cost of `fit` further on the fine cells, under the given bounds of length [mm].
   int finish(const std::array<float, kMaxPaths>& most_length, Fit& fit);
   /// Tells how long what follows finish() took, for the budgets to come [s].
   void learn_ending(double seconds);
-  /// Solves the pressures at the places of `fit`, on the fine cells.
-  void solve(Fit& fit) { descent_.solve(fine(), fit); }
+  /// Solves the pressures at the places of `fit`, on the fine cells: what `bounds` lets play, to
+  /// the last digit. The paths may have more samples than those that are searched for.
+  void solve(const PlayBounds& bounds, Fit& fit);
 
  private:
   /// The fine cells; the coarse ones are fine enough where both have the same width.
@@ -61,6 +66,8 @@ class Search {
   int needed_paths(int paths) const;
   int try_starts(int paths, int starts, int most, float hysteresis, Fit& best);
   int try_kicks(Fit& best);
+  int try_fewer(Fit& best);
+  int take_away(const Fit& from, Fit& out);
   const CellTiles& finish_cells() const { return finish_fine_ ? fine() : coarse_; }
   double evaluation_time(const CellTiles& cells) const;
   double finish_end() const { return budget_ - ending_time_ - kDeviations * ending_deviation_; }
@@ -73,7 +80,7 @@ class Search {
   InitialLoops initial_;
   Descent descent_;
   Random random_;
-  Fit trial_;
+  Fit trial_, without_;
   Loops laid_;
   StageTimer timer_;
   float reached_ = 0.0F;  // least cost since starts were made, over the target's square norm

@@ -42,7 +42,7 @@ template <typename Visit>
 void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, NearSamples& near,
                     const Visit& visit) {
   const Measures measured(x, n);
-  const NodePairs& pairs = near.list(x, reach);
+  const NodePairs& pairs = near.list(x, n, reach, along);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto [a, b] = pairs[i];
     const double squared = (x[b] - x[a]).squaredNorm();
@@ -89,10 +89,7 @@ bool is_valid(ConstLoop x, std::size_t n, const SpacingRule& rule, SpacingScratc
       return false;
     }
   }
-  bool near = false;
-  for_near_pairs(x, n, rule.spacing, rule.along, scratch.samples,
-                 [&](std::size_t, std::size_t, double) { near = true; });
-  return !near && !has_crossings(x, n, scratch.segments);
+  return are_apart(x, static_cast<int>(n), rule, scratch) && !has_crossings(x, n, scratch.segments);
 }
 
 /// Moves samples that are too near away from each other until none is, or the rounds end.
@@ -137,15 +134,23 @@ std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule, SpacingScratch& 
 
 }  // namespace
 
-const NodePairs& NearSamples::list(std::span<const Vec2> x, double reach) {
-  const auto has_moved = [&](std::size_t i) {
-    return (x[i] - listed_at_[i]).squaredNorm() > kSlack * kSlack;
-  };
-  bool stale = listed_at_.size() != x.size() || std::abs(reach_ - reach) > kSlack;
-  for (std::size_t i = 0; i < x.size() && !stale; ++i) stale = has_moved(i);
-  if (!stale) return pairs_;
+bool NearSamples::is_listed(std::span<const Vec2> x, std::size_t n, double reach,
+                            double along) const {
+  if (listed_at_.size() != x.size() || n_ != n || along_ != along) return false;
+  if (std::abs(reach_ - reach) > kSlack) return false;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if ((x[i] - listed_at_[i]).squaredNorm() > kSlack * kSlack) return false;
+  }
+  return true;
+}
+
+const NodePairs& NearSamples::list(std::span<const Vec2> x, std::size_t n, double reach,
+                                   double along) {
+  if (is_listed(x, n, reach, along)) return pairs_;
   listed_at_.assign(x.begin(), x.end());
+  n_ = n;
   reach_ = reach;
+  along_ = along;
   alignas(64) NodeArray rough_x{}, rough_y{};
   for (std::size_t i = 0; i < x.size(); ++i) {
     rough_x[i] = static_cast<float>(x[i].x() - x[0].x());
@@ -154,6 +159,16 @@ const NodePairs& NearSamples::list(std::span<const Vec2> x, double reach) {
   // both samples may move by the slack, and the reach may be larger by it the next time
   pairs_.set(rough_x, rough_y, x.size(),
              static_cast<float>((reach + 3.0 * kSlack) * (1.0 + kRounding)));
+  // neighbours on a path stay neighbours: each segment between may grow by the slack at both ends
+  const Measures measured(x, n);
+  pairs_.filter([&](const NodePair& pair) {
+    const std::size_t path = measured.path[pair.first], gap = pair.second - pair.first;
+    if (path != measured.path[pair.second]) return true;
+    const double apart = measured.at[pair.second] - measured.at[pair.first];
+    const double growth = 2.0 * kSlack * static_cast<double>(gap),
+                 growth_round = 2.0 * kSlack * static_cast<double>(n - gap);
+    return apart + growth > along && measured.length[path] - apart + growth_round > along;
+  });
   return pairs_;
 }
 
@@ -163,6 +178,14 @@ int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& ru
   for_near_pairs(x, static_cast<std::size_t>(samples), rule.spacing, rule.along, near,
                  [&](std::size_t, std::size_t, double) { ++count; });
   return count;
+}
+
+bool are_apart(std::span<const Vec2> x, int samples, const SpacingRule& rule,
+               SpacingScratch& scratch) {
+  bool near = false;
+  for_near_pairs(x, static_cast<std::size_t>(samples), rule.spacing, rule.along, scratch.samples,
+                 [&](std::size_t, std::size_t, double) { near = true; });
+  return !near;
 }
 
 int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule, SpacingScratch& scratch) {

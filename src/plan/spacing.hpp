@@ -28,14 +28,18 @@ class NearSamples {
  public:
   NearSamples() { listed_at_.reserve(kMaxLoopNodes); }
 
-  /// The pairs of samples nearer than `reach`, and some that are not. @pre at most kMaxLoopNodes
-  /// samples.
-  const NodePairs& list(std::span<const Vec2> x, double reach);
+  /// The pairs of samples nearer than `reach` that are on different paths or farther than `along`
+  /// apart on theirs, and some that are not. @param x paths of n samples each. @pre at most
+  /// kMaxLoopNodes samples.
+  const NodePairs& list(std::span<const Vec2> x, std::size_t n, double reach, double along);
 
  private:
+  bool is_listed(std::span<const Vec2> x, std::size_t n, double reach, double along) const;
+
   NodePairs pairs_;
   std::vector<Vec2> listed_at_;
-  double reach_ = 0.0;
+  std::size_t n_ = 0;
+  double reach_ = 0.0, along_ = 0.0;
 };
 
 /// Working memory of make_spaced().
@@ -46,6 +50,10 @@ struct SpacingScratch {
 
 /// Pairs of samples that are nearer than the rule allows. @param x paths of `samples` points each.
 int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& rule);
+
+/// Whether no pair is. @param scratch of make_spaced().
+bool are_apart(std::span<const Vec2> x, int samples, const SpacingRule& rule,
+               SpacingScratch& scratch);
 
 /// Makes paths keep the rule, simple and free of crossings. Samples that are too near push each
 /// other apart; where that does not end well, a path is replaced by a circle about its centroid or

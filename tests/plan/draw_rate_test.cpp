@@ -65,11 +65,16 @@ Plan begun_like(Plan plan, const Plan& like) {
   return plan;
 }
 
-TEST(DrawRate, PathsDependOnTheLengthAlone) {
+TEST(DrawRate, PathsDependOnTheLengthsAlone) {
   for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
     const TargetField field = fields::make(Pattern::FourPlumes, 2);
-    const Plan slow = test::plan_of(settings_at(preset, 3.5, 25.0), field);
-    const Plan fast = begun_like(test::plan_of(settings_at(preset, 14.0, 100.0), field), slow);
+    // of a path, and of the way in which an intensity rises
+    PlanSettings settings = settings_at(preset, 3.5, 25.0);
+    settings.rise_time = 2e-3;
+    const Plan slow = test::plan_of(settings, field);
+    settings = settings_at(preset, 14.0, 100.0);
+    settings.rise_time = 0.5e-3;
+    const Plan fast = begun_like(test::plan_of(settings, field), slow);
     ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(slow, fast, 1.0));
     for (std::size_t k = 0; k < slow.paths.size(); ++k) {
       EXPECT_DOUBLE_EQ(slow.paths[k].period, 4.0 * fast.paths[k].period);

@@ -176,6 +176,8 @@ TEST(Descent, GradientAgreesWithCentralDifferences) {
     const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed), 4, 20,
                  seed);
     check.add(c.cells, c.loops);
+    // and where pressures are held back, (P18)
+    check.add(c.cells, c.loops, PlayBounds::all(1.0F, seed % 2 == 0 ? 0.06F : 0.02F));
   }
   check.expect_agreement();
 }
@@ -247,7 +249,7 @@ TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {
   for (std::size_t a = 0; a < c.loops.nodes(); ++a) {
     for (const float change : {-0.02F, 0.02F}) {
       NodeArray moved = out.pressure;
-      moved[a] = std::min(std::max(moved[a] + change, 0.0F), settings.most_pressure);
+      moved[a] = std::min(std::max(moved[a] + change, 0.0F), settings.bounds.most[0]);
       EXPECT_GE(error(moved), least * (1.0 - 1e-5));
     }
   }
@@ -266,8 +268,9 @@ SpacingRule stated_rule() {
   return rule;
 }
 
+/// Of a path in a plan: those that are searched for, and one between each two.
 int samples_of(const PlanSettings& settings) {
-  return settings.preset == "best" ? settings.fit_samples : settings.samples;
+  return 2 * (settings.preset == "best" ? settings.fit_samples : settings.samples);
 }
 
 std::vector<Vec2> all_points(const Plan& plan) {

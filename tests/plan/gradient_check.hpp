@@ -15,9 +15,12 @@ struct GradientCheck {
   int tried = 0, off = 0;
 
   /// Compares them on the cost of loops after a short descent.
-  void add(const planning::CellTiles& cells, const planning::Loops& loops) {
-    planning::Descent descent(planning::CellTiles::kMaxTiles, loops.samples,
-                              planning::fit_settings(PlanSettings{}));
+  void add(const planning::CellTiles& cells, const planning::Loops& loops,
+           const planning::PlayBounds& bounds = planning::PlayBounds::all(1.0F,
+                                                                          planning::kAnySlope)) {
+    planning::FitSettings settings = planning::fit_settings(PlanSettings{});
+    settings.reconstruction.bounds = bounds;
+    planning::Descent descent(planning::CellTiles::kMaxTiles, loops.samples, settings);
     planning::Fit fit;
     fit.loops = loops;
     descent.run(cells, fit, 10);
