@@ -115,8 +115,8 @@ namespace {
 template <std::size_t kLanes>
 void sweep(const Loops& loops, const PressureEquations& equations, const NodeArray& inverse,
            const PlayBounds& bounds, NodeArray& pressure) {
-  const auto& [diagonal, after, right] = equations;
-  const auto& most = bounds.most;
+  const NodeArray &after = equations.after, &right = equations.right;
+  const std::array<float, kMaxPaths>& most = bounds.most;
   const std::size_t n = loops.nodes();
   const auto relax = [&](std::size_t a) {
     const std::size_t b = a + kLanes < n ? a + kLanes : 0;
