@@ -122,6 +122,31 @@ TEST(FocusSolver, TheReferenceIsExactAndIterationsUseMoreOfTheArray) {
   }
 }
 
+// (A4). Low over the array, focal points far apart have more than 1/P each of what one has alone.
+TEST(FocusSolver, FocalPointsFarApartShareTheArrayAsTheirTransducersDiffer) {
+  const auto bound_and_power = [](double height) {
+    std::vector<Vec3> corners;
+    for (const double x : {-0.06, 0.06}) {
+      for (const double y : {-0.06, 0.06}) corners.emplace_back(x, y, height);
+    }
+    const Propagation g = propagation_to(corners);
+    const Eigen::ArrayXd alone = g.cwiseAbs().rowwise().sum();
+    const double spread =
+        (static_cast<double>(g.cols()) * g.cwiseAbs2().rowwise().sum().array() / alone.square())
+            .maxCoeff();
+    const FocusSolution s = solve_foci(g, Eigen::VectorXd::Constant(4, 1e6), {});
+    return std::pair(spread, (s.pressure.cwiseAbs().array() / alone).square().sum());
+  };
+  const auto [bound_low, low] = bound_and_power(0.06);
+  const auto [bound_high, high] = bound_and_power(0.2);
+  std::printf("of 4 focal points: %.3f of at most %.3f at 60 mm, %.3f of %.3f at 200 mm\n", low,
+              bound_low, high, bound_high);
+  EXPECT_GT(low, 1.2);
+  EXPECT_LT(low, bound_low);
+  EXPECT_LT(high, bound_high);
+  EXPECT_LT(bound_high, 1.1);
+}
+
 TEST(FocusSolver, HalfTheRadiationPressureIsHalfReached) {
   Random random(3);
   const Propagation g = propagation_to(random_foci(random, 4, 15e-3));
