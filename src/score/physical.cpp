@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "target/skin_normal.hpp"
 
@@ -58,29 +60,138 @@ double offset_of(const std::array<double, static_cast<std::size_t>(kSide* kSide)
   return kStep * std::hypot(x - half, y - half);
 }
 
-/// Largest value of the envelope on skin beside all paths.
-double largest_beside(const SkinSurface& skin, const LoopSamples& loop,
-                      const std::vector<float>& envelope) {
+/// Where a loop's focal points that sound are, every 0.7 mm of a path.
+std::vector<Eigen::Vector3f> places_of(const LoopSamples& loop) {
+  constexpr std::size_t kEvery = 4;  // samples
   std::vector<Eigen::Vector3f> places;
-  constexpr std::size_t kEvery = 4;  // samples: 0.7 mm of a path
   for (std::size_t i = 0; i < loop.sample.size(); ++i) {
     const std::size_t sample = i / static_cast<std::size_t>(loop.foci);
     if (sample % kEvery == 0 && loop.sample[i].intensity > 0.0F) {
       places.push_back(loop.sample[i].p_D);
     }
   }
-  constexpr float kSquare = static_cast<float>(kBesidePaths * kBesidePaths);
-  float most = 0.0F;
-  for (std::size_t m = 0; m < skin.cell.size(); ++m) {
-    if (envelope[m] <= most) continue;
-    const Eigen::Vector3f p = skin.points.p_D[m].cast<float>();
-    const bool beside = std::none_of(
-        places.begin(), places.end(),
-        [&](const Eigen::Vector3f& place) { return (p - place).squaredNorm() < kSquare; });
-    if (beside) most = envelope[m];
-  }
-  return static_cast<double>(most);
+  return places;
 }
+
+/// Computes a PhysicalField. Cells may be wider than a lobe, so its largest values are looked for
+/// on points 2 mm apart or less, and then on points 0.5 mm apart around the highest of these.
+class Looking {
+ public:
+  Looking(const PackedArray& packed, const Medium& medium, const TargetField& raster,
+          const SkinSurface& skin, const LoopSamples& loop, const LoopDriveResult& drives,
+          WorkerPool& pool)
+      : packed_(packed),
+        medium_(medium),
+        raster_(raster),
+        skin_(skin),
+        places_(places_of(loop)),
+        drives_(drives),
+        pool_(pool) {
+    field.mean.assign(raster.size(), 0.0);
+    field.envelope.assign(raster.size(), 0.0);
+    // an odd number along each edge, so that one is in the middle
+    const int parts =
+        1 + 2 * std::max(0, static_cast<int>(std::ceil(raster.cell / kLook / 2 - 0.5)));
+    std::vector<Place> all, near;
+    for (std::size_t m = 0; m < skin.cell.size(); ++m) {
+      divide({m, raster.position(skin.cell[m])}, raster.cell, parts, all);
+    }
+    const LoopPressure found = look(all);
+    const auto of_a_cell = static_cast<std::size_t>(parts) * static_cast<std::size_t>(parts);
+    for (std::size_t m = 0; m < skin.cell.size(); ++m) {
+      field.mean[skin.cell[m]] = static_cast<double>(found.mean[m * of_a_cell + of_a_cell / 2]);
+      field.envelope[skin.cell[m]] =
+          static_cast<double>(found.envelope[m * of_a_cell + of_a_cell / 2]);
+    }
+    // a place stands for its surroundings too: some of them are beside the paths where it is not
+    for (const Place& place : std::exchange(highest_, {})) {
+      divide(place, 2.0 * kLook, 2 * kFiner, near);
+    }
+    std::erase_if(near, [&](const Place& place) { return !on_skin(place.x); });
+    look(near);
+    if (field.largest > 0.0) field.side_lobe = beside_ / field.largest;
+  }
+
+  PhysicalField field;
+
+ private:
+  struct Place {
+    std::size_t of;  // the cell whose normal it has: index in skin.cell
+    Vec2 x;          // in P
+  };
+  static constexpr double kLook = 2e-3;  // [m]
+  static constexpr int kFiner = 4;
+  static constexpr std::size_t kHighest = 32;  // places of each kind that are looked at again
+  static constexpr double kApart = kLook;      // between them [m]
+
+  static void divide(const Place& middle, double edge, int parts, std::vector<Place>& out) {
+    for (int j = 0; j < parts; ++j) {
+      for (int i = 0; i < parts; ++i) {
+        const Vec2 share((i + 0.5) / parts - 0.5, (j + 0.5) / parts - 0.5);
+        out.push_back({middle.of, middle.x + edge * share});
+      }
+    }
+  }
+
+  bool on_skin(const Vec2& x) const {
+    const Vec2 q = (x - raster_.origin) / raster_.cell;
+    const long row = std::lround(q.y()), col = std::lround(q.x());
+    return row >= 0 && col >= 0 && row < raster_.rows && col < raster_.cols &&
+           raster_.skin[raster_.index(static_cast<int>(row), static_cast<int>(col))] != 0;
+  }
+
+  bool beside_paths(const Vec3& p_D) const {
+    constexpr float kSquare = static_cast<float>(kBesidePaths * kBesidePaths);
+    const Eigen::Vector3f p = p_D.cast<float>();
+    return std::none_of(places_.begin(), places_.end(), [&](const Eigen::Vector3f& place) {
+      return (p - place).squaredNorm() < kSquare;
+    });
+  }
+
+  /// Takes the largest values of places, and adds the highest places of each kind to `highest_`.
+  LoopPressure look(const std::vector<Place>& at) {
+    SurfacePoints points;
+    for (const Place& place : at) {
+      const double height = height_at(raster_, place.x);
+      points.p_D.push_back(raster_.X_DP * Vec3(place.x.x(), place.x.y(), height));
+      points.normal.push_back(skin_.points.normal[place.of]);
+    }
+    LoopPressure found = loop_pressure(packed_, medium_, drives_.output, points, 0, pool_);
+    const auto take = [&](const std::vector<float>& value, auto&& counts, double& largest) {
+      std::vector<std::size_t> order(at.size());
+      std::iota(order.begin(), order.end(), std::size_t{0});
+      std::sort(order.begin(), order.end(),
+                [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
+      // apart from each other, so that they are of different lobes
+      const std::size_t before = highest_.size();
+      for (std::size_t i = 0; i < order.size() && highest_.size() < before + kHighest; ++i) {
+        const Place& place = at[order[i]];
+        if (!counts(order[i])) continue;
+        largest = std::max(largest, static_cast<double>(value[order[i]]));
+        const bool apart =
+            std::none_of(highest_.begin() + static_cast<std::ptrdiff_t>(before), highest_.end(),
+                         [&](const Place& other) { return (other.x - place.x).norm() < kApart; });
+        if (apart) highest_.push_back(place);
+      }
+    };
+    const auto anywhere = [](std::size_t) { return true; };
+    take(found.envelope, anywhere, field.largest);
+    take(found.mean, anywhere, field.largest_mean);
+    take(
+        found.envelope, [&](std::size_t i) { return beside_paths(points.p_D[i]); }, beside_);
+    return found;
+  }
+
+  const PackedArray& packed_;
+  const Medium& medium_;
+  const TargetField& raster_;
+  const SkinSurface& skin_;
+  std::vector<Eigen::Vector3f> places_;
+  const LoopDriveResult& drives_;
+  WorkerPool& pool_;
+  std::vector<Place> highest_;
+  double beside_ = 0.0;  // the largest of the envelope beside the paths
+};
 
 }  // namespace
 
@@ -135,20 +246,7 @@ PhysicalField physical_field(const PackedArray& packed, const Medium& medium,
   if (skin.cell.empty()) {
     throw std::invalid_argument("the raster has no skin; there must be a cell with a height");
   }
-  const LoopPressure pressure = loop_pressure(packed, medium, drives.output, skin.points, 0, pool);
-  PhysicalField out;
-  out.mean.assign(raster.size(), 0.0);
-  out.envelope.assign(raster.size(), 0.0);
-  for (std::size_t m = 0; m < skin.cell.size(); ++m) {
-    out.mean[skin.cell[m]] = static_cast<double>(pressure.mean[m]);
-    out.envelope[skin.cell[m]] = static_cast<double>(pressure.envelope[m]);
-  }
-  out.largest = *std::max_element(out.envelope.begin(), out.envelope.end());
-  out.largest_mean = *std::max_element(out.mean.begin(), out.mean.end());
-  if (out.largest > 0.0) {
-    out.side_lobe = largest_beside(skin, loop, pressure.envelope) / out.largest;
-  }
-  return out;
+  return Looking(packed, medium, raster, skin, loop, drives, pool).field;
 }
 
 Metrics score_physical(const TargetField& target, const std::vector<double>& field,

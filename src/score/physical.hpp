@@ -36,7 +36,9 @@ FocusAccuracy focus_accuracy(const PackedArray& packed, const LoopSamples& loop,
 /// first zero of a focus at 200 mm, about [m].
 inline constexpr double kBesidePaths = 20e-3;
 
-/// Radiation pressure of a loop on the skin [Pa], rows·cols, 0 where there is no skin.
+/// Radiation pressure of a loop on the skin [Pa]: rows·cols values at the middles of cells, 0 where
+/// there is no skin. The largest values are those between them too, found on points 0.5 mm apart,
+/// so that they do not depend on the cells.
 struct PhysicalField {
   std::vector<double> mean, envelope;
   double largest = 0.0;       ///< of the envelope

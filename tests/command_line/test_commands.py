@@ -413,7 +413,9 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
     envelope, mean = np.array(result["envelope_pa"]), np.array(result["mean_pa"])
     assert envelope.shape == mean.shape == (24, 30)
-    assert envelope.max() == result["envelope"]["largest_pa"] and mean.max() == result["mean"]["largest_pa"]
+    # the largest values lie between the middles of the cells
+    assert 1.0 <= result["envelope"]["largest_pa"] / envelope.max() < 1.1
+    assert 1.0 <= result["mean"]["largest_pa"] / mean.max() < 1.1
     assert np.all(envelope >= mean) and envelope.max() > 3 * mean.max() > 0
     # it is the target's shape, and that of both foci, in both
     assert result["envelope"]["metrics"]["correlation"] > 0.6 and result["mean"]["metrics"]["skill_8"] > 0.4

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "core/units.hpp"
@@ -86,6 +87,41 @@ TEST(SkinSurface, OneCellAndOneRowFaceTheArray) {
   for (const Vec3& n : skin_surface(field).points.normal) {
     EXPECT_LT((n + Vec3::UnitZ()).norm(), 1e-6);
   }
+}
+
+/// 155 × 155 mm of tilted skin on square cells.
+TargetField wide_raster(int cells) {
+  TargetField field;
+  field.resize(cells, cells);
+  field.cell = 0.155 / cells;
+  field.origin = Vec2::Constant(0.5 * field.cell - 0.0775);
+  for (std::size_t c = 0; c < field.size(); ++c) {
+    field.skin[c] = 1;
+    field.height[c] = 0.2 * field.position(c).x();
+  }
+  return field;
+}
+
+// The largest values lie between the middles of cells wider than a lobe.
+TEST(Physical, LargestValuesDoNotDependOnTheCells) {
+  const PackedArray packed(usx_array(), Medium());
+  WorkerPool pool(2);
+  const TargetField coarse = wide_raster(31), fine = wide_raster(155);
+  const LoopSamples loop = loop_of(two_squares(coarse, 1.0));
+  const LoopDriveResult drives = drives_of(loop, {});
+  const PhysicalField wide = physical_field(packed, Medium(), coarse, loop, drives, pool),
+                      narrow = physical_field(packed, Medium(), fine, loop, drives, pool);
+  const auto at_cells = [](const PhysicalField& field) {
+    return *std::max_element(field.envelope.begin(), field.envelope.end());
+  };
+  std::printf(
+      "side lobe %.4f and %.4f, largest %.2f and %.2f Pa (in the middle of cells %.2f and "
+      "%.2f Pa) on cells of 5 and 1 mm\n",
+      wide.side_lobe, narrow.side_lobe, wide.largest, narrow.largest, at_cells(wide),
+      at_cells(narrow));
+  EXPECT_NEAR(wide.largest, narrow.largest, 0.01 * narrow.largest);
+  EXPECT_NEAR(wide.largest_mean, narrow.largest_mean, 0.01 * narrow.largest_mean);
+  EXPECT_NEAR(wide.side_lobe, narrow.side_lobe, 0.04 * narrow.side_lobe);
 }
 
 // Plan → emission → drives → transducers → field, at a full scale that the array can hold.
