@@ -15,6 +15,12 @@ double laps_completed(const RunSummary& s) {
   return 1.0 - static_cast<double>(s.emit.laps_cut) / laps;
 }
 
+/// The share of the hands' skin that was not planned because the array cannot press there.
+double steep_share(const RunSummary& s) {
+  const auto cells = static_cast<double>(s.skin_cells + s.steep_cells);
+  return static_cast<double>(s.steep_cells) / std::max(1.0, cells);
+}
+
 void print_paths(std::FILE* out, const RunSummary& s) {
   fmt::print(out,
              "paths: longest {:.1f} mm in the plane, {:.1f} mm on the skin; {} too long, {} "
@@ -93,6 +99,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
           {"mean_relative_divergence", s.mean_divergence},
           {"fluid_resets", s.fluid_resets},
           {"joints_outside", s.joints_outside},
+          {"steep_share", steep_share(s)},
           {"unrecorded", s.unobserved},
           {"switch_at", settings.emit.switch_at},
           {"latency_ms", to_json(s.latency, 1e3)},
@@ -132,6 +139,12 @@ void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& 
         out,
         "hand: {} joint positions were outside the fluid's box; the skin there has no target\n",
         s.joints_outside);
+  }
+  if (s.steep_cells > 0) {
+    fmt::print(out,
+               "hand: {:.0f} % of its skin was too steep for the array to press on, and not "
+               "planned\n",
+               100.0 * steep_share(s));
   }
   if (s.unobserved > 0) fmt::print(out, "recording: {} updates were missed\n", s.unobserved);
   print_times(out, s, settings);

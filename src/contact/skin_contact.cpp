@@ -1,18 +1,46 @@
 #include "contact/skin_contact.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "core/require.hpp"
+#include "core/units.hpp"
+#include "target/skin_normal.hpp"
 
 namespace prostm {
 namespace {
 
-constexpr double kMinNormalZ =
-    0.25;  // a plane is never steeper than 75°: an edge-on hand has no area towards the array
+constexpr double kPalmReach = 0.05;    // ℓ of (C1) [m]
+constexpr double kLeastCosine = 1e-3;  // of visible skin, which faces the array but for rounding
+const double kFullCosine = std::cos(40 * kPi / 180.0);  // where the fade (C6) begins, and where
+const double kNoneCosine = std::cos(62 * kPi / 180.0);  // nothing is left
 constexpr double kNearSkin = 1.5;  // a crossing is at most this far from the skin itself: √3/2 that
                                    // trilinear values err by, and a step [cells]
+
+/// Of visible skin in the fit (C1).
+double plane_weight(double normal_z) {
+  const double square = std::pow(std::max(normal_z, kLeastCosine), 2);
+  return square * square;
+}
+
+/// The slope of the palm's plane, folded: as steep as the palm up to 45°, from there on level again
+/// towards 90°, where the palm's other side takes over. Continuous in the pose.
+Vec2 palm_slope(const Hand& hand) {
+  const Vec3& wrist = hand.position[kWrist];
+  const Vec3 across =
+      (hand.position[kIndexProximal] - wrist).cross(hand.position[kLittleProximal] - wrist);
+  const double level = std::abs(across.z()), steep = across.head<2>().norm();
+  if (level <= 0.0 || steep <= 0.0) return Vec2::Zero();
+  const Vec2 downhill = (across.z() > 0.0 ? 1.0 : -1.0) / steep * across.head<2>();
+  return -std::min(level / steep, steep / level) * downhill;
+}
+
+/// The share of the pressure that is left on skin at an angle to the way from the array, (C6).
+double fade_of(double cosine) {
+  const double t = std::clamp((cosine - kNoneCosine) / (kFullCosine - kNoneCosine), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
 
 }  // namespace
 
@@ -37,8 +65,9 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
   require_between("touch_palm", settings.touch_palm, 0.001, 1000.0);
   require_between("touch_finger", settings.touch_finger, 0.001, 1000.0);
   require_between("touch_tip", settings.touch_tip, 0.001, 1000.0);
-  for (std::vector<Vec3>& points : visible_)
-    points.reserve(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
+  for (std::vector<SeenSkin>& skin : visible_)
+    skin.reserve(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
+  fade_.assign(max_cells(), 0.0);
   queue_.reserve(max_cells());
   if (settings.time_constant == 0.0) return;
   smoothed_.assign(grid.cell_count(), 0.0F);
@@ -47,8 +76,15 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
 
 ContactStats SkinContact::extract(const Fluid& fluid, const HandRaster& raster,
                                   const HandFrame& hands, double dt, TargetFrame& out) noexcept {
+  return extract(fluid.pressure(), fluid.fluid_cells(), raster, hands, dt, out);
+}
+
+ContactStats SkinContact::extract(std::span<const float> pressure,
+                                  std::span<const std::uint8_t> fluid_cells,
+                                  const HandRaster& raster, const HandFrame& hands, double dt,
+                                  TargetFrame& out) noexcept {
   ContactStats stats;
-  take_pressure(fluid, dt);
+  take_pressure(pressure, fluid_cells, dt);
   shapes_.clear();
   for (const Hand& hand : hands.hands) {
     shapes_.emplace_back(hand);
@@ -69,11 +105,14 @@ ContactStats SkinContact::extract(const Fluid& fluid, const HandRaster& raster,
     if (visible_[hand].empty()) continue;
     if (out.patches.size() == patches) out.patches.emplace_back();
     TargetField& patch = out.patches[patches];
-    if (!place_patch(visible_[hand], patch)) continue;
-    const int skin = gather(static_cast<int>(hand), patch);
-    if (skin == 0) continue;
+    if (!place_patch(visible_[hand], hands.hands[hand], patch)) continue;
+    find_skin(static_cast<int>(hand), patch);
+    const Cells cells = press(shapes_[hand], patch);
+    stats.steep_cells += cells.steep;
+    if (cells.skin == 0) continue;
     fill_heights(patch, queue_);
-    stats.skin_cells += skin;
+    stats.skin_cells += cells.skin;
+    stats.skin_area += cells.area;
     ++patches;
   }
   while (out.patches.size() > patches) out.patches.pop_back();
@@ -81,31 +120,46 @@ ContactStats SkinContact::extract(const Fluid& fluid, const HandRaster& raster,
 }
 
 void SkinContact::find_visible() {
-  for (std::vector<Vec3>& points : visible_) points.clear();
+  for (std::vector<SeenSkin>& skin : visible_) skin.clear();
   if (shapes_.empty()) return;
   const CellBox& box = rays_.box();
   for (int j = box.lower[1]; j < box.upper[1]; ++j) {
     for (int i = box.lower[0]; i < box.upper[0]; ++i) {
       Vec3 p_D = grid_.cell_centre(i, j, 0);
       p_D.z() = rays_.column(i, j);
-      if (!std::isnan(p_D.z())) visible_[static_cast<std::size_t>(owner_.of(p_D))].push_back(p_D);
+      if (std::isnan(p_D.z())) continue;
+      visible_[static_cast<std::size_t>(owner_.of(p_D))].push_back(
+          {p_D, plane_weight(rays_.inwards(p_D).z())});
     }
   }
 }
 
-bool SkinContact::place_patch(std::span<const Vec3> visible, TargetField& patch) const {
-  // (C1) plane through the mean, normal to the direction of least spread, towards +z
+/// (C1): the mean, and the unit normal towards +z.
+std::pair<Vec3, Vec3> SkinContact::fit_plane(std::span<const SeenSkin> visible,
+                                             const Hand& hand) const {
+  const double column = grid_.cell * grid_.cell;
+  double weights = 0.0;
   Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : visible) mean += p;
-  mean /= static_cast<double>(visible.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : visible) spread += (p - mean) * (p - mean).transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread);
-  Vec3 normal = eigen.eigenvectors().col(0);
-  if (normal.z() < 0.0) normal = -normal;
-  const bool flat_enough =
-      eigen.eigenvalues()(1) > 4.0 * grid_.cell * grid_.cell;  // not a line or a point
-  if (!flat_enough || normal.z() < kMinNormalZ) normal = Vec3::UnitZ();
+  for (const SeenSkin& skin : visible) {
+    weights += skin.weight;
+    mean += skin.weight * skin.p_D;
+  }
+  mean /= weights;
+  const double palm = std::pow(kPalmReach, 4);
+  Eigen::Matrix2d spread = palm * Eigen::Matrix2d::Identity();
+  Vec2 rise = palm * palm_slope(hand);
+  for (const SeenSkin& skin : visible) {
+    const Vec3 d = skin.p_D - mean;
+    spread += column * skin.weight * d.head<2>() * d.head<2>().transpose();
+    rise += column * skin.weight * d.z() * d.head<2>();
+  }
+  const Vec2 slope = spread.inverse() * rise;
+  return {mean, Vec3(-slope.x(), -slope.y(), 1.0).normalized()};
+}
+
+bool SkinContact::place_patch(std::span<const SeenSkin> visible, const Hand& hand,
+                              TargetField& patch) const {
+  const auto [mean, normal] = fit_plane(visible, hand);
 
   // (C2) x axis: D's x projected; origin: the foot of F's origin
   const Vec3 x = (Vec3::UnitX() - normal.x() * normal).normalized();
@@ -117,8 +171,8 @@ bool SkinContact::place_patch(std::span<const Vec3> visible, TargetField& patch)
   // needs
   Vec2 lower = Vec2::Constant(1e9), upper = Vec2::Constant(-1e9);
   const Pose X_PD = patch.X_DP.inverse();
-  for (const Vec3& p : visible) {
-    const Vec2 q = (X_PD * p).head<2>();
+  for (const SeenSkin& skin : visible) {
+    const Vec2 q = (X_PD * skin.p_D).head<2>();
     lower = lower.cwiseMin(q);
     upper = upper.cwiseMax(q);
   }
@@ -134,40 +188,61 @@ bool SkinContact::place_patch(std::span<const Vec3> visible, TargetField& patch)
   return true;
 }
 
-int SkinContact::gather(int hand, TargetField& patch) {
+void SkinContact::find_skin(int hand, TargetField& patch) {
   // (C3) from below the lowest to above the highest visible point, along the normal
   const Vec3 normal = patch.X_DP.linear().col(2);
   double lowest = 1e9, highest = -1e9;
-  for (const Vec3& p : visible_[static_cast<std::size_t>(hand)]) {
-    const double z = normal.dot(p - patch.X_DP.translation());
+  for (const SeenSkin& skin : visible_[static_cast<std::size_t>(hand)]) {
+    const double z = normal.dot(skin.p_D - patch.X_DP.translation());
     lowest = std::min(lowest, z);
     highest = std::max(highest, z);
   }
   lowest -= 1.5 * patch.cell;
   const double reach = highest - lowest + 0.5 * patch.cell;
-  const HandShape& shape = shapes_[static_cast<std::size_t>(hand)];
-  if (has_weights_) patch.weight.assign(patch.size(), 0.0);
-
-  int skin = 0;
   for (int row = 0; row < patch.rows; ++row) {
     for (int col = 0; col < patch.cols; ++col) {
       const Vec2 x = patch.position(row, col);
       const Vec3 start = patch.X_DP * Vec3(x.x(), x.y(), lowest);
       const double t = rays_.march(start, normal, reach);
-      if (t < 0.0) continue;
-      const Vec3 p_D = start + t * normal;
-      if (owner_.of(p_D) != hand) continue;
+      if (t < 0.0 || owner_.of(start + t * normal) != hand) continue;
       const std::size_t cell = patch.index(row, col);
       patch.skin[cell] = 1;
       patch.height[cell] = lowest + t;
-      // (C4)
-      patch.pressure[cell] =
-          std::max(0.0, pressure_at(p_D - settings_.offset_cells * patch.cell * normal));
-      if (has_weights_) patch.weight[cell] = touch_at(shape, p_D);
-      ++skin;
     }
   }
-  return skin;
+}
+
+SkinContact::Cells SkinContact::press(const HandShape& shape, TargetField& patch) {
+  const auto point = [&](std::size_t cell) -> Vec3 {
+    const Vec2 x = patch.position(cell);
+    return patch.X_DP * Vec3(x.x(), x.y(), patch.height[cell]);
+  };
+  // (C6), of all cells before any of them is no skin any more: normals depend on their neighbours
+  for (int row = 0; row < patch.rows; ++row) {
+    for (int col = 0; col < patch.cols; ++col) {
+      const std::size_t cell = patch.index(row, col);
+      if (patch.skin[cell] == 0) continue;
+      const Vec3 normal = patch.X_DP.linear() * skin_normal(patch, row, col);
+      fade_[cell] = fade_of(-normal.dot(point(cell).normalized()));
+    }
+  }
+  if (has_weights_) patch.weight.assign(patch.size(), 0.0);
+  const Vec3 outside = -settings_.offset_cells * patch.cell * patch.X_DP.linear().col(2);
+  Cells out;
+  for (std::size_t cell = 0; cell < patch.size(); ++cell) {
+    if (patch.skin[cell] == 0) continue;
+    if (fade_[cell] <= 0.0) {
+      patch.skin[cell] = 0;
+      ++out.steep;
+      continue;
+    }
+    const Vec3 p_D = point(cell);
+    patch.pressure[cell] = fade_[cell] * std::max(0.0, pressure_at(p_D + outside));  // (C4)
+    if (has_weights_) patch.weight[cell] = touch_at(shape, p_D);
+    ++out.skin;
+    out.area += fade_[cell] * patch.cell * patch.cell;
+  }
+  return out;
 }
 
 /// (C5)
@@ -183,9 +258,10 @@ double SkinContact::touch_at(const HandShape& shape, const Vec3& p_D) const {
   return settings_.touch_palm;
 }
 
-void SkinContact::take_pressure(const Fluid& fluid, double dt) {
-  fluid_ = fluid.fluid_cells();
-  pressure_ = fluid.pressure();
+void SkinContact::take_pressure(std::span<const float> pressure,
+                                std::span<const std::uint8_t> fluid_cells, double dt) {
+  fluid_ = fluid_cells;
+  pressure_ = pressure;
   if (smoothed_.empty()) return;
   const auto share = static_cast<float>(1.0 - std::exp(-dt / settings_.time_constant));
   const float* now = pressure_.data();

@@ -143,6 +143,28 @@ double SkinRays::distance(const Vec3& q) const noexcept {
   return in_grid(grid_, q) ? between_nodes(*raster_, q) : static_cast<double>(HandRaster::kFar);
 }
 
+Vec3 SkinRays::inwards(const Vec3& p_D) const noexcept {
+  const Vec3 q = (p_D - grid_.p_DF) / grid_.cell;
+  const int at[3] = {std::clamp(static_cast<int>(q.x()), 0, grid_.nx - 1),
+                     std::clamp(static_cast<int>(q.y()), 0, grid_.ny - 1),
+                     std::clamp(static_cast<int>(q.z()), 0, grid_.nz - 1)};
+  Vec3 gradient = Vec3::Zero();
+  for (int corner = 0; corner < 8; ++corner) {
+    const int up[3] = {corner & 1, corner >> 1 & 1, corner >> 2};
+    const std::size_t node = grid_.node_index(at[0] + up[0], at[1] + up[1], at[2] + up[2]);
+    const auto d = static_cast<double>(raster_->node_distance[node]);
+    Vec3 share, sign;
+    for (int a = 0; a < 3; ++a) {
+      const double u = q[a] - at[a];
+      share[a] = up[a] != 0 ? u : 1.0 - u;
+      sign[a] = up[a] != 0 ? d : -d;
+    }
+    gradient += Vec3(sign.x() * share.y() * share.z(), sign.y() * share.z() * share.x(),
+                     sign.z() * share.x() * share.y());
+  }
+  return -gradient.normalized();
+}
+
 double SkinRays::march(const Vec3& start, const Vec3& direction, double t_max) const noexcept {
   if (box_.empty()) return -1.0;
   const double step = kMarchStep * grid_.cell;

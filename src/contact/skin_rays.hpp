@@ -32,6 +32,9 @@ class SkinRays {
   /// The crossing of the ray that goes along z through the middle of a column, z [m] in D; NaN when
   /// there is none. It is the one that march() finds from a node's height below the hand.
   double column(int i, int j) const noexcept;
+  /// The unit normal of the skin at a crossing, into the hand: against the gradient of the distance
+  /// within the crossing's cell. @pre in the grid.
+  Vec3 inwards(const Vec3& p_D) const noexcept;
   /// As march(), to rounding.
   double march(const Vec3& start, const Vec3& direction, double t_max) const noexcept;
 

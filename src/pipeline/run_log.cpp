@@ -12,6 +12,8 @@ void SmokeLog::meet(const ContactFrame& frame) {
   if (!frame.targeted) return;
   contact_.add(frame.contact_time);
   joints_outside_ += frame.contact.joints_outside;
+  skin_cells_ += frame.contact.skin_cells;
+  steep_cells_ += frame.contact.steep_cells;
 }
 
 void SmokeLog::settle(const FluidStats& stats) {
@@ -24,6 +26,8 @@ void SmokeLog::write(RunSummary& out) const {
   out.skipped_fluid_steps = skipped_;
   out.fluid_resets = resets_;
   out.joints_outside = joints_outside_;
+  out.skin_cells = skin_cells_;
+  out.steep_cells = steep_cells_;
   out.mean_divergence = steps_ > 0 ? divergence_ / static_cast<double>(steps_) : 0.0;
   out.track = track_.summary();
   out.hand = hand_.summary();

@@ -22,7 +22,8 @@ class SmokeLog {
   void write(RunSummary& out) const;
 
  private:
-  std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0, joints_outside_ = 0;
+  std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0, joints_outside_ = 0, skin_cells_ = 0,
+               steep_cells_ = 0;
   double divergence_ = 0.0;
   Distribution track_, hand_, fluid_, contact_;
 };

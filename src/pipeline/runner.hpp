@@ -45,6 +45,7 @@ struct RunSummary {
   std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
   std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
   std::int64_t joints_outside = 0;             ///< joint-updates outside the fluid's box
+  std::int64_t skin_cells = 0, steep_cells = 0;  ///< of ContactStats, of all updates
   DeviceStats device;
   EmitStats emit;
   double max_path_length = 0, max_skin_length = 0;
