@@ -16,6 +16,7 @@
 #include "random_fields.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
+#include "target/pressure_share.hpp"
 
 namespace prostm::planning {
 namespace {
@@ -73,8 +74,9 @@ TEST(CellWeights, AreOverTheirMeanByPressure) {
   double weighted = 0.0, all = 0.0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (field.skin[i] == 0) continue;
-    weighted += weights[i] * field.pressure[i];
-    all += field.pressure[i];
+    const double p = pressure_share(field.pressure[i], max_pressure(field));
+    weighted += weights[i] * p;
+    all += p;
   }
   EXPECT_NEAR(weighted, all, 1e-12 * all);
   EXPECT_NEAR(weights[field.size() - 1], 10.0 * weights[0], 1e-12 * weights[field.size() - 1]);
