@@ -149,7 +149,6 @@ def test_a_pipe_that_nobody_writes_to_is_refused(refuses, tmp_path):
 
 def test_a_hand_that_is_renamed_in_every_frame_is_felt_as_one(prostm, refuses, tmp_path):
     header, frames = hand_lines()
-    del header["joints"]
 
     def run(*ids, step=0.01):
         lines = [header] + [{"t": step * i, "hands": [dict(frames[0]["hands"][0], id=n)]} for i, n in enumerate(ids)]

@@ -107,6 +107,7 @@ def test_files_are_refused_in_the_words_of_the_command_line(program, tmp_path):
     (tmp_path / "cut.json").write_text('{"format": "prostm-field/1", "cell_mm"')
     (tmp_path / "negative.json").write_text(
         '{"format":"prostm-field/1","cell_mm":5,"origin_mm":[0,0],"rows":1,"cols":2,"pressure":[[1,-2]]}')
+    (tmp_path / "field.txt").write_text("1 2 3")
     for name, cell in [("three.npy", 5), ("cut.json", None), ("negative.json", None), ("absent.json", None),
                        ("three.npy", None), ("field.txt", None)]:
         there = program("plan", tmp_path / name, *(["--cell-mm", cell] if cell else []), status=2).stderr

@@ -39,8 +39,10 @@ def test_quasi_static_field_is_eq_1(field, preset, sigma, gain):
 
 @pytest.mark.parametrize("preset", ["paper", "best"])
 def test_every_path_has_the_gain_of_its_period(field, preset):
-    settings = prostm.PlanSettings(preset=preset, gain_exponent=-0.7, draw_rate=60)
-    result, constant = prostm.plan(field, settings=settings), prostm.plan(field, preset, draw_rate=60)
+    ample = 1e5 * field.pressure[field.skin].max()  # full output that holds no pressure back
+    settings = prostm.PlanSettings(preset=preset, gain_exponent=-0.7, draw_rate=60, full_scale_pressure=ample)
+    result = prostm.plan(field, settings=settings)
+    constant = prostm.plan(field, preset, draw_rate=60, full_scale_pressure=ample)
     gains = [GAIN * (path.period * 60) ** -0.7 for path in result.paths]
     for path, other, gain in zip(result.paths, constant.paths, gains):
         np.testing.assert_allclose(path.pressure, other.pressure * gain / GAIN, rtol=1e-12)
