@@ -365,7 +365,8 @@ double flicker(double jitter, bool filter_on) {
     if (i < 150 || i % 2 != 0) continue;
     bench.extract();
     const TargetField& patch = bench.target.patches.at(0);
-    // compare on the columns of the device, which do not move with the plane
+    // compare on the columns of the device, which do not move with the plane; its cells lie near
+    // the middles of these
     std::vector<double> now(static_cast<std::size_t>(kCells) * kCells, 0.0);
     for (int row = 0; row < patch.rows; ++row) {
       for (int col = 0; col < patch.cols; ++col) {
@@ -373,7 +374,8 @@ double flicker(double jitter, bool filter_on) {
         const Vec2 x = patch.position(row, col);
         const Vec3 q =
             (patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]) - bench.fluid.grid().p_DF) /
-            bench.fluid.grid().cell;
+                bench.fluid.grid().cell +
+            Vec3::Constant(0.5);
         if (patch.skin[c] == 0 || q.x() < 0 || q.y() < 0 || q.x() >= kCells || q.y() >= kCells)
           continue;
         now[static_cast<std::size_t>(q.y()) * kCells + static_cast<std::size_t>(q.x())] =
