@@ -47,6 +47,10 @@ class NodePairs {
   /// aligned as a vector is.
   void set(const NodeArray& x, const NodeArray& y, std::size_t nodes, float distance);
 
+  void clear() { size_ = 0; }
+  void add(const NodePair& pair) {
+    packed_[size_++] = static_cast<std::uint32_t>(pair.first | pair.second << 16U);
+  }
   /// Forgets the pairs for which keep(pair) is false.
   template <typename Keep>
   void filter(const Keep& keep) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "plan/lifted_plan.hpp"
 #include "plan/pressure_raster.hpp"
@@ -19,6 +18,7 @@ constexpr double kRounding = 1e-4;      // share of a bound that single precisio
 constexpr double kFastWidth = 6.0;      // of the cells of preset fast [mm]
 constexpr double kFastFineWidth = 4.0;  // of those that its pressures are solved on [mm]
 constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4, kFastSmallEvaluations = 4;
+constexpr int kFastFinePaths = 1;  // of a target that is small enough to need finer cells
 constexpr int kFastRegionPasses = 3, kFastStopPasses = 2;
 constexpr int kMendRounds = 8;      // at most, on uneven skin
 constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
@@ -26,7 +26,7 @@ constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on 
 // Output that is so many times what is wanted bounds nothing, and what is wanted above so many
 // times the output counts as that: single precision resolves what lies between.
 constexpr double kAmple = 1e4;
-constexpr int kMostPieces = 2;  // of a segment that is searched for
+constexpr int kPieces = 2;  // that preset best cuts each segment into that it searched for
 
 SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   SearchSettings search;
@@ -46,7 +46,8 @@ SearchSettings search_settings(const PlanSettings& s, Preset preset) {
     search.stop_passes = kFastStopPasses;
     search.coarse_width = kFastWidth;
     search.fine_width = kFastFineWidth;
-
+    search.fine_paths = kFastFinePaths;
+    search.counts_steepness = false;
     return search;
   }
   search.starts = s.fit_starts;
@@ -60,10 +61,10 @@ bool is_constant(const std::vector<double>& values) {
          std::memcmp(values.data(), values.data() + 1, (values.size() - 1) * sizeof(double)) == 0;
 }
 
-/// Of a segment that is searched for, as many as a plan has room for: a pressure is linear between
-/// samples, and its root, which is what is played, nearly so if they lie close together.
-int pieces_of(int samples) {
-  return std::max(1, std::min(kMostPieces, kMaxPathPoints / samples));
+/// Of each segment that is searched for: the pressure is linear between samples, and so follows the
+/// field the better the closer they lie.
+int pieces_of(Preset preset, int samples) {
+  return preset == Preset::Best && kPieces * samples <= kMaxPathPoints ? kPieces : 1;
 }
 
 }  // namespace
@@ -85,8 +86,7 @@ FitSettings fit_settings(const PlanSettings& s) {
 FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells)
     : settings_(settings),
       search_(max_cells, fit_settings(settings), search_settings(settings, preset)),
-      pieces_(pieces_of(search_settings(settings, preset).samples)),
-      solves_dense_(preset == Preset::Best) {}
+      pieces_(pieces_of(preset, search_settings(settings, preset).samples)) {}
 
 /// (P18) where a path's rendered pressure is `gain` times what it is felt as.
 PlayBounds FitPlanner::play_bounds(double gain) const {
@@ -231,84 +231,77 @@ void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
   const double segment = kMmPerMetre * settings_.max_length() / samples_;
   paths = space_out(target, paths, spacing_rule(pieces_ > 1 ? 0.5 * segment : 0.0));
   take_points(paths);
+  if (pieces_ > 1) paths = mend_between(target, paths);
+  solve(target, paths, stats);
+  make_playable(plan_.loops, bounds_, plan_.reconstruction.pressure);
+}
 
-  // then those of the plan, most of which are where they may be
+/// Mends the samples of the plan, most of which are where they may be. @return how many paths are
+/// kept.
+int FitPlanner::mend_between(const TargetField& target, int paths) {
   samples_ *= pieces_;
   for (int k = 0; k < paths; ++k) copy_path(k, k);
   const SpacingRule rule = spacing_rule(0.0);
-  if (!are_apart(points_of(paths), samples_, rule, spacing_)) {
-    paths = space_out(target, paths, rule);
-    take_points(paths);
-  }
-  solve_dense(target, paths, stats);
-  while (leave_out_silent(paths)) {
-    take_points(paths);
-    solve_dense(target, paths, stats);
-  }
+  if (are_apart(points_of(paths), samples_, rule, spacing_)) return paths;
+  paths = space_out(target, paths, rule);
+  take_points(paths);
+  return paths;
 }
 
-/// Of fit_ at sample i of points_, linear between its own.
-float FitPlanner::pressure_at(int i, int k) const {
-  const int a = i / pieces_, b = (a + 1) % fit_.loops.samples;
-  const float along = static_cast<float>(i % pieces_) / static_cast<float>(pieces_);
-  const NodeArray& pressure = fit_.reconstruction.pressure;
-  return (1.0F - along) * pressure[fit_.loops.node(a, k)] + along * pressure[fit_.loops.node(b, k)];
-}
-
-/// The pressures of the paths of points_ as they are played.
-void FitPlanner::solve_dense(const TargetField& target, int paths, PlanStats& stats) {
-  dense_.loops.reset(samples_, paths);
-  PlayBounds bounds = play_bounds(settings_.gain);
+/// Copies the paths of points_ to plan_, with what the emission can play on them.
+void FitPlanner::take_plan(const TargetField& target, int paths) {
+  plan_.loops.reset(samples_, paths);
+  bounds_ = play_bounds(settings_.gain);
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
     const std::span<Vec2> loop = path_at(k);
     for (int i = 0; i < samples_; ++i) {
       Vec2& x = loop[static_cast<std::size_t>(i)];
-      dense_.loops.set_point(i, k, x);
-      x = dense_.loops.point(i, k);  // as the plan has it
+      plan_.loops.set_point(i, k, x);
+      x = plan_.loops.point(i, k);  // as the plan has it
     }
     factor_[place] = skin_factor(target, loop);
     period_[place] = loop_length(loop) / kMmPerMetre * factor_[place] / settings_.speed;
     const PlayBounds own = play_bounds(settings_.gain_law().of(period_[place]));
-    bounds.most[place] = own.most[place];
-    bounds.slope[place] = own.slope[place];
-    bounds.least[place] = own.least[place];
+    bounds_.most[place] = own.most[place];
+    bounds_.slope[place] = own.slope[place];
+    bounds_.least[place] = own.least[place];
   }
-  if (solves_dense_) {
-    search_.solve(bounds, dense_);
-  } else {
-    search_.solve(bounds, fit_);
-    // lanes that no path uses count, too
-    std::fill_n(dense_.reconstruction.pressure.begin(), dense_.loops.nodes(), 0.0F);
-    for (int k = 0; k < paths; ++k) {
-      for (int i = 0; i < samples_; ++i)
-        dense_.reconstruction.pressure[dense_.loops.node(i, k)] = pressure_at(i, k);
-    }
-  }
-  make_playable(dense_.loops, bounds, dense_.reconstruction.pressure);
-  ++stats.cost_evaluations;
 }
 
-/// Leaves out the path of points_ that is most silent, of several. @return whether there was one.
-bool FitPlanner::leave_out_silent(int& paths) {
-  int weakest = 0;
-  float least = std::numeric_limits<float>::max();
-  for (int k = 0; k < paths; ++k) {
-    float highest = 0.0F;
-    for (int i = 0; i < samples_; ++i)
-      highest = std::max(highest, dense_.reconstruction.pressure[dense_.loops.node(i, k)]);
-    if (highest >= least) continue;
-    least = highest;
-    weakest = k;
+/// The pressures of the paths of points_, nearly as they can be played, without paths that are
+/// silent.
+void FitPlanner::solve(const TargetField& target, int& paths, PlanStats& stats) {
+  for (;;) {
+    take_plan(target, paths);
+    ++stats.cost_evaluations;
+    search_.solve(bounds_, plan_);
+    if (!leave_out_silent(paths)) return;
+    take_points(paths);
   }
-  if (paths == 1 || static_cast<double>(least) >= settings_.weak_pressure) return false;
+}
+
+/// Leaves out the path of points_ that is most silent, of several: of which nothing is worth a
+/// path, or nothing sounds while another does. @return whether there was one.
+bool FitPlanner::leave_out_silent(int& paths) {
+  std::array<float, kMaxPaths> highest{};
+  for (int k = 0; k < paths; ++k) {
+    float& own = highest[static_cast<std::size_t>(k)];
+    for (int i = 0; i < samples_; ++i)
+      own = std::max(own, plan_.reconstruction.pressure[plan_.loops.node(i, k)]);
+  }
+  const auto [least, most] = std::minmax_element(highest.begin(), highest.begin() + paths);
+  const float sounds = play_bounds(settings_.gain).least[0];
+  const auto weak = static_cast<float>(settings_.weak_pressure);
+  if (paths == 1 || *least >= (*most >= sounds ? std::max(weak, sounds) : weak)) return false;
+  const auto silent = static_cast<int>(least - highest.begin());
   --paths;
-  std::copy(path_at(weakest).end(), path_at(paths).end(), path_at(weakest).begin());
+  std::copy(path_at(silent).end(), path_at(paths).end(), path_at(silent).begin());
   return true;
 }
 
 void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanStats& stats) {
-  const int n = samples_, paths = dense_.loops.paths;
+  const int n = samples_, paths = plan_.loops.paths;
   const LapStarts starts = phases_.choose(
       fit_.loops, std::span<const double>(period_).first(static_cast<std::size_t>(paths)));
   for (int k = 0; k < paths; ++k) {
@@ -317,17 +310,16 @@ void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanSt
     FocalPath path;
     path.patch = patch;
     for (int i = 0; i < n; ++i) {
-      path.points.push_back(target.origin +
-                            dense_.loops.point(start.sample(i, n), k) / kMmPerMetre);
+      path.points.push_back(target.origin + plan_.loops.point(start.sample(i, n), k) / kMmPerMetre);
     }
     path.length = closed_length(path);
     path.speed = settings_.speed;
     path.period = path.length * factor_[place] / path.speed;
     const double gain = settings_.gain_law().of(path.period);
     for (int i = 0; i < n; ++i) {
-      const std::size_t node = dense_.loops.node(start.sample(i, n), k);
+      const std::size_t node = plan_.loops.node(start.sample(i, n), k);
       path.pressure.push_back(gain * rendered_ *
-                              static_cast<double>(dense_.reconstruction.pressure[node]));
+                              static_cast<double>(plan_.reconstruction.pressure[node]));
     }
     plan.paths.push_back(path);
   }

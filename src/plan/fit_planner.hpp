@@ -39,8 +39,9 @@ class FitPlanner {
   int space_out(const TargetField& target, int paths, SpacingRule rule);
   void take_points(int paths);
   void mend(const TargetField& target, PlanStats& stats);
-  float pressure_at(int i, int k) const;
-  void solve_dense(const TargetField& target, int paths, PlanStats& stats);
+  int mend_between(const TargetField& target, int paths);
+  void take_plan(const TargetField& target, int paths);
+  void solve(const TargetField& target, int& paths, PlanStats& stats);
   bool leave_out_silent(int& paths);
   bool bound_lengths(const TargetField& target, int paths, double share, SpacingRule& rule);
   int leave_out_long(const TargetField& target, int paths, double least_length);
@@ -58,18 +59,17 @@ class FitPlanner {
   PlanSettings settings_;
   Search search_;
   Phases phases_;
-  const int pieces_;  // of a segment that is searched for, in a plan
-  const bool
-      solves_dense_;  // pressures at every sample of the plan, else at those that are searched for
-  Fit fit_;           // of the last plan until the next
+  const int pieces_;            // of a segment that is searched for, in a plan
+  Fit fit_;                     // of the last plan until the next
   Vec2 origin_ = Vec2::Zero();  // of the target that fit_ is for [m]
   bool has_previous_ = false, is_flat_ = false;
   double rendered_ = 0.0;    // felt pressure that 1 of fit_ stands for
   double full_scale_ = 0.0;  // rendered pressure at full output
   // scratch
-  int samples_ = 0;                                    // of a path of points_
-  Fit dense_;                                          // fit_ with the samples of the plan
-  std::array<double, kMaxPaths> factor_{}, period_{};  // of each path of dense_
+  int samples_ = 0;                                       // of a path of points_
+  Fit plan_;                                              // fit_ with the samples of the plan
+  PlayBounds bounds_ = PlayBounds::all(1.0F, kAnySlope);  // of plan_
+  std::array<double, kMaxPaths> factor_{}, period_{};     // of each path of plan_
   FocalPath flat_;
   std::array<Vec2, kMaxLoopNodes> points_;  // one path after the other [mm]
   SpacingScratch spacing_;

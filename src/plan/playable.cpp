@@ -9,10 +9,11 @@ namespace {
 
 constexpr float kStiffness = 300.0F;  // μ: a pull of 1 leaves a step too large by 1/600
 constexpr float kInner = 0.98F;       // of a bound: where the cost begins, so that the bound holds
-constexpr float kOuter = 1.01F;       // of kInner, where steps are to count as too large
 constexpr float kDamping = 1e-3F;     // of a system, of its diagonal and in all
 constexpr float kSounds = 1.001F;     // times the least that sounds, to be above it when rounded
 constexpr int kNewtonSteps = 5;
+// (P18) where it holds: at the samples, or half way between them as well, p being linear there
+constexpr float kAtSamples = 0.0F, kHalfWay = 0.5F;
 constexpr float kSettled = 5e-3F;  // change of √p that ends the steps
 
 /// One sample of every path: the lanes of a vector.
@@ -47,8 +48,10 @@ auto with_lanes(const Loops& loops, const F& f) {
 template <int kLanes>
 class Loop {
  public:
-  Loop(const Loops& loops, const PlayBounds& bounds) : n_(loops.nodes()) {
-    const auto slope = lanes_of<kLanes>(bounds.slope);
+  /// @param where kAtSamples or kHalfWay. @param share of the slope that may be used.
+  Loop(const Loops& loops, const PlayBounds& bounds, float where, float share = 1.0F)
+      : n_(loops.nodes()), where_(where) {
+    const Lanes<kLanes> slope = share * lanes_of<kLanes>(bounds.slope);
     for (std::size_t a = 0; a < n_; a += kLanes) {
       const std::size_t b = after(a);
       at<kLanes>(step_, a) =
@@ -58,6 +61,7 @@ class Loop {
   }
 
   std::size_t after(std::size_t a) const { return a + kLanes < n_ ? a + kLanes : 0; }
+  std::size_t previous(std::size_t a) const { return a > 0 ? a - kLanes : n_ - kLanes; }
   std::size_t nodes() const { return n_; }
   /// Largest |√p_b − √p_a| of the segment that begins at a.
   auto step(std::size_t a) const { return at<kLanes>(step_, a); }
@@ -68,61 +72,79 @@ class Loop {
       at<kLanes>(root, a) = root_of(at<kLanes>(pressure, a));
   }
 
-  bool is_too_steep(const NodeArray& root, float share) const {
+  bool is_too_steep(const NodeArray& root) const {
     Lanes<kLanes> worst = Lanes<kLanes>::Constant(-1.0F);
     for (std::size_t a = 0; a < n_; a += kLanes) {
-      worst = worst.max((at<kLanes>(root, after(a)) - at<kLanes>(root, a)).abs() - share * step(a));
+      const auto u = at<kLanes>(root, a), v = at<kLanes>(root, after(a));
+      worst = worst.max(u.max(v) - above(u.min(v), step(a)));
     }
     return (worst > 0.0F).any();
   }
 
-  /// The largest values that are nowhere above `root` and nowhere too steep. Twice each way round,
-  /// since a loop has no end to begin at.
-  void lower(NodeArray& root, float share) const {
-    for (std::size_t k = 0, a = 0; k < 2 * n_; k += kLanes, a = after(a)) {
-      const std::size_t b = after(a);
-      at<kLanes>(root, b) = at<kLanes>(root, b).min(at<kLanes>(root, a) + share * step(a));
-    }
-    for (std::size_t k = 0, a = n_ - kLanes;
-         k<2 * n_; k += kLanes, a = a> 0 ? a - kLanes : n_ - kLanes) {
-      at<kLanes>(root, a) = at<kLanes>(root, a).min(at<kLanes>(root, after(a)) + share * step(a));
-    }
+  /// The largest values that are nowhere above `root` and nowhere too steep.
+  void lower(NodeArray& root) const {
+    spread(root, [&](const Lanes<kLanes>& value, const Lanes<kLanes>& beside, std::size_t segment) {
+      return value.min(above(beside, step(segment))).eval();
+    });
   }
 
   /// The smallest values that are nowhere below `root` and nowhere too steep.
-  void raise(NodeArray& root, float share) const {
-    for (std::size_t a = 0; a < n_; a += kLanes) at<kLanes>(root, a) = -at<kLanes>(root, a);
-    lower(root, share);
-    for (std::size_t a = 0; a < n_; a += kLanes) at<kLanes>(root, a) = -at<kLanes>(root, a);
+  void raise(NodeArray& root) const {
+    spread(root, [&](const Lanes<kLanes>& value, const Lanes<kLanes>& beside, std::size_t segment) {
+      return value.max(below(beside, step(segment))).eval();
+    });
   }
 
   /// Half way between the largest values below `root` and the smallest above that are not too
   /// steep: the nearest ones in the largest difference.
-  void flatten(NodeArray& root, float share) const {
-    alignas(64) NodeArray above;
-    std::copy_n(root.begin(), n_, above.begin());
-    raise(above, share);
-    lower(root, share);
+  void flatten(NodeArray& root) const {
+    alignas(64) NodeArray raised;
+    std::copy_n(root.begin(), n_, raised.begin());
+    raise(raised);
+    lower(root);
     for (std::size_t a = 0; a < n_; a += kLanes) {
-      at<kLanes>(root, a) = 0.5F * (at<kLanes>(root, a) + at<kLanes>(above, a));
+      at<kLanes>(root, a) = 0.5F * (at<kLanes>(root, a) + at<kLanes>(raised, a));
     }
   }
 
-  /// Raises what is below `least` to that where it or a neighbour is above 0, and what is too steep
-  /// then.
+  /// Raises samples within two of one that sounds to `least`, and what is too steep then.
   void sound(const Lanes<kLanes>& least, NodeArray& root) const {
     alignas(64) NodeArray before;
     std::copy_n(root.begin(), n_, before.begin());
-    for (std::size_t a = 0, last = n_ - kLanes; a < n_; last = a, a += kLanes) {
-      const Lanes<kLanes> around =
-          at<kLanes>(before, last) + at<kLanes>(before, a) + at<kLanes>(before, after(a));
-      at<kLanes>(root, a) = (around > 0.0F).select(at<kLanes>(root, a).max(least), 0.0F);
+    const auto loudest = [&](std::size_t a, std::size_t b) {
+      return at<kLanes>(before, a).max(at<kLanes>(before, b)).eval();
+    };
+    for (std::size_t a = 0; a < n_; a += kLanes) {
+      const std::size_t left = previous(a), right = after(a);
+      const Lanes<kLanes> around = loudest(left, right).max(loudest(previous(left), after(right)));
+      at<kLanes>(root, a) =
+          (around >= least).select(at<kLanes>(root, a).max(least), at<kLanes>(root, a));
     }
-    raise(root, 1.0F);
+    raise(root);
   }
 
  private:
+  /// The highest √p that may lie beside `low`. Between the two the root of a linear p rises fastest
+  /// beside the lower one: by half way it may have risen by half a step.
+  Lanes<kLanes> above(const Lanes<kLanes>& low, const Lanes<kLanes>& step) const {
+    return root_of((low + step).square() - where_ * step.square());
+  }
+  /// The lowest √p that may lie beside `high`.
+  Lanes<kLanes> below(const Lanes<kLanes>& high, const Lanes<kLanes>& step) const {
+    return (root_of(high.square() + where_ * step.square()) - step).max(0.0F);
+  }
+  /// Sets each value to bound(value, the one beside it, the segment between). Twice each way round,
+  /// since a loop has no end to begin at.
+  template <typename Bound>
+  void spread(NodeArray& root, const Bound& bound) const {
+    for (std::size_t k = 0, a = 0; k < 2 * n_; k += kLanes, a = after(a))
+      at<kLanes>(root, after(a)) = bound(at<kLanes>(root, after(a)), at<kLanes>(root, a), a);
+    for (std::size_t k = 0, a = previous(0); k < 2 * n_; k += kLanes, a = previous(a))
+      at<kLanes>(root, a) = bound(at<kLanes>(root, a), at<kLanes>(root, after(a)), a);
+  }
+
   std::size_t n_;
+  float where_;
   alignas(64) NodeArray step_;
 };
 
@@ -195,7 +217,7 @@ void linearise(const Loop<kLanes>& loop, const PressureEquations& equations, con
   for (std::size_t a = 0; a < n; a += kLanes) {
     const std::size_t b = loop.after(a);
     const Lanes<kLanes> rise = at<kLanes>(root, b) - at<kLanes>(root, a);
-    const Lanes<kLanes> excess = (rise.abs() - kInner * loop.step(a)).max(0.0F);
+    const Lanes<kLanes> excess = (rise.abs() - loop.step(a)).max(0.0F);
     const Lanes<kLanes> stiff =
         (excess > 0.0F).select(Lanes<kLanes>::Constant(0.5F * kStiffness), 0.0F);
     const Lanes<kLanes> force = stiff * (rise < 0.0F).select(-excess, excess);
@@ -232,14 +254,12 @@ void hold_at_bounds(const Loop<kLanes>& loop, const Lanes<kLanes>& most, const N
 template <int kLanes>
 void soften_lanes(const Loops& loops, const PlayBounds& bounds, const PressureEquations& equations,
                   NodeArray& pressure) {
-  const Loop<kLanes> loop(loops, bounds);
+  const Loop<kLanes> loop(loops, bounds, kAtSamples, kInner);
   const std::size_t n = loop.nodes();
   alignas(64) NodeArray root;
   loop.take_roots(pressure, root);
-  if (!loop.is_too_steep(root, kInner)) return;
-
-  loop.flatten(root, kInner * kOuter);
-
+  if (!loop.is_too_steep(root)) return;
+  loop.flatten(root);
   const Lanes<kLanes> most = root_of(lanes_of<kLanes>(bounds.most));
   CyclicSystem<kLanes> system;
   for (int k = 0; k < kNewtonSteps; ++k) {
@@ -269,15 +289,6 @@ PlayBounds PlayBounds::all(float most, float slope, float least) {
   bounds.slope.fill(slope);
   bounds.least.fill(least);
   return bounds;
-}
-
-bool is_too_steep(const Loops& loops, const PlayBounds& bounds, const NodeArray& pressure) {
-  return with_lanes(loops, [&]<int kLanes>() {
-    const Loop<kLanes> loop(loops, bounds);
-    alignas(64) NodeArray root;
-    loop.take_roots(pressure, root);
-    return loop.is_too_steep(root, 1.0F);
-  });
 }
 
 void soften(const Loops& loops, const PlayBounds& bounds, const PressureEquations& equations,
@@ -314,12 +325,12 @@ float steepness_cost(const Loops& loops, const PlayBounds& bounds, const NodeArr
 
 void make_playable(const Loops& loops, const PlayBounds& bounds, NodeArray& pressure) {
   with_lanes(loops, [&]<int kLanes>() {
-    const Loop<kLanes> loop(loops, bounds);
+    const Loop<kLanes> loop(loops, bounds, kHalfWay);
     const Lanes<kLanes> least = kSounds * root_of(lanes_of<kLanes>(bounds.least)),
                         most = root_of(lanes_of<kLanes>(bounds.most));
     alignas(64) NodeArray root;
     loop.take_roots(pressure, root);
-    if (loop.is_too_steep(root, 1.0F)) loop.flatten(root, 1.0F);
+    if (loop.is_too_steep(root)) loop.flatten(root);
     loop.sound((least <= most).select(least, 0.0F), root);
     for (std::size_t a = 0; a < loop.nodes(); a += kLanes)
       at<kLanes>(pressure, a) = at<kLanes>(root, a).square();

@@ -27,9 +27,6 @@ struct PressureEquations {
   alignas(64) NodeArray diagonal, after, right;
 };
 
-/// Whether a pressure changes faster along a path than the bounds allow.
-bool is_too_steep(const Loops& loops, const PlayBounds& bounds, const NodeArray& pressure);
-
 /// Moves pressures that are too steep to where the equations' quadratic form, together with
 /// steepness_cost(), is least within 0 ≤ p ≤ most. @param pressure least without that cost.
 void soften(const Loops& loops, const PlayBounds& bounds, const PressureEquations& equations,
@@ -40,8 +37,10 @@ void soften(const Loops& loops, const PlayBounds& bounds, const PressureEquation
 float steepness_cost(const Loops& loops, const PlayBounds& bounds, const NodeArray& pressure,
                      NodeArray& gradient_x, NodeArray& gradient_y);
 
-/// Brings pressures that are too steep to the nearest that are not. Those beside a sample that is
-/// to sound are made to sound, too: an emission that began later would lag behind its whole rise.
+/// Brings pressures that are too steep, at the samples or half way between, to the nearest that are
+/// not. Those beside a sample that
+/// sounds, within two of it, are made to sound, too: an emission that began later would lag behind
+/// its whole rise.
 void make_playable(const Loops& loops, const PlayBounds& bounds, NodeArray& pressure);
 
 }  // namespace prostm::planning

@@ -73,13 +73,19 @@ void Search::set_sigma(double sigma) {
   fit.reconstruction.sigma = fit.shape.spacing = static_cast<float>(sigma);
 }
 
+void Search::set_bounds(const PlayBounds& bounds) {
+  PlayBounds& searched = descent_.settings().reconstruction.bounds;
+  searched = bounds;
+  if (!settings_.counts_steepness) searched.slope.fill(kAnySlope);
+}
+
 void Search::set_target(const TargetField& target, double maximum, double budget) {
   timer_.restart();
   budget_ = budget - std::min(kSpareShare * budget, kSpareTime);
   coarse_.set(target, maximum, settings_.coarse_width);
-  if (settings_.fine_width < settings_.coarse_width) {
-    fine_.set(target, maximum, settings_.fine_width);
-  }
+  has_fine_ = settings_.fine_width < settings_.coarse_width &&
+              needed_paths(kMaxPaths) <= settings_.fine_paths;
+  if (has_fine_) fine_.set(target, maximum, settings_.fine_width);
   share_budget();
 }
 
@@ -162,7 +168,8 @@ int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& b
       end = std::numeric_limits<double>::infinity();
     }
     if (evaluations == 0) break;
-    const int count = start == 0 ? paths : paths - random_.below(paths - needed + 1);
+    // all that may be, then each number that may do
+    const int count = start == 0 ? paths : needed + (start - 1) % (paths - needed + 1);
     initial_.make(draw_start(count), settings_.samples, random_, trial_.loops);
     used += descend(coarse_, evaluations, end, trial_);
     if (trial_.cost < best.cost - hysteresis) {
@@ -253,6 +260,8 @@ int Search::run(int paths, bool continues, Fit& best) {
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
     used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, most, margin, best);
   }
+  // before the kicks, which take what is left of a budget, and where they have found better paths
+  used += try_fewer(best);
   used += try_kicks(best);
   used += try_fewer(best);
   reached_ = std::min(reached_, best.cost / norm);

@@ -27,6 +27,9 @@ struct SearchSettings {
   double hysteresis = 0.03;    ///< by which a new start must be cheaper than the plan before
   double coarse_width = 4.0;   ///< of the cells that starts and kicks are tried on [mm]
   double fine_width = 2.0;     ///< of the cells that the winner is finished on [mm]
+  /// Whether it matters to the search that pressures are too steep, not only to solve().
+  bool counts_steepness = true;
+  int fine_paths = kMaxPaths;  ///< most paths that a target may ask for to be worth the fine cells
   int region_passes = 6;       ///< of clustering the cells into one region for each path
   int stop_passes = 4;         ///< of clustering a region into stops
   double weak = 0.01;          ///< cells below are not toured, over the highest
@@ -48,7 +51,7 @@ class Search {
   /// Of focal points, from the next target on [mm].
   void set_sigma(double sigma);
   /// What the emission can play, from the next target on.
-  void set_bounds(const PlayBounds& bounds) { descent_.settings().reconstruction.bounds = bounds; }
+  void set_bounds(const PlayBounds& bounds);
   /// Lowers the cost of `fit` further on the fine cells, under the given bounds of length [mm].
   int finish(const std::array<float, kMaxPaths>& most_length, Fit& fit);
   /// Tells how long what follows finish() took, for the budgets to come [s].
@@ -59,9 +62,7 @@ class Search {
 
  private:
   /// The fine cells; the coarse ones are fine enough where both have the same width.
-  const CellTiles& fine() const {
-    return settings_.fine_width < settings_.coarse_width ? fine_ : coarse_;
-  }
+  const CellTiles& fine() const { return has_fine_ ? fine_ : coarse_; }
   StartSettings draw_start(int paths);
   int needed_paths(int paths) const;
   int try_starts(int paths, int starts, int most, float hysteresis, Fit& best);
@@ -89,6 +90,7 @@ class Search {
   // when starts and kicks must end, so that the finish is in time [s]
   double budget_ = 0.0, tile_time_ = 1.5e-7, search_end_ = 0.0;
   double ending_time_ = 8e-5, ending_deviation_ = 1e-5;
+  bool has_fine_ = false;
   bool finish_fine_ = true;  // whether there is time to finish on the fine cells
 };
 

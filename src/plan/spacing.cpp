@@ -34,6 +34,11 @@ struct Measures {
       }
     }
   }
+  /// Along the path that both are on, the shorter way.
+  double between(const NodePair& pair) const {
+    const double apart = at[pair.second] - at[pair.first];
+    return std::min(apart, length[path[pair.first]] - apart);
+  }
 };
 
 /// Calls visit(a, b, distance) for the pairs of samples that are nearer than `reach` and count. It
@@ -41,19 +46,18 @@ struct Measures {
 template <typename Visit>
 void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, NearSamples& near,
                     const Visit& visit) {
-  const Measures measured(x, n);
-  const NodePairs& pairs = near.list(x, n, reach, along);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto [a, b] = pairs[i];
-    const double squared = (x[b] - x[a]).squaredNorm();
-    if (squared >= reach * reach) continue;
-    const std::size_t path = measured.path[a];
-    if (path == measured.path[b]) {
-      const double apart = measured.at[b] - measured.at[a];
-      if (std::min(apart, measured.length[path] - apart) <= along) continue;
+  near.list(x, n, reach, along);
+  const auto visit_if_near = [&](const NodePair& pair) {
+    const double squared = (x[pair.second] - x[pair.first]).squaredNorm();
+    if (squared < reach * reach) visit(pair.first, pair.second, std::sqrt(squared));
+  };
+  if (near.own().size() > 0) {
+    const Measures measured(x, n);
+    for (std::size_t i = 0; i < near.own().size(); ++i) {
+      if (measured.between(near.own()[i]) > along) visit_if_near(near.own()[i]);
     }
-    visit(a, b, std::sqrt(squared));
   }
+  for (std::size_t i = 0; i < near.across().size(); ++i) visit_if_near(near.across()[i]);
 }
 
 /// Whether any segments that are not neighbours cross. Two that cross have middles that are no
@@ -144,9 +148,8 @@ bool NearSamples::is_listed(std::span<const Vec2> x, std::size_t n, double reach
   return true;
 }
 
-const NodePairs& NearSamples::list(std::span<const Vec2> x, std::size_t n, double reach,
-                                   double along) {
-  if (is_listed(x, n, reach, along)) return pairs_;
+void NearSamples::list(std::span<const Vec2> x, std::size_t n, double reach, double along) {
+  if (is_listed(x, n, reach, along)) return;
   listed_at_.assign(x.begin(), x.end());
   n_ = n;
   reach_ = reach;
@@ -157,19 +160,21 @@ const NodePairs& NearSamples::list(std::span<const Vec2> x, std::size_t n, doubl
     rough_y[i] = static_cast<float>(x[i].y() - x[0].y());
   }
   // both samples may move by the slack, and the reach may be larger by it the next time
-  pairs_.set(rough_x, rough_y, x.size(),
-             static_cast<float>((reach + 3.0 * kSlack) * (1.0 + kRounding)));
+  across_.set(rough_x, rough_y, x.size(),
+              static_cast<float>((reach + 3.0 * kSlack) * (1.0 + kRounding)));
   // neighbours on a path stay neighbours: each segment between may grow by the slack at both ends
   const Measures measured(x, n);
-  pairs_.filter([&](const NodePair& pair) {
+  own_.clear();
+  across_.filter([&](const NodePair& pair) {
     const std::size_t path = measured.path[pair.first], gap = pair.second - pair.first;
     if (path != measured.path[pair.second]) return true;
     const double apart = measured.at[pair.second] - measured.at[pair.first];
     const double growth = 2.0 * kSlack * static_cast<double>(gap),
                  growth_round = 2.0 * kSlack * static_cast<double>(n - gap);
-    return apart + growth > along && measured.length[path] - apart + growth_round > along;
+    if (apart + growth > along && measured.length[path] - apart + growth_round > along)
+      own_.add(pair);
+    return false;
   });
-  return pairs_;
 }
 
 int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& rule) {

@@ -28,15 +28,18 @@ class NearSamples {
  public:
   NearSamples() { listed_at_.reserve(kMaxLoopNodes); }
 
-  /// The pairs of samples nearer than `reach` that are on different paths or farther than `along`
-  /// apart on theirs, and some that are not. @param x paths of n samples each. @pre at most
-  /// kMaxLoopNodes samples.
-  const NodePairs& list(std::span<const Vec2> x, std::size_t n, double reach, double along);
+  /// Lists the pairs of samples nearer than `reach`, and some that are not. @param x paths of n
+  /// samples each. @pre at most kMaxLoopNodes samples.
+  void list(std::span<const Vec2> x, std::size_t n, double reach, double along);
+  /// Those on different paths.
+  const NodePairs& across() const { return across_; }
+  /// Those on one path that are farther than `along` apart on it, and some that are not.
+  const NodePairs& own() const { return own_; }
 
  private:
   bool is_listed(std::span<const Vec2> x, std::size_t n, double reach, double along) const;
 
-  NodePairs pairs_;
+  NodePairs across_, own_;
   std::vector<Vec2> listed_at_;
   std::size_t n_ = 0;
   double reach_ = 0.0, along_ = 0.0;

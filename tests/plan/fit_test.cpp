@@ -268,9 +268,9 @@ SpacingRule stated_rule() {
   return rule;
 }
 
-/// Of a path in a plan: those that are searched for, and one between each two.
+/// Of a path in a plan: of `best` those that it searches for, and one between each two.
 int samples_of(const PlanSettings& settings) {
-  return 2 * (settings.preset == "best" ? settings.fit_samples : settings.samples);
+  return settings.preset == "best" ? 2 * settings.fit_samples : settings.samples;
 }
 
 std::vector<Vec2> all_points(const Plan& plan) {

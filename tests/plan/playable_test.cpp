@@ -91,6 +91,10 @@ void expect_playable(const Problem& problem, std::uint64_t seed) {
         << "seed " << seed << ": " << p;
     ASSERT_LE(std::abs(std::sqrt(p) - std::sqrt(q)), problem.step(a) * (1.0 + 1e-5) + 1e-6)
         << "seed " << seed << ", node " << a;
+    // p is linear between them, so that its root is steepest beside the lower one
+    ASSERT_LE(std::sqrt(0.5 * (p + q)) - std::sqrt(std::min(p, q)),
+              0.5 * problem.step(a) * (1.0 + 1e-5) + 1e-6)
+        << "seed " << seed << ", half way after node " << a;
   }
 }
 
@@ -105,35 +109,31 @@ TEST(Playable, WhatIsSoftenedIsNeverTooSteep) {
 }
 
 /// Projected gradient steps by the hundred thousand: each on the form, then to the middle between
-/// the largest roots below and the smallest above that are not too steep, found by comparing every
-/// node with every other of its path. @return the least form of all.
+/// the largest roots below and the smallest above that are not too steep, found by going round from
+/// every node of a path, either way. @return the least form of all.
 double slow_least(const Problem& problem) {
   const Loops& loops = problem.loops;
   const auto n = static_cast<std::size_t>(loops.samples),
              lanes = static_cast<std::size_t>(loops.lanes);
   std::vector<double> p(loops.nodes(), 0.0), u(loops.nodes(), 0.0);
   const auto project = [&](std::size_t k) {
-    std::vector<double> low(n), high(n);
+    std::vector<double> low(n), high(n), step(n);
     for (std::size_t i = 0; i < n; ++i) {
       low[i] = high[i] = u[i * lanes + k];
-      double ahead = 0.0;
-      std::size_t j = i;
-      std::vector<double> distance(n, 1e9);
-      for (std::size_t m = 0; m < n; ++m) {
-        distance[j] = std::min(distance[j], ahead);
-        ahead += problem.step(j * lanes + k);
-        j = (j + 1) % n;
-      }
-      double behind = 0.0;
-      j = i;
-      for (std::size_t m = 1; m < n; ++m) {
-        j = (j + n - 1) % n;
-        behind += problem.step(j * lanes + k);
-        distance[j] = std::min(distance[j], behind);
-      }
-      for (std::size_t m = 0; m < n; ++m) {
-        low[i] = std::min(low[i], u[m * lanes + k] + distance[m]);
-        high[i] = std::max(high[i], u[m * lanes + k] - distance[m]);
+      step[i] = problem.step(i * lanes + k);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      for (const bool ahead : {true, false}) {
+        double most = u[i * lanes + k], least = most;
+        for (std::size_t m = 0, at = i; m < n; ++m) {
+          const std::size_t to = ahead ? (at + 1) % n : (at + n - 1) % n;
+          const double s = step[ahead ? at : to];
+          most = std::sqrt(most * most + 2.0 * most * s + 0.5 * s * s);
+          least = std::max(0.0, std::sqrt(least * least + 0.5 * s * s) - s);
+          low[to] = std::min(low[to], most);
+          high[to] = std::max(high[to], least);
+          at = to;
+        }
       }
     }
     for (std::size_t i = 0; i < n; ++i) u[i * lanes + k] = 0.5 * (low[i] + high[i]);
