@@ -9,6 +9,8 @@ import time
 import h5py
 import pytest
 
+from conftest import wait_for
+
 
 def start(program, folder, *arguments, limit=None):
     """A run that would take ten minutes, and records; no file grows beyond `limit` [bytes]."""
@@ -24,14 +26,6 @@ def start(program, folder, *arguments, limit=None):
          "--figure", "run.png", *arguments],
         cwd=folder, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         preexec_fn=prepare, restore_signals=False)
-
-
-def wait_for(condition):
-    for _ in range(600):
-        if condition():
-            return
-        time.sleep(0.1)
-    raise AssertionError("it did not happen within a minute")
 
 
 @pytest.mark.parametrize("name, status", [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
@@ -76,7 +70,7 @@ def test_a_hangup_that_is_ignored_stays_ignored(program, tmp_path):
 
 @pytest.mark.parametrize("pace", ["--realtime", "--as-fast-as-possible", "--stepped"])
 def test_a_full_disk_ends_a_run(program, tmp_path, pace):
-    running = start(program, tmp_path, pace, limit=200_000)
+    running = start(program, tmp_path, pace, limit=1_000_000)
     out, errors = running.communicate(timeout=120)
     assert running.returncode == 2
     lines = errors.splitlines()

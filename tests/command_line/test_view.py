@@ -4,11 +4,12 @@ import json
 import signal
 import socket
 import subprocess
-import time
 import urllib.error
 import urllib.request
 
 import pytest
+
+from conftest import wait_for
 
 
 def start(program, folder, *arguments, port="0"):
@@ -32,14 +33,6 @@ def end(process):
 def numbers(address):
     with urllib.request.urlopen(address + "numbers.json", timeout=60) as answer:
         return json.load(answer)
-
-
-def wait_for(condition):
-    for _ in range(600):
-        if condition():
-            return
-        time.sleep(0.1)
-    raise AssertionError("it did not happen within a minute")
 
 
 @pytest.mark.parametrize("arguments, words", [

@@ -19,6 +19,12 @@ namespace {
 using nlohmann::json;
 using test::eventually;
 
+std::size_t hands_of(HandSource& source) {
+  HandFrame frame;
+  source.sample(0.0, frame);
+  return frame.hands.size();
+}
+
 /// The environment that the loader and the replay runtime read, set back afterwards.
 class OpenXr : public testing::Test {
  protected:
@@ -127,16 +133,11 @@ TEST_F(OpenXr, BothHandsArriveThroughTheLoader) {
 TEST_F(OpenXr, ALostSessionIsAskedForAgain) {
   set("PROSTM_REPLAY_LOSS", "0.3");
   const auto hands = make_live_hand(make_openxr_tracker(), {});
-  HandFrame frame;
-  const auto count = [&] {
-    hands->sample(0.0, frame);
-    return frame.hands.size();
-  };
-  ASSERT_TRUE(eventually([&] { return count() == 2; }));
-  ASSERT_TRUE(eventually([&] { return count() == 0; }));
+  ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 2; }));
+  ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 0; }));
   EXPECT_FALSE(hands->tracker_status()->connected);
   EXPECT_THAT(hands->tracker_status()->sentence, testing::HasSubstr("is over"));
-  ASSERT_TRUE(eventually([&] { return count() == 2; }));
+  ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 2; }));
   EXPECT_GE(hands->tracker_status()->reconnects, 1);
 }
 
@@ -169,13 +170,8 @@ TEST_F(OpenXr, AHandThatDoesNotMoveAtAllIsThatOfAFrozenTracker) {
   TrackSettings settings;
   settings.freeze_time = 0.1;
   const auto hands = make_live_hand(make_openxr_tracker(), settings);
-  HandFrame frame;
-  const auto count = [&] {
-    hands->sample(0.0, frame);
-    return frame.hands.size();
-  };
-  ASSERT_TRUE(eventually([&] { return count() == 2; }));
-  ASSERT_TRUE(eventually([&] { return count() == 0; }));
+  ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 2; }));
+  ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 0; }));
   EXPECT_GT(hands->tracker_status()->frozen, 0);
   EXPECT_THAT(hands->tracker_status()->sentence,
               testing::HasSubstr("a hand has not moved at all for 0.1 s"));
