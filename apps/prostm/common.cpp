@@ -11,6 +11,7 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
@@ -38,6 +39,8 @@ std::vector<SettingsGroup> groups_of(PipelineSettings& settings) {
   return groups;
 }
 
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
 /// What the settings file names is among the files of the command.
 void check_files_of(const PipelineSettings& settings, const CommonOptions& options) {
   Files files = options.files;
@@ -50,14 +53,15 @@ void check_files_of(const PipelineSettings& settings, const CommonOptions& optio
 }  // namespace
 
 PipelineSettings make_settings(const CommonOptions& options,
-                               const std::optional<std::string>& scene) {
+                               const std::optional<std::string>& scene, bool plays) {
   PipelineSettings settings;
+  const double usual = std::exchange(settings.plan.sigma, kNotGiven);
   if (!options.settings_file.empty()) read_settings(options.settings_file, groups_of(settings));
+  const bool gives_sigma = !std::isnan(settings.plan.sigma);
+  if (!gives_sigma) settings.plan.sigma = usual;
+  if (!gives_sigma && (plays || options.array)) settings.array_width = true;
   if (scene) settings.scene = *scene;
-  if (options.array) {
-    settings.array = *options.array;
-    settings.array_width = true;
-  }
+  if (options.array) settings.array = *options.array;
   if (options.tracker) settings.tracker = *options.tracker;
   if (!options.settings_file.empty()) check_files_of(settings, options);
   settings.transducers = array_from_name(settings.array);

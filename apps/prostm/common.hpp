@@ -18,9 +18,9 @@
 namespace prostm::app {
 
 /// Defaults, then the settings file, then the options. @throws InputError also for an output that
-/// is a file which the settings name.
+/// is a file which the settings name. @param plays whether an array is to play what is planned.
 PipelineSettings make_settings(const CommonOptions& options,
-                               const std::optional<std::string>& scene);
+                               const std::optional<std::string>& scene, bool plays = false);
 
 /// Whether `--array` or `--tracker` names a file, rather than one that is built in.
 bool names_json(const std::string& name);

@@ -295,7 +295,7 @@ int plan_command(const PlanOptionsGiven& given) {
   std::vector<double> other_widths;
   if (given.common.array) {
     own_width = sigma_on_skin(settings.transducers, target, settings.sigma());
-    if (counts_on_own_width(settings)) {
+    if (settings.array_width && counts_on_own_width(settings)) {
       other_widths.push_back(settings.sigma());
       settings.plan.sigma = settings.am.sigma = *own_width;
     } else {

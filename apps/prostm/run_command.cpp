@@ -155,7 +155,7 @@ void draw_or_say_why(const Observer& observer, const RunSummary& summary,
 }  // namespace
 
 int run_command(const RunOptionsGiven& given) {
-  PipelineSettings settings = make_settings(given.common, given.scene);
+  PipelineSettings settings = make_settings(given.common, given.scene, true);
   RunOptions options;
   options.mode = given.stepped               ? RunMode::Stepped
                  : given.as_fast_as_possible ? RunMode::AsFastAsPossible

@@ -38,8 +38,9 @@ void check_view(const RunOptionsGiven& given, bool realtime) {
 View::View(const RunOptionsGiven& given, const PipelineSettings& settings) : given_(given) {
   link_.settings.pipeline = settings;
   // the widths of the array's focus once, not at every change
-  link_.settings.pipeline.plan = plan_settings(settings);
-  link_.settings.pipeline.array_width = false;
+  PipelineSettings with_widths = settings;
+  with_widths.array_width = true;
+  link_.settings.pipeline.plan.widths = plan_settings(with_widths).widths;
   const std::string source = source_of(given.hand);
   link_.settings.source = source;
   link_.settings.sources = {source};

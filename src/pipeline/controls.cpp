@@ -88,7 +88,7 @@ void set_paths(LiveSettings& s, double value) {
 /// One width for all places, whatever the array's is.
 void set_sigma(LiveSettings& s, double millimetres) {
   s.pipeline.plan.sigma = s.pipeline.am.sigma = 1e-3 * millimetres;
-  s.pipeline.plan.widths = {};
+  s.pipeline.array_width = false;
 }
 
 std::vector<RunControl> make_controls() {
@@ -122,7 +122,8 @@ std::vector<RunControl> make_controls() {
                    nullptr});
   };
   const auto toggle = [&](std::string_view group, std::string_view id, std::string_view label,
-                          double (*get)(const S&), void (*set)(S&, double), std::string_view help) {
+                          double (*get)(const S&), void (*set)(S&, double),
+                          bool (*enabled)(const S&), std::string_view help) {
     all.push_back({id,
                    group,
                    label,
@@ -135,7 +136,7 @@ std::vector<RunControl> make_controls() {
                    {},
                    get,
                    set,
-                   always,
+                   enabled,
                    nullptr});
   };
 
@@ -185,10 +186,15 @@ std::vector<RunControl> make_controls() {
       "Plan", "gain", "Gain γ", "", 0.5, 3, 0.1, [](const S& s) { return s.pipeline.plan.gain; },
       [](S& s, double v) { s.pipeline.plan.gain = v; }, is_pro_stm,
       "Rendered pressure over the pressure that a path is felt as.");
+  toggle(
+      "Plan", "array_width", "Array's own width",
+      [](const S& s) { return s.pipeline.array_width ? 1.0 : 0.0; },
+      [](S& s, double v) { s.pipeline.array_width = v != 0.0; }, is_fitted,
+      "Presets Best and Fast count on the width of the array's focus where the hand is.");
   number(
       "Plan", "sigma", "Width σ", "mm", 4, 20, 0.1,
       [](const S& s) { return std::round(1e4 * s.pipeline.sigma()) * 0.1; }, set_sigma, always,
-      "Fall-off of a focal point that the planner counts on, everywhere the same.");
+      "Fall-off of a focal point that the planner counts on where it is not the array's own.");
   number(
       "Plan", "bending", "Smoothness", "", 0, 0.3, 0.01,
       [](const S& s) { return s.pipeline.plan.fit_bending; },
@@ -228,7 +234,7 @@ std::vector<RunControl> make_controls() {
       [](S& s, double v) {
         s.pipeline.track.prediction = v != 0.0 ? TrackSettings{}.prediction : 0.0;
       },
-      "Moves tracked hands on by the time that passes until they are felt.");
+      always, "Moves tracked hands on by the time that passes until they are felt.");
   return all;
 }
 

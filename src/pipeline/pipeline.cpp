@@ -69,7 +69,7 @@ std::string plan_text(PipelineSettings s) {
   s.plan.visit(text);
   s.am.visit(text);
   s.emit.visit(text);
-  return text.text() + s.scene + s.method + (s.plan.widths.empty() ? "" : "widths");
+  return text.text() + s.scene + s.method + (s.array_width ? "widths" : "");
 }
 
 void add(const EmitStats& more, EmitStats& sum) {

@@ -40,8 +40,9 @@ PlanSettings playable_plan_settings(const PipelineSettings& settings) {
 
 PlanSettings plan_settings(const PipelineSettings& settings) {
   PlanSettings plan = playable_plan_settings(settings);
-  if (!settings.array_width) return plan;
   FocusWidths& out = plan.widths;
+  if (!settings.array_width) out = {};
+  if (!settings.array_width || !out.empty()) return plan;
   out.height = {0.10, 0.15, 0.20, 0.25, 0.30, 0.40};
   out.offset = {0.0, 0.03, 0.06, 0.09};
   out.tilt = {0.0, kPi / 9.0, kPi / 4.5, kPi / 3.0};

@@ -58,7 +58,8 @@ struct PipelineSettings {
 
 /// The planner's settings with what the emission can play, (P18).
 PlanSettings playable_plan_settings(const PipelineSettings& settings);
-/// The same with the widths that `array_width` asks for, (A22) of `transducers`.
+/// The same with the widths that `array_width` asks for: those of `plan`, or (A22) of `transducers`
+/// where there are none.
 PlanSettings plan_settings(const PipelineSettings& settings);
 
 /// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest

@@ -12,8 +12,8 @@ namespace {
 
 /// σ that a patch was planned with [m].
 double sigma_of(const PipelineSettings& settings, const TargetField& target) {
-  return method_from_name(settings.method) == Method::Am ? settings.am.sigma
-                                                         : settings.plan.sigma_on(target);
+  const bool by_place = settings.array_width && method_from_name(settings.method) != Method::Am;
+  return by_place ? settings.plan.sigma_on(target) : settings.sigma();
 }
 
 double total_pressure(const TargetField& target) {
@@ -109,7 +109,7 @@ void Snapshots::plan(const ContactFrame& contact, const PlanFrame& plan, double 
 }
 
 void render(const PlanSnapshot& plan, RenderedPlan& out) {
-  out.metrics = {};
+  out.metrics = out.metrics_at_setting = {};
   out.max_target = 0.0;
   SegmentPressures played;
   if (plan.planned) {
@@ -133,6 +133,10 @@ void render(const PlanSnapshot& plan, RenderedPlan& out) {
     most = pressure;
     out.sigma = sigma;
     out.metrics = score_field(target, out.field[i], plan_coverage(target, plan.plan, patch, sigma));
+    const double setting = plan.settings->sigma();
+    out.metrics_at_setting = setting == sigma
+                                 ? out.metrics
+                                 : score_plan(target, plan.plan, patch, setting, gain, &played);
   }
 }
 

@@ -113,6 +113,7 @@ struct RenderedPlan {
   std::array<std::vector<double>, kMaxPatches> field;  ///< of each patch, unit of the target
   Metrics metrics;                                     ///< of the patch with the most pressure
   double sigma = 0.0;                                  ///< that they are at [m]
+  Metrics metrics_at_setting;                          ///< the same at [plan] sigma
   double max_target = 0.0;                             ///< over all patches [Pa]
 };
 

@@ -231,6 +231,10 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   set(frame, kSaturated, static_cast<double>(run.emit.saturated));
   constexpr double kMm = 1e3;
   set(frame, kSigmaMm, scored ? kMm * rendered_.sigma : kNone);
+  const Metrics& setting = rendered_.metrics_at_setting;
+  set(frame, kSettingSigmaMm, scored ? kMm * plan.settings->sigma() : kNone);
+  set(frame, kSettingRmse, scored ? setting.rmse : kNone);
+  set(frame, kSettingCorrelation, scored ? setting.correlation : kNone);
 }
 
 }  // namespace prostm::viewer

@@ -9,13 +9,23 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the wire is little-endian");
 
 constexpr std::array<std::string_view, kViewNumberCount> kNames = {
-    "track_ms",       "hand_ms",        "fluid_ms",       "contact_ms",  "plan_ms",
-    "lift_ms",        "step_ms",        "fluid_hz",       "plan_hz",     "latency_ms",
-    "latency_p50_ms", "latency_p99_ms", "latency_max_ms", "blocks",      "late_blocks",
-    "missed_blocks",  "queue_blocks",   "rmse",           "correlation", "coverage",
-    "skill_0",        "skill_8",        "overlap",        "spill",       "max_target_pa",
-    "full_scale_pa",  "laps_completed", "tracker_age_ms", "intensity",   "saturated",
-    "sigma_mm"};
+    "track_ms",       "hand_ms",
+    "fluid_ms",       "contact_ms",
+    "plan_ms",        "lift_ms",
+    "step_ms",        "fluid_hz",
+    "plan_hz",        "latency_ms",
+    "latency_p50_ms", "latency_p99_ms",
+    "latency_max_ms", "blocks",
+    "late_blocks",    "missed_blocks",
+    "queue_blocks",   "rmse",
+    "correlation",    "coverage",
+    "skill_0",        "skill_8",
+    "overlap",        "spill",
+    "max_target_pa",  "full_scale_pa",
+    "laps_completed", "tracker_age_ms",
+    "intensity",      "saturated",
+    "sigma_mm",       "setting_sigma_mm",
+    "setting_rmse",   "setting_correlation"};
 
 /// Sections in the order of their ids.
 enum Section : std::uint16_t { kRun = 1, kNumbers, kHands, kSmoke, kFields, kPlan };

@@ -45,6 +45,9 @@ enum ViewNumber : int {
   kIntensity,
   kSaturated,
   kSigmaMm,
+  kSettingSigmaMm,
+  kSettingRmse,
+  kSettingCorrelation,
   kViewNumberCount
 };
 

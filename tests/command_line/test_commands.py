@@ -227,6 +227,15 @@ def test_run_plays_any_array(prostm, tmp_path, array):
         assert pipeline["array"] == array and pipeline["array_width"] is True
 
 
+@pytest.mark.parametrize("given, own_width", [("[plan]\n", True), ("[plan]\nsigma = 8.6e-3\n", False)])
+def test_a_run_counts_on_the_width_of_its_array_unless_sigma_is_given(prostm, tmp_path, given, own_width):
+    (tmp_path / "s.toml").write_text(given)
+    prostm("run", "--stepped", "--grid", "32", "--seconds", "0.1", "--settings", "s.toml", "--record", "run.h5")
+    with h5py.File(tmp_path / "run.h5") as h5:
+        settings = json.loads(h5.attrs["settings"])
+    assert settings["pipeline"]["array_width"] is own_width and settings["plan"]["sigma"] == 8.6e-3
+
+
 @pytest.mark.long
 def test_threaded_and_stepped_runs_record_the_same(prostm, tmp_path):
     files = [tmp_path / "threaded.h5", tmp_path / "stepped.h5"]

@@ -53,5 +53,22 @@ TEST(RenderedPlan, IsWhatIsPlayedAtTheSessionsFullScale) {
   }
 }
 
+TEST(RenderedPlan, IsAtTheArraysWidthAndAtTheSettings) {
+  PlanSnapshot s = small_contact();
+  s.full_scale_pressure = 1.4 * max_pressure(s.target.patches[0]);
+  RenderedPlan wide, narrow;
+  render(s, wide);
+  EXPECT_EQ(wide.metrics.rmse, wide.metrics_at_setting.rmse);
+  PipelineSettings settings = *s.settings;
+  settings.array_width = true;
+  settings.plan.widths = plan_settings(settings).widths;
+  s.settings = std::make_shared<PipelineSettings>(settings);
+  render(s, narrow);
+  EXPECT_EQ(narrow.sigma, settings.plan.sigma_on(s.target.patches[0]));
+  EXPECT_LT(narrow.sigma, 0.9 * wide.sigma);
+  EXPECT_NE(narrow.metrics.rmse, wide.metrics.rmse);
+  EXPECT_EQ(narrow.metrics_at_setting.rmse, wide.metrics.rmse);
+}
+
 }  // namespace
 }  // namespace prostm

@@ -12,6 +12,7 @@ export const kNumbers = [
   "rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill",
   "max_target_pa", "full_scale_pa",
   "laps_completed", "tracker_age_ms", "intensity", "saturated", "sigma_mm",
+  "setting_sigma_mm", "setting_rmse", "setting_correlation",
 ] as const;
 export type NumberName = (typeof kNumbers)[number];
 
