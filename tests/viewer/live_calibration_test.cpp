@@ -93,7 +93,7 @@ Vec3 tip_in(const std::string& bytes) {
   if (at >= bytes.size()) return Vec3::Zero();
   std::array<float, 3> p{};
   std::memcpy(p.data(), bytes.data() + at + 8 + 16 + 32 * kIndexTip, sizeof p);
-  return {p[0], p[1], p[2]};
+  return Eigen::Map<const Eigen::Vector3f>(p.data()).cast<double>();
 }
 
 TEST(LiveCalibration, ATrackersPoseIsFoundFromTouches) {
