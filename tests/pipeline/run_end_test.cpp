@@ -24,7 +24,7 @@ PipelineSettings settings_for(RunMode mode) {
   PipelineSettings s;
   s.fluid.cells = 32;
   s.scripted_hand.still = true;
-  s.plan.budget = mode == RunMode::RealTime ? kLiveBudget : 0.0;
+  s.plan.preset = "fast";
   s.simulated_array.realtime = mode == RunMode::RealTime;
   return s;
 }
