@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cmath>
@@ -11,7 +12,6 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
-#include <utility>
 
 #include "core/file.hpp"
 #include "core/input_error.hpp"
@@ -39,8 +39,6 @@ std::vector<SettingsGroup> groups_of(PipelineSettings& settings) {
   return groups;
 }
 
-constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
-
 /// What the settings file names is among the files of the command.
 void check_files_of(const PipelineSettings& settings, const CommonOptions& options) {
   Files files = options.files;
@@ -55,11 +53,9 @@ void check_files_of(const PipelineSettings& settings, const CommonOptions& optio
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays) {
   PipelineSettings settings;
-  const double usual = std::exchange(settings.plan.sigma, kNotGiven);
-  if (!options.settings_file.empty()) read_settings(options.settings_file, groups_of(settings));
-  const bool gives_sigma = !std::isnan(settings.plan.sigma);
-  if (!gives_sigma) settings.plan.sigma = usual;
-  if (!gives_sigma && (plays || options.array)) settings.array_width = true;
+  std::vector<std::string> given;
+  if (!options.settings_file.empty())
+    given = read_settings(options.settings_file, groups_of(settings));
   if (scene) settings.scene = *scene;
   if (options.array) settings.array = *options.array;
   if (options.tracker) settings.tracker = *options.tracker;
@@ -71,11 +67,16 @@ PipelineSettings make_settings(const CommonOptions& options,
   require_between("plan.seed", settings.plan.seed, 0, kAnySeed);
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = *options.method;
+  const bool is_am = method_from_name(settings.method) == Method::Am;
+  const bool gives_width = std::ranges::any_of(given, [is_am](const std::string& name) {
+    return name == "pipeline.array_width" || name == (is_am ? "am.sigma" : "plan.sigma");
+  });
+  if (!gives_width && (plays || options.array)) settings.array_width = true;
   if (options.preset) settings.plan.preset = *options.preset;
   if (options.paths) settings.plan.paths = settings.am.foci = settings.emit.foci = *options.paths;
   if (options.budget_ms) settings.plan.budget = 1e-3 * *options.budget_ms;
   if (options.grid) settings.fluid.cells = *options.grid;
-  if (method_from_name(settings.method) == Method::Am && (options.preset || options.budget_ms)) {
+  if (is_am && (options.preset || options.budget_ms)) {
     throw InputError("--preset and --budget-ms belong to --method pro-stm; am has neither");
   }
   return settings;

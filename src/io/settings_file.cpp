@@ -96,7 +96,8 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
   }
 }
 
-void read_group(const toml::table& table, const SettingsGroup& group, const std::string& file) {
+void read_group(const toml::table& table, const SettingsGroup& group, const std::string& file,
+                std::vector<std::string>& given) {
   NameCollector known;
   group.visit(known);
   for (const auto& [key, node] : table) {
@@ -105,6 +106,7 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
                                    key.source().begin.line, group.name, shown_name(key.str()),
                                    suggestion(key.str(), known.names)));
     }
+    given.push_back(group.name + "." + std::string(key.str()));
   }
   TomlReader reader(table, file, group.name);
   group.visit(reader);
@@ -112,13 +114,15 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
 
 }  // namespace
 
-void read_settings(const std::string& path, const std::vector<SettingsGroup>& groups) {
+std::vector<std::string> read_settings(const std::string& path,
+                                       const std::vector<SettingsGroup>& groups) {
   constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
-  settings_from_toml(read_file(path, kMaxBytes), path, groups);
+  return settings_from_toml(read_file(path, kMaxBytes), path, groups);
 }
 
-void settings_from_toml(std::string_view text, const std::string& name,
-                        const std::vector<SettingsGroup>& groups) {
+std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
+                                            const std::vector<SettingsGroup>& groups) {
+  std::vector<std::string> given;
   const toml::table document = parse_toml(text, name);
   std::vector<std::string> known(groups.size());
   std::transform(groups.begin(), groups.end(), known.begin(), [](const auto& g) { return g.name; });
@@ -136,8 +140,9 @@ void settings_from_toml(std::string_view text, const std::string& name,
       throw InputError(fmt::format("{}, line {}: {} must be a group of settings, written [{}]",
                                    name, key.source().begin.line, group->name, group->name));
     }
-    read_group(*table, *group, name);
+    read_group(*table, *group, name, given);
   }
+  return given;
 }
 
 std::string settings_to_json(const std::vector<SettingsGroup>& groups) {

@@ -19,10 +19,11 @@ struct SettingsGroup {
 
 /// Sets what the file gives and leaves the rest. @throws InputError that names file, line and key:
 /// unknown group or key (with the nearest known one), a value of the wrong type, a number that is
-/// not finite.
-void read_settings(const std::string& path, const std::vector<SettingsGroup>& groups);
-void settings_from_toml(std::string_view text, const std::string& name,
-                        const std::vector<SettingsGroup>& groups);
+/// not finite. @return the names of what it gives, "plan.sigma".
+std::vector<std::string> read_settings(const std::string& path,
+                                       const std::vector<SettingsGroup>& groups);
+std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
+                                            const std::vector<SettingsGroup>& groups);
 
 /// {"plan": {"paths": 4, …}, …}
 std::string settings_to_json(const std::vector<SettingsGroup>& groups);

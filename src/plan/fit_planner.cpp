@@ -26,7 +26,7 @@ constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on 
 // Output that is so many times what is wanted bounds nothing, and what is wanted above so many
 // times the output counts as that: single precision resolves what lies between.
 constexpr double kAmple = 1e4;
-constexpr int kPieces = 2;  // that preset best cuts each segment into that it searched for
+constexpr int kPieces = 2;  // of a segment, once preset best has found its paths
 
 SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   SearchSettings search;

@@ -12,7 +12,8 @@ constexpr float kInner = 0.98F;       // of a bound: where the cost begins, so t
 constexpr float kDamping = 1e-3F;     // of a system, of its diagonal and in all
 constexpr float kSounds = 1.001F;     // times the least that sounds, to be above it when rounded
 constexpr int kNewtonSteps = 5;
-// (P18) where it holds: at the samples, or half way between them as well, p being linear there
+// Where (P18) holds: at the samples, which Newton's method needs since it is linear in √p, or half
+// way between them as well, where p is linear.
 constexpr float kAtSamples = 0.0F, kHalfWay = 0.5F;
 constexpr float kSettled = 5e-3F;  // change of √p that ends the steps
 

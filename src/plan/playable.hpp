@@ -38,9 +38,8 @@ float steepness_cost(const Loops& loops, const PlayBounds& bounds, const NodeArr
                      NodeArray& gradient_x, NodeArray& gradient_y);
 
 /// Brings pressures that are too steep, at the samples or half way between, to the nearest that are
-/// not. Those beside a sample that
-/// sounds, within two of it, are made to sound, too: an emission that began later would lag behind
-/// its whole rise.
+/// not. Samples within two of one that sounds are made to sound, too: an emission that began later
+/// would lag behind its whole rise.
 void make_playable(const Loops& loops, const PlayBounds& bounds, NodeArray& pressure);
 
 }  // namespace prostm::planning

@@ -83,8 +83,8 @@ void Search::set_target(const TargetField& target, double maximum, double budget
   timer_.restart();
   budget_ = budget - std::min(kSpareShare * budget, kSpareTime);
   coarse_.set(target, maximum, settings_.coarse_width);
-  has_fine_ = settings_.fine_width < settings_.coarse_width &&
-              needed_paths(kMaxPaths) <= settings_.fine_paths;
+  needed_ = needed_paths();
+  has_fine_ = settings_.fine_width < settings_.coarse_width && needed_ <= settings_.fine_paths;
   if (has_fine_) fine_.set(target, maximum, settings_.fine_width);
   share_budget();
 }
@@ -135,7 +135,7 @@ StartSettings Search::draw_start(int paths) {
 }
 
 /// Paths that the area with pressure that counts asks for; more would chase the same small contact.
-int Search::needed_paths(int paths) const {
+int Search::needed_paths() const {
   double area = 0.0;
   for (std::size_t t = 0; t < coarse_.tiles().size(); ++t) {
     const CellTile& tile = coarse_.tiles()[t];
@@ -147,14 +147,14 @@ int Search::needed_paths(int paths) const {
   const FitSettings& fit = descent_.settings();
   const double served = kWidth * static_cast<double>(fit.reconstruction.sigma) *
                         static_cast<double>(fit.shape.most_length[0]);
-  return std::clamp(static_cast<int>(std::ceil(area / served)), 1, paths);
+  return std::clamp(static_cast<int>(std::ceil(area / served)), 1, kMaxPaths);
 }
 
 /// @param most evaluations of each start.
 int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& best) {
   if (starts == 0) return 0;
   int used = 0;
-  const int needed = needed_paths(paths);
+  const int needed = std::min(needed_, paths);
   if (needed == 1) most = std::max(most, settings_.small_evaluations);
   initial_.set(coarse_, static_cast<float>(settings_.weak));
   for (int start = 0; start < starts; ++start) {
@@ -227,8 +227,7 @@ int Search::take_away(const Fit& from, Fit& out) {
 int Search::try_fewer(Fit& best) {
   int used = 0;
   if (settings_.fewer_evaluations == 0) return used;
-  const int needed = needed_paths(best.loops.paths);
-  while (best.loops.paths > needed) {
+  while (best.loops.paths > needed_) {
     const int evaluations = affordable(best.loops.paths + settings_.fewer_evaluations);
     if (evaluations <= best.loops.paths) break;
     used += take_away(best, trial_);
@@ -260,10 +259,11 @@ int Search::run(int paths, bool continues, Fit& best) {
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
     used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, most, margin, best);
   }
-  // before the kicks, which take what is left of a budget, and where they have found better paths
+  // before the kicks, which take what is left of a budget
   used += try_fewer(best);
+  const float before = best.cost;
   used += try_kicks(best);
-  used += try_fewer(best);
+  if (best.cost < before) used += try_fewer(best);
   reached_ = std::min(reached_, best.cost / norm);
   return used;
 }

@@ -64,7 +64,7 @@ class Search {
   /// The fine cells; the coarse ones are fine enough where both have the same width.
   const CellTiles& fine() const { return has_fine_ ? fine_ : coarse_; }
   StartSettings draw_start(int paths);
-  int needed_paths(int paths) const;
+  int needed_paths() const;
   int try_starts(int paths, int starts, int most, float hysteresis, Fit& best);
   int try_kicks(Fit& best);
   int try_fewer(Fit& best);
@@ -90,7 +90,8 @@ class Search {
   // when starts and kicks must end, so that the finish is in time [s]
   double budget_ = 0.0, tile_time_ = 1.5e-7, search_end_ = 0.0;
   double ending_time_ = 8e-5, ending_deviation_ = 1e-5;
-  bool has_fine_ = false;
+  int needed_ = 1;           // paths that the target asks for
+  bool has_fine_ = false;    // whether it has fine cells of its own
   bool finish_fine_ = true;  // whether there is time to finish on the fine cells
 };
 

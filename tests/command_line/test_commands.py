@@ -227,8 +227,10 @@ def test_run_plays_any_array(prostm, tmp_path, array):
         assert pipeline["array"] == array and pipeline["array_width"] is True
 
 
-@pytest.mark.parametrize("given, own_width", [("[plan]\n", True), ("[plan]\nsigma = 8.6e-3\n", False)])
-def test_a_run_counts_on_the_width_of_its_array_unless_sigma_is_given(prostm, tmp_path, given, own_width):
+@pytest.mark.parametrize("given, own_width", [
+    ("[plan]\n", True), ("plan.sigma = 8.6e-3", False), ("am.sigma = 8.6e-3", True),
+    ("pipeline.array_width = false", False), ("plan.sigma = 8.6e-3\npipeline.array_width = true", True)])
+def test_a_run_counts_on_the_width_of_its_array_unless_another_is_given(prostm, tmp_path, given, own_width):
     (tmp_path / "s.toml").write_text(given)
     prostm("run", "--stepped", "--grid", "32", "--seconds", "0.1", "--settings", "s.toml", "--record", "run.h5")
     with h5py.File(tmp_path / "run.h5") as h5:

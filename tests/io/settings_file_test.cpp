@@ -59,7 +59,8 @@ TEST(Settings, ReadAFile) {
   const test::TemporaryFolder folder;
   Kitchen kitchen;
   write_file(folder.file("s.toml"), "stove.plates = 2\n");
-  read_settings(folder.file("s.toml"), kitchen.groups());
+  EXPECT_THAT(read_settings(folder.file("s.toml"), kitchen.groups()),
+              testing::ElementsAre("stove.plates"));
   EXPECT_EQ(kitchen.stove.plates, 2);
   EXPECT_THAT(input_error([&] { read_settings(folder.file("none.toml"), kitchen.groups()); }),
               HasSubstr("cannot be read"));

@@ -100,7 +100,7 @@ def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field
         for a, b in zip(file.plan.paths, result.paths, strict=True):
             np.testing.assert_array_equal(a.points, b.points)
             np.testing.assert_array_equal(a.pressure, b.pressure)
-            # in mm in the file, which rounds the last bit
+            # in mm in the file: not every double in m is a thousandth of one
             assert abs(a.length - b.length) <= 1e-15 * b.length
         np.testing.assert_array_equal(file.raster.skin, field.skin)
     text = prostm.plan_to_json(result.plan, field, result.settings, result.stats, result.metrics(),
