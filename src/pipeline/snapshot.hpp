@@ -78,7 +78,8 @@ class Snapshots {
   void plan(const ContactFrame& contact, const PlanFrame& plan, double latency);
 
   // ---- the thread that called run() ----
-  /// Settings that plans are made with from now on. @pre the planner's thread does not run.
+  /// Settings that plans are made with from now on, with the widths of the array's focus where
+  /// `array_width` asks for them. @pre the planner's thread does not run.
   void use(std::shared_ptr<const PipelineSettings> settings) { settings_ = std::move(settings); }
   RunSnapshot& run_draft() { return run_.draft(); }
   void publish_run() { run_.publish(); }
