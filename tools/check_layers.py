@@ -10,29 +10,12 @@ import re
 import sys
 from pathlib import Path
 
-# Which folders of src/ a folder may include directly; core is open to all. The list is exhaustive.
-LAYERS = {
-    "core": [],
-    "target": [],
-    "plan": ["target"],
-    "am": ["target", "plan"],
-    "track": [],
-    "hand": ["track"],
-    "fluid": ["hand", "track"],  # track: HandFrame, which the hand's interface takes
-    "contact": ["target", "fluid", "hand", "track"],
-    "acoustics": [],
-    "emit": ["plan", "target"],
-    "device": ["emit", "acoustics"],
-    "score": ["target", "plan", "am", "emit", "acoustics"],
-    "figure": ["target", "plan", "score"],
-    # the stages whose types io reads and writes
-    "io": ["track", "hand", "fluid", "contact", "target", "plan", "emit", "device",
-           "acoustics", "score"],
-    "pipeline": ["track", "hand", "fluid", "contact", "target", "plan", "am", "emit", "device", "acoustics",
-                 "score"],
-    "study": ["pipeline", "acoustics", "score", "io"],
-    "viewer": ["pipeline"],
-}
+# Which folders of src/ a folder may include directly is what its prostm_stage(…) of CMakeLists.txt links; core is open to
+# all. Programs and modules may include every stage that their folder's CMakeLists.txt links, and what those link.
+STAGE = re.compile(r"^prostm_stage\((\w+)([^)]*)\)", re.M)
+LINKED = re.compile(r"^\s*target_link_libraries\(([^)]*)\)", re.M)
+OURS = re.compile(r"\bprostm_(\w+)\b")
+PROGRAMS = ("apps", "python", "bench", "fuzz")
 
 # Threads, mutexes and clocks live here only.
 MAY_USE_THREADS = ("src/core/worker_pool.", "src/track/live/", "src/device/", "src/pipeline/", "src/viewer/")
@@ -65,17 +48,56 @@ TEXT_OR_COMMENT = re.compile(
     r'//[^\n]*|/\*.*?\*/|R"([^(\s]*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\'', re.S)
 
 
+def read_layers(root):
+    """Stage -> the stages that it may include, from CMakeLists.txt; a stage comes after those that it links."""
+    layers = {}
+    for stage, linked in STAGE.findall((root / "CMakeLists.txt").read_text(encoding="utf-8")):
+        names = OURS.findall(linked)
+        layers[stage] = [name for name in names if name in layers]
+    return layers
+
+
+def reachable(layers, names):
+    """Stages among names, and all that they link, and those in turn."""
+    found, queue = set(), [name for name in names if name in layers]
+    while queue:
+        name = queue.pop()
+        if name not in found:
+            found.add(name)
+            queue += layers[name]
+    return found
+
+
+def read_programs(root, layers):
+    """Folder of programs -> the stages that it may include, from its CMakeLists.txt."""
+    out = {}
+    for top in PROGRAMS:
+        lists = root / top / "CMakeLists.txt"
+        if lists.is_file():
+            linked = " ".join(LINKED.findall(lists.read_text(encoding="utf-8")))
+            out[top] = reachable(layers, OURS.findall(linked)) | {"core"}
+    return out
+
+
 def without_text(source):
     """The source with comments and string literals blanked out, lines kept."""
     return TEXT_OR_COMMENT.sub(lambda m: "\n" * m.group(0).count("\n") or " ", source)
 
 
-def check_include(path, folder, quoted, name, layers):
+def check_program_include(top, name, layers, programs):
+    """The same of a file outside src/: a stage that its folder links, or no header of a stage."""
+    layer = name.split("/")[0]
+    if "/" not in name or layer not in layers or top not in programs or layer in programs[top]:
+        return None
+    return f"{top} must not include {layer}: no target of {top}/CMakeLists.txt links prostm_{layer}"
+
+
+def check_include(path, folder, quoted, name, layers, programs):
     """What is wrong with one #include line, or None. `folder` is the stage, None outside src/."""
     if name in LANGUAGE_HEADERS and not quoted:
         return f"<{name}> is not accepted by both compilers"
     if folder is None:
-        return None
+        return check_program_include(path.split("/")[0], name, layers, programs) if quoted else None
     if not quoted:
         if name in THREAD_HEADERS and not path.startswith(MAY_USE_THREADS):
             return f"<{name}>: " + WORDS[0][2]
@@ -97,19 +119,20 @@ def check_include(path, folder, quoted, name, layers):
     return None
 
 
-def check_file(root, file, layers):
+def check_file(root, file, layers, programs):
     """Violations of one C++ file, as (line, sentence)."""
     path = file.relative_to(root).as_posix()
     parts = path.split("/")
     folder = parts[1] if parts[0] == "src" else None
     if folder is not None and (folder not in layers or len(parts) < 3):
-        return [(1, f"src/{folder} is in no layer: add it to the list in tools/check_layers.py")]
+        return [(1, f"src/{folder} is in no layer: add prostm_stage({folder} …) to CMakeLists.txt")]
     source = file.read_text(encoding="utf-8")
     found = []
     for number, line in enumerate(source.split("\n"), 1):
         include = INCLUDE.match(line)
         if include:
-            wrong = check_include(path, folder, include.group(1) == '"', include.group(2), layers)
+            wrong = check_include(path, folder, include.group(1) == '"', include.group(2), layers,
+                                  programs)
             if wrong:
                 found.append((number, wrong))
     for number, line in enumerate(without_text(source).split("\n"), 1):
@@ -120,10 +143,10 @@ def check_file(root, file, layers):
     return found
 
 
-def check_tree(root, layers=None):
+def check_tree(root):
     """All violations below root, as 'file:line: sentence', sorted by file."""
-    layers = LAYERS if layers is None else layers
-    root = Path(root)
+    layers = read_layers(root)
+    programs = read_programs(root, layers)
     lines = []
     for top in ("src", "apps", "python", "bench", "fuzz", "tests", "tools", "docs", "cmake"):
         for file in sorted((root / top).rglob("*")):
@@ -133,7 +156,7 @@ def check_tree(root, layers=None):
             if OLD_NAMES.search(file.name):
                 lines.append(f"{path}:1: the name of an old copy: git is the archive")
             if file.suffix in (".hpp", ".cpp", ".h", ".cc"):
-                lines += [f"{path}:{number}: {wrong}" for number, wrong in check_file(root, file, layers)]
+                lines += [f"{path}:{number}: {wrong}" for number, wrong in check_file(root, file, layers, programs)]
     return lines
 
 
@@ -142,14 +165,15 @@ def main():
         print(__doc__.strip())
         return 0 if len(sys.argv) == 2 else 2
     root = Path(sys.argv[1]) if len(sys.argv) == 2 else Path(__file__).resolve().parent.parent
-    if not (root / "src").is_dir():
-        print(f"check_layers: {root} has no folder src", file=sys.stderr)
-        return 2
+    for needed in ("src", "CMakeLists.txt"):
+        if not (root / needed).exists():
+            print(f"check_layers: {root} has no {needed}", file=sys.stderr)
+            return 2
     lines = check_tree(root)
     for line in lines:
         print(line)
     if not lines:
-        print("layers: every #include is in the list")
+        print("layers: every #include is of what CMake links")
     return 1 if lines else 0
 
 

@@ -4,15 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <string>
 
-namespace prostm::test {
-
-inline std::string shared_file(const std::string& name) {
-  return std::string(PROSTM_SHARED_DIR) + "/" + name;
-}
-
-}  // namespace prostm::test
+#include "support/places.hpp"
 
 /// Skips the running test when `name` (relative to ../shared) is not there.
 #define PROSTM_NEEDS_SHARED(name)                                \
