@@ -10,6 +10,8 @@
 #include "contact/skin_contact.hpp"
 #include "core/distribution.hpp"
 #include "core/worker_pool.hpp"
+#include "fluid/fluid.hpp"
+#include "fluid/fluid_pressure.hpp"
 #include "report.hpp"
 #include "track/hand_source.hpp"
 
@@ -46,9 +48,10 @@ bench::Row contact_times(const std::string& name, double apart, double time_cons
   fluid_settings.cells = kCells;
   Fluid fluid(fluid_settings, scene_from_name("one-plume"), pool);
   HandRasteriser rasteriser(fluid.grid());
-  ContactSettings settings;
+  FluidPressureSettings settings;
   settings.time_constant = time_constant;
-  SkinContact contact(settings, fluid.grid());
+  FluidPressure pressure(settings, fluid.grid());
+  SkinContact contact({}, fluid.grid());
   const auto source = make_scripted_hand({}, {});
   TargetFrame target;
   Distribution ms;
@@ -58,7 +61,8 @@ bench::Row contact_times(const std::string& name, double apart, double time_cons
     rasteriser.rasterise(frame, pool);
     if (n % 20 == 0) fluid.step(0.5 * kUpdate, rasteriser.raster());
     const double start = processor_ms();
-    contact.extract(fluid, rasteriser.raster(), frame, kUpdate, target);
+    pressure.take(fluid.pressure(), fluid.fluid_cells(), kUpdate);
+    contact.extract(pressure, rasteriser.raster(), frame, target);
     if (n > 0) ms.add(processor_ms() - start);
   }
   return {name, "ms", ms.summary(), "", 0.0};

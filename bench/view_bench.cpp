@@ -172,7 +172,7 @@ void measure_hand_off(const Options& given, Distribution& step, Distribution& sm
     StageTimer timer;
     snapshots.step(pipeline.contact(), pipeline.smoke());
     step.add(1e6 * timer.lap());
-    snapshots.smoke(pipeline.smoke().fluid());
+    snapshots.smoke(pipeline.smoke().world());
     smoke.add(1e6 * timer.lap());
     if (!planned) continue;
     snapshots.plan(pipeline.contact(), pipeline.plan(), 0.02);

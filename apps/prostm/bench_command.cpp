@@ -155,7 +155,7 @@ class FieldBench {
       : settings_(settings),
         am_alone_(method_from_name(settings.method) == Method::Am),
         repeats_(repeats),
-        planner_(playable_plan_settings(settings), kMaxFieldCells),
+        planner_(playable_plan_settings(settings, settings.emission_rate()), kMaxFieldCells),
         am_(settings.am, kMaxFieldCells) {}
 
   void measure(const TargetField& target, Columns& columns) {
@@ -181,9 +181,8 @@ class FieldBench {
  private:
   /// Of what is played.
   Metrics score(const TargetField& target, const Plan& plan, double sigma) const {
-    const SegmentPressures played =
-        played_pressures(plan, target, emit_settings(settings_, max_pressure(target)),
-                         settings_.simulated_array.sample_rate);
+    const SegmentPressures played = played_pressures(
+        plan, target, emit_settings(settings_, max_pressure(target)), settings_.emission_rate());
     return score_plan(target, plan, 0, sigma, settings_.plan.gain_law(), &played);
   }
 

@@ -1,28 +1,37 @@
 #include <fmt/format.h>
 
 #include "common.hpp"
-#include "device/simulated_array.hpp"
+#include "device/device_kinds.hpp"
 #include "track/live/openxr_hands.hpp"
 
 namespace prostm::app {
+namespace {
+
+struct Row {
+  std::string role, kind;
+  bool available = false;
+  std::string detail;
+};
+
+Row row_of(const DeviceKind& kind) {
+  if (!kind.is_built())
+    return {"array", kind.name, false,
+            fmt::format("not built yet in this version; {}", kind.tried)};
+  const DeviceInfo info = kind.info({SimulatedArraySettings{}, usx_array(), Medium{}});
+  return {"array", kind.name, true,
+          fmt::format("{}: {:.0f} Hz, blocks of {} samples, {} focal points, {}; {}", info.name,
+                      info.sample_rate, info.block_samples, info.max_foci,
+                      info.intensity_per_focus ? "an intensity each" : "one intensity for all",
+                      kind.tried)};
+}
+
+}  // namespace
 
 int devices_command(const DevicesOptionsGiven& options) {
-  const SimulatedArray sim(SimulatedArraySettings{}, usx_array(), Medium{});
-  const DeviceInfo& info = sim.info();
   const std::string openxr = openxr_problem();
-  struct Row {
-    const char* role;
-    const char* kind;
-    bool available;
-    std::string detail;
-  };
-  const Row rows[] = {
-      {"array", "sim", true,
-       fmt::format("{}: {:.0f} Hz, blocks of {} samples, {} focal points, an intensity each",
-                   info.name, info.sample_rate, info.block_samples, info.max_foci)},
-      {"array", "autd3", false, "not built yet in this version; never tried on the real thing"},
-      {"array", "ultraleap", false,
-       "not built yet in this version (needs the vendor's SDK); never tried on the real thing"},
+  std::vector<Row> rows;
+  for (const DeviceKind& kind : device_kinds()) rows.push_back(row_of(kind));
+  const Row hands[] = {
       {"hand", "scripted", true, "--hand scripted: needs nothing"},
       {"hand", "recording", true,
        "--hand FILE: .hands.jsonl, or Leap JSON v6; tried with recordings of real hands"},
@@ -34,6 +43,7 @@ int devices_command(const DevicesOptionsGiven& options) {
        (openxr.empty() ? "--hand openxr: a runtime is here" : openxr) +
            "; tried with a runtime that replays recordings, never with a real one"},
   };
+  rows.insert(rows.end(), std::begin(hands), std::end(hands));
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const Row& row : rows) {
     fmt::print(prose(options.json), "{:<6} {:<10} {:<14} {}\n", row.role, row.kind,

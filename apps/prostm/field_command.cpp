@@ -196,36 +196,77 @@ void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
              {{"format", "prostm-widths/1"}, {"array", array.name}, {"widths", rows}});
 }
 
+/// Drives for the whole loop, with progress; false when it was interrupted.
+bool solve(const TransducerArray& array, const Medium& air, const LoopSamples& loop,
+           const FieldOptionsGiven& given, const Interrupt& interrupt, LoopDriveResult& drives) {
+  LoopDriveSettings settings;
+  settings.focus.method = solver_of(given.solver);
+  settings.full_scale_pa = given.full_scale_pa;
+  settings.transducer.memoryless = given.memoryless;
+  Progress progress("solving");
+  const auto go_on = [&](int done, int of) {
+    progress.show(done, of, "samples");
+    return !interrupt.requested();
+  };
+  return loop_drives(array, air, loop, settings, go_on, drives);
+}
+
+/// What a report points to.
+struct Judgement {
+  FeltField felt;
+  Metrics envelope, mean, of_felt;
+  Ghosts ghosts;
+};
+
+/// Compares the field, and what is felt of it where `report` has that, with the target.
+void judge(const Input& input, const PlanSettings& settings, PhysicalReport& report,
+           Judgement& out) {
+  const TargetField& target = input.raster;
+  const double coverage =
+      score_plan(target, input.plan, 0, settings.sigma, settings.gain_law()).coverage;
+  out.envelope = score_physical(target, report.field->envelope, coverage);
+  out.mean = score_physical(target, report.field->mean, coverage);
+  report.envelope_metrics = &out.envelope;
+  report.mean_metrics = &out.mean;
+  if (report.felt == nullptr) return;
+  out.of_felt = score_physical(target, out.felt.percept, coverage);
+  out.ghosts = ghosts_of(target, out.felt.percept);
+  report.felt_metrics = &out.of_felt;
+  report.ghosts = &out.ghosts;
+}
+
+void tell(const PhysicalReport& report, const Input& input, const FieldOptionsGiven& given) {
+  if (!given.common.json.empty()) write_file(given.common.json, physical_to_json(report));
+  if (!given.common.figure.empty()) {
+    draw_physical({&input.raster, &input.plan, report.field, report.envelope_metrics,
+                   fmt::format("{} on {}", given.plan, report.array->name)},
+                  given.common.figure);
+  }
+  std::FILE* out = prose(given.common.json);
+  print_loop(out, report);
+  print_levels(out, report);
+  print_power(out, report);
+  print_felt(out, report);
+  print_scores(out, report);
+}
+
 }  // namespace
 
 int field_command(const FieldOptionsGiven& given) {
   PipelineSettings all = make_settings(given.common, std::nullopt);
   const TransducerArray& array = all.transducers;
-  if (given.widths != given.plan.empty()) {
+  if (given.widths != given.plan.empty())
     throw InputError("prostm field needs a plan, or --widths without one");
-  }
   if (given.widths) {
     tell_widths(array, given);
     return 0;
   }
-  LoopDriveSettings settings;
-  settings.focus.method = solver_of(given.solver);
-  settings.full_scale_pa = given.full_scale_pa;
-  settings.transducer.memoryless = given.memoryless;
   const Input input = read_input(given);
-  const LoopSamples loop = make_loop(input, all.emit, all.simulated_array.sample_rate);
-
+  const LoopSamples loop = make_loop(input, all.emit, all.emission_rate());
   const Medium air;
   const Interrupt interrupt;
   LoopDriveResult drives;
-  {
-    Progress progress("solving");
-    const auto go_on = [&](int done, int of) {
-      progress.show(done, of, "samples");
-      return !interrupt.requested();
-    };
-    if (!loop_drives(array, air, loop, settings, go_on, drives)) return interrupt.status();
-  }
+  if (!solve(array, air, loop, given, interrupt, drives)) return interrupt.status();
   const PackedArray packed(array, air);
   WorkerPool pool(all.threads);
   const PhysicalField field = physical_field(packed, air, input.raster, loop, drives, pool);
@@ -241,39 +282,13 @@ int field_command(const FieldOptionsGiven& given) {
   report.field = &field;
   report.focus = focus_accuracy(packed, loop, drives, input.raster.X_DP);
   report.settings_json = settings_json(all);
-  FeltField felt;
+  Judgement judgement;
   if (is_felt(input.raster, loop)) {
-    felt = FeelingSkin(input.raster).feel(packed, air, input.raster, loop, drives, pool);
-    report.felt = &felt;
+    judgement.felt = FeelingSkin(input.raster).feel(packed, air, input.raster, loop, drives, pool);
+    report.felt = &judgement.felt;
   }
-  Metrics envelope, mean, of_felt;
-  Ghosts ghosts;
-  if (input.has_target) {
-    const double coverage =
-        score_plan(input.raster, input.plan, 0, all.plan.sigma, all.plan.gain_law()).coverage;
-    envelope = score_physical(input.raster, field.envelope, coverage);
-    mean = score_physical(input.raster, field.mean, coverage);
-    report.envelope_metrics = &envelope;
-    report.mean_metrics = &mean;
-    if (report.felt != nullptr) {
-      of_felt = score_physical(input.raster, felt.percept, coverage);
-      ghosts = ghosts_of(input.raster, felt.percept);
-      report.felt_metrics = &of_felt;
-      report.ghosts = &ghosts;
-    }
-  }
-  if (!given.common.json.empty()) write_file(given.common.json, physical_to_json(report));
-  if (!given.common.figure.empty()) {
-    draw_physical({&input.raster, &input.plan, &field, report.envelope_metrics,
-                   fmt::format("{} on {}", given.plan, array.name)},
-                  given.common.figure);
-  }
-  std::FILE* out = prose(given.common.json);
-  print_loop(out, report);
-  print_levels(out, report);
-  print_power(out, report);
-  print_felt(out, report);
-  print_scores(out, report);
+  if (input.has_target) judge(input, all.plan, report, judgement);
+  tell(report, input, given);
   return 0;
 }
 

@@ -2,7 +2,6 @@
 /// status 2.
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -25,22 +24,6 @@ struct Work {
   const Files* files = nullptr;
   std::function<int()> run;
 };
-
-void only(CLI::App& command, const std::string& option, const std::string& built,
-          const std::vector<std::string>& unbuilt, const std::string& help) {
-  command
-      .add_option_function<std::string>(
-          option,
-          [=](const std::string& value) {
-            if (value == built) return;
-            const bool planned = std::find(unbuilt.begin(), unbuilt.end(), value) != unbuilt.end();
-            throw prostm::InputError(option + " " + value + " is " +
-                                     (planned ? "not built yet" : "unknown") +
-                                     "; this version has " + built);
-          },
-          help + " [" + built + "]")
-      ->type_name("NAME");
-}
 
 /// An option, or a positional, whose value is a file that the command reads.
 template <class Value>
@@ -128,7 +111,8 @@ void add_run(CLI::App& app, Work& work) {
       app.add_subcommand("run", "a hand in smoke, felt through focal-point paths: the main job");
   auto o = std::make_shared<RunOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand);
-  only(*command, "--device", "sim", {"autd3", "ultraleap", "stream"}, "what plays the paths");
+  add_name(*command, "--device", o->device,
+           "what plays the paths: sim (default), see prostm devices");
   add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
   command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle");
   command->add_option("--seconds", o->seconds,

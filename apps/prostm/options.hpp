@@ -25,7 +25,7 @@ struct CommonOptions {
 
 struct RunOptionsGiven {
   CommonOptions common;
-  std::optional<std::string> scene;
+  std::optional<std::string> scene, device;
   std::string hand = "scripted";
   std::optional<double> seconds, figure_at;
   bool as_fast_as_possible = false, stepped = false;

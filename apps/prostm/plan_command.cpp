@@ -99,7 +99,7 @@ SegmentPressures played(const TargetField& target, const Plan& plan,
                         const PipelineSettings& settings) {
   if (plan.empty()) return {};
   return played_pressures(plan, target, emit_settings(settings, max_pressure(target)),
-                          settings.simulated_array.sample_rate);
+                          settings.emission_rate());
 }
 
 PlanFigure as_figure(const TargetField& target, const Plan& plan, const PlanTrace& trace,
@@ -193,8 +193,10 @@ Result plan_and_score(const TargetField& target, const PipelineSettings& setting
                       const std::vector<double>& widths, bool traced) {
   const PlanSettings& s = settings.plan;
   Plan other;
-  Result r = is_am(settings) ? plan_foci(target, settings, other)
-                             : plan_paths(target, playable_plan_settings(settings), traced, other);
+  Result r = is_am(settings)
+                 ? plan_foci(target, settings, other)
+                 : plan_paths(target, playable_plan_settings(settings, settings.emission_rate()),
+                              traced, other);
   const SegmentPressures pressures = played(target, r.plan, settings);
   r.quality = quality_of(target, r.plan, pressures, settings, widths);
   if (!target.weight.empty() && !r.plan.empty()) {

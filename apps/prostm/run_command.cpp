@@ -6,6 +6,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common.hpp"
 #include "core/input_error.hpp"
@@ -123,13 +125,16 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   for (const LiftedFocus& focus : lifted.foci) figure.foci.push_back(focus.p_D);
   EmitSettings emit = settings.emit;
   emit.full_scale_pressure = observer.plan().full_scale_pressure;
-  const SegmentPressures played = played_pressures(observer.plan().plan, contact.target, emit,
-                                                   settings.simulated_array.sample_rate);
-  const PlanSettings plan = plan_settings(settings);
+  const double rate = observer.plan().emission_rate;
+  const SegmentPressures played =
+      played_pressures(observer.plan().plan, contact.target, emit, rate);
+  const PlanSettings plan = plan_settings(settings, rate);
+  std::vector<std::string> widths;  // of a focal point on each patch [mm]
   for (std::size_t patch = 0; patch < contact.target.patches.size(); ++patch) {
     const TargetField& target = contact.target.patches[patch];
     const double sigma =
         method_from_name(settings.method) == Method::Am ? settings.am.sigma : plan.sigma_on(target);
+    widths.push_back(fmt::format("{:.1f}", 1e3 * sigma));
     std::vector<double> field(target.size());
     quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, sigma,
                        settings.plan.gain_law(), field, &played);
@@ -138,6 +143,7 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   }
   figure.plan = observer.plan().plan;
   figure.title = fmt::format("{} at {:.2f} s", settings.scene, contact.target.time);
+  if (!widths.empty()) figure.title += fmt::format(", with σ = {} mm", fmt::join(widths, " and "));
   draw_scene(figure, path);
 }
 
@@ -152,36 +158,95 @@ void draw_or_say_why(const Observer& observer, const RunSummary& summary,
   fmt::print(out, "{}\n", why);
 }
 
-}  // namespace
-
-int run_command(const RunOptionsGiven& given) {
-  PipelineSettings settings = make_settings(given.common, given.scene, true);
+/// What the command line asks of a run: the options, and what it changes in the settings.
+RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) {
   RunOptions options;
   options.mode = given.stepped               ? RunMode::Stepped
                  : given.as_fast_as_possible ? RunMode::AsFastAsPossible
                                              : RunMode::RealTime;
-  settings.simulated_array.realtime = options.mode == RunMode::RealTime;
+  const bool realtime = options.mode == RunMode::RealTime;
+  if (given.device) settings.device = *given.device;
+  device_kind(settings.device);
+  settings.simulated_array.realtime = realtime;
   if (given.switch_at) settings.emit.switch_at = *given.switch_at;
   // a clock is running: the planner gets a share of an update, not a number of tries
-  if (options.mode == RunMode::RealTime && method_from_name(settings.method) == Method::ProStm &&
+  if (realtime && method_from_name(settings.method) == Method::ProStm &&
       settings.plan.preset == "best" && settings.plan.budget == 0.0 && !given.common.budget_ms) {
     settings.plan.budget = kLiveBudget;
   }
   settings.side_view = !given.common.figure.empty();
+  check_view(given, realtime);
+  return options;
+}
 
-  check_view(given, options.mode == RunMode::RealTime);
+/// How long the run is [s], of hands that are there for `duration`.
+double seconds_of(const RunOptionsGiven& given, double duration) {
+  const double seconds = given.seconds.value_or(std::isfinite(duration) ? duration : 60.0);
+  if (!(seconds > 0.0 && seconds <= 86400.0))
+    throw InputError(fmt::format("--seconds {} must be above 0 and at most 86400", seconds));
+  if (given.figure_at && !(*given.figure_at >= 0.0 && *given.figure_at <= seconds)) {
+    throw InputError(fmt::format("--figure-at {} must be between 0 and the run's {} s",
+                                 *given.figure_at, seconds));
+  }
+  return seconds;
+}
 
+std::unique_ptr<Recorder> make_recorder(const RunOptionsGiven& given,
+                                        const PipelineSettings& settings) {
+  if (given.record.empty()) return nullptr;
+  auto recorder = std::make_unique<Recorder>(given.record, settings_json(settings));
+  recorder->set_attribute("scene", settings.scene);
+  recorder->set_attribute("hand", given.hand);
+  return recorder;
+}
+
+/// What is left of a run: its recording's end, its summary and its picture. Each is tried, whatever
+/// becomes of the others.
+struct Ending {
+  const RunOptionsGiven& given;
+  const PipelineSettings& settings;
+  Pipeline& pipeline;
+  Recorder* recorder;
+  const Observer& observer;
+  const View* view;
+  std::FILE* out;
+
+  void report(const RunSummary& summary) const {
+    const std::optional<TrackerStatus> tracker = pipeline.smoke().hands().tracker_status();
+    nlohmann::ordered_json json = summary_json(summary, settings);
+    json["hand"] = given.hand;
+    json["tracker"] = tracker_json(tracker);
+    json["settings"] = nlohmann::ordered_json::parse(settings_json(settings));
+    Attempts attempts;
+    attempts.add([&] {
+      if (recorder == nullptr || !recorder->open()) return;
+      recorder->set_attribute("summary", json.dump());
+      recorder->close();
+    });
+    attempts.add([&] { write_json(given.common.json, json); });
+    attempts.add([&] {
+      if (given.common.figure.empty()) return;
+      draw_or_say_why(observer, summary, settings, pipeline.smoke().world().grid(),
+                      given.common.figure, out);
+    });
+    attempts.add([&] {
+      print_summary(out, summary, settings);
+      if (tracker) print_tracker(out, *tracker);
+      flush(out);
+    });
+    attempts.finish();
+    if (given.stay && !summary.stopped) view->announce(out);
+  }
+};
+
+}  // namespace
+
+int run_command(const RunOptionsGiven& given) {
+  PipelineSettings settings = make_settings(given.common, given.scene, true);
+  RunOptions options = options_of(given, settings);
   double duration = 0.0;
   auto hands = make_hands(given.hand, settings, duration);
-  options.seconds = given.seconds.value_or(std::isfinite(duration) ? duration : 60.0);
-  if (!(options.seconds > 0.0 && options.seconds <= 86400.0)) {
-    throw InputError(
-        fmt::format("--seconds {} must be above 0 and at most 86400", options.seconds));
-  }
-  if (given.figure_at && !(*given.figure_at >= 0.0 && *given.figure_at <= options.seconds)) {
-    throw InputError(fmt::format("--figure-at {} must be between 0 and the run's {} s",
-                                 *given.figure_at, options.seconds));
-  }
+  options.seconds = seconds_of(given, duration);
   std::unique_ptr<View> view;
   if (given.view) {
     view = std::make_unique<View>(given, settings);
@@ -195,56 +260,20 @@ int run_command(const RunOptionsGiven& given) {
   Pipeline pipeline(settings, std::move(hands), mute);
   if (view) view->serve(pipeline, prose(given.common.json));
 
-  std::unique_ptr<Recorder> recorder;
-  if (!given.record.empty()) {
-    recorder = std::make_unique<Recorder>(given.record, settings_json(settings));
-    recorder->set_attribute("scene", settings.scene);
-    recorder->set_attribute("hand", given.hand);
-  }
+  const std::unique_ptr<Recorder> recorder = make_recorder(given, settings);
   std::optional<double> picture_at;
   if (settings.side_view) picture_at = given.figure_at.value_or(0.5 * options.seconds);
   std::FILE* out = prose(given.common.json);
   Observer observer(recorder.get(), view.get(), picture_at, options, out);
   observer.follow(mute);
-  const auto report = [&](const RunSummary& summary) {
-    const std::optional<TrackerStatus> tracker = pipeline.smoke().hands().tracker_status();
-    nlohmann::ordered_json json = summary_json(summary, settings);
-    json["hand"] = given.hand;
-    json["tracker"] = tracker_json(tracker);
-    json["settings"] = nlohmann::ordered_json::parse(settings_json(settings));
-    Attempts attempts;
-    attempts.add([&] {
-      if (!recorder || !recorder->open()) return;
-      recorder->set_attribute("summary", json.dump());
-      recorder->close();
-    });
-    attempts.add([&] { write_json(given.common.json, json); });
-    attempts.add([&] {
-      if (given.common.figure.empty()) return;
-      draw_or_say_why(observer, summary, settings, pipeline.smoke().fluid().grid(),
-                      given.common.figure, out);
-    });
-    attempts.add([&] {
-      print_summary(out, summary, settings);
-      if (tracker) {
-        fmt::print(out,
-                   "tracker: {} ({} frames, {} dropped, {} repeated, {} reconnects; hands not "
-                   "taken: {} unsure, {} frozen)\n",
-                   tracker->sentence, tracker->frames, tracker->dropped, tracker->repeated,
-                   tracker->reconnects, tracker->unsure, tracker->frozen);
-      }
-      flush(out);
-    });
-    attempts.finish();
-    if (given.stay && !summary.stopped) view->announce(out);
-  };
-  observer.on_report(report);
+  const Ending ending{given, settings, pipeline, recorder.get(), observer, view.get(), out};
+  observer.on_report([&ending](const RunSummary& summary) { ending.report(summary); });
   const RunSummary summary = run(pipeline, settings, options, observer);
   observer.end();
   // at once, whatever becomes of the files
   const int failed = summary.failure ? tell(summary.failure) : 0;
   if (observer.reported()) return failed;
-  report(summary);
+  ending.report(summary);
   return failed != 0 ? failed : observer.interrupt().status();
 }
 

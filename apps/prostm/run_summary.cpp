@@ -83,6 +83,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
           {"blocks", s.device.blocks},
           {"late_blocks", s.device.late_blocks},
           {"missed_blocks", s.device.missed_blocks},
+          {"limited_samples", s.limited_samples},
           {"queue_blocks", s.device.queue_blocks},
           {"max_focus_step_mm", s.emit.max_focus_step * 1e3},
           {"max_path_length_mm", s.max_path_length * 1e3},
@@ -122,6 +123,9 @@ void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& 
              s.empty_updates, s.skipped_updates);
   fmt::print(out, "device: {} blocks, {} late, {} missed, queue of {} blocks\n", s.device.blocks,
              s.device.late_blocks, s.device.missed_blocks, s.device.queue_blocks);
+  if (s.limited_samples > 0) {
+    fmt::print(out, "device: {} samples were outside its limits and cut down\n", s.limited_samples);
+  }
   if (method_from_name(settings.method) == Method::Am) {
     fmt::print(out,
                "foci: at most {}, {} at {:g} Hz; largest step of one that sounds {:.3f} mm, {} "
@@ -148,6 +152,14 @@ void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& 
   }
   if (s.unobserved > 0) fmt::print(out, "recording: {} updates were missed\n", s.unobserved);
   print_times(out, s, settings);
+}
+
+void print_tracker(std::FILE* out, const TrackerStatus& tracker) {
+  fmt::print(out,
+             "tracker: {} ({} frames, {} dropped, {} repeated, {} reconnects; hands not taken: {} "
+             "unsure, {} frozen)\n",
+             tracker.sentence, tracker.frames, tracker.dropped, tracker.repeated,
+             tracker.reconnects, tracker.unsure, tracker.frozen);
 }
 
 nlohmann::ordered_json tracker_json(const std::optional<TrackerStatus>& tracker) {

@@ -13,6 +13,7 @@ nlohmann::ordered_json summary_json(const RunSummary& summary, const PipelineSet
 
 /// The same in words.
 void print_summary(std::FILE* out, const RunSummary& summary, const PipelineSettings& settings);
+void print_tracker(std::FILE* out, const TrackerStatus& tracker);
 
 /// "tracker" of prostm-run/1: null for hands that are not tracked live.
 nlohmann::ordered_json tracker_json(const std::optional<TrackerStatus>& tracker);

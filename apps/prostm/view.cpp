@@ -40,7 +40,7 @@ View::View(const RunOptionsGiven& given, const PipelineSettings& settings) : giv
   // the widths of the array's focus once, not at every change
   PipelineSettings with_widths = settings;
   with_widths.array_width = true;
-  link_.settings.pipeline.plan.widths = plan_settings(with_widths).widths;
+  link_.settings.pipeline.plan.widths = plan_settings(with_widths, settings.emission_rate()).widths;
   const std::string source = source_of(given.hand);
   link_.settings.source = source;
   link_.settings.sources = {source};
@@ -66,7 +66,7 @@ std::unique_ptr<HandSource> View::behind_the_page(std::unique_ptr<HandSource> ba
 
 void View::serve(Pipeline& pipeline, std::FILE* out) {
   link_.hands->set_tracker_pose(pipeline.smoke().tracker_pose());
-  const GridShape& grid = pipeline.smoke().fluid().grid();
+  const GridShape& grid = pipeline.smoke().world().grid();
   const PipelineSettings& s = settings();
   source_ = std::make_unique<PipelineView>(
       link_, ViewHello{PROSTM_VERSION, s.transducers.name, s.transducers.position, grid.p_DF,

@@ -16,6 +16,7 @@ struct AmSettings {
   int lloyd_iterations = 1000;  ///< at most; a field of a hand takes 5 to 50
 
   void visit(SettingsVisitor& v);
+  bool operator==(const AmSettings&) const = default;
 };
 
 /// Plans the foci of targets, each from scratch. Deterministic: the same settings and targets give

@@ -6,15 +6,14 @@
 
 #include "core/require.hpp"
 #include "core/units.hpp"
-#include "target/skin_normal.hpp"
 
 namespace prostm {
 namespace {
 
 constexpr double kPalmReach = 0.05;    // ℓ of (C1) [m]
 constexpr double kLeastCosine = 1e-3;  // of visible skin, which faces the array but for rounding
-const double kFullCosine = std::cos(40 * kPi / 180.0);  // where the fade (C6) begins, and where
-const double kNoneCosine = std::cos(62 * kPi / 180.0);  // nothing is left
+constexpr double kFadeFrom = 40 * kPi / 180.0;  // where the fade (C6) begins, and where
+constexpr double kFadeTo = 62 * kPi / 180.0;    // nothing is left [rad]
 constexpr double kNearSkin = 1.5;  // a crossing is at most this far from the skin itself: √3/2 that
                                    // trilinear values err by, and a step [cells]
 
@@ -38,15 +37,13 @@ Vec2 palm_slope(const Hand& hand) {
 
 /// The share of the pressure that is left on skin at an angle to the way from the array, (C6).
 double fade_of(double cosine) {
-  const double t = std::clamp((cosine - kNoneCosine) / (kFullCosine - kNoneCosine), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
+  const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+  return std::clamp((kFadeTo - angle) / (kFadeTo - kFadeFrom), 0.0, 1.0);
 }
 
 }  // namespace
 
 void ContactSettings::visit(SettingsVisitor& v) {
-  v.field("offset_cells", offset_cells);
-  v.field("time_constant", time_constant);
   v.field("touch_palm", touch_palm);
   v.field("touch_finger", touch_finger);
   v.field("touch_tip", touch_tip);
@@ -59,32 +56,21 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
       grid_(grid),
       max_side_(2 * std::max({grid.nx, grid.ny, grid.nz})),
       rays_(grid) {
-  require_between("offset_cells", settings.offset_cells, 0.5, 4.0);
-  require_between("time_constant", settings.time_constant, 0.0, 10.0, "s");
   // above 0, since a hand may show but one part of it
   require_between("touch_palm", settings.touch_palm, 0.001, 1000.0);
   require_between("touch_finger", settings.touch_finger, 0.001, 1000.0);
   require_between("touch_tip", settings.touch_tip, 0.001, 1000.0);
   for (std::vector<SeenSkin>& skin : visible_)
     skin.reserve(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
-  fade_.assign(max_cells(), 0.0);
   queue_.reserve(max_cells());
-  if (settings.time_constant == 0.0) return;
-  smoothed_.assign(grid.cell_count(), 0.0F);
-  was_fluid_.assign(grid.cell_count(), 0);
+  pressed_.reserve(max_cells());
+  points_.reserve(max_cells());
+  pressures_.reserve(max_cells());
 }
 
-ContactStats SkinContact::extract(const Fluid& fluid, const HandRaster& raster,
-                                  const HandFrame& hands, double dt, TargetFrame& out) noexcept {
-  return extract(fluid.pressure(), fluid.fluid_cells(), raster, hands, dt, out);
-}
-
-ContactStats SkinContact::extract(std::span<const float> pressure,
-                                  std::span<const std::uint8_t> fluid_cells,
-                                  const HandRaster& raster, const HandFrame& hands, double dt,
-                                  TargetFrame& out) noexcept {
+ContactStats SkinContact::extract(const PressureSource& source, const HandRaster& raster,
+                                  const HandFrame& hands, TargetFrame& out) noexcept {
   ContactStats stats;
-  take_pressure(pressure, fluid_cells, dt);
   shapes_.clear();
   for (const Hand& hand : hands.hands) {
     shapes_.emplace_back(hand);
@@ -107,7 +93,7 @@ ContactStats SkinContact::extract(std::span<const float> pressure,
     TargetField& patch = out.patches[patches];
     if (!place_patch(visible_[hand], hands.hands[hand], patch)) continue;
     find_skin(static_cast<int>(hand), patch);
-    const Cells cells = press(shapes_[hand], patch);
+    const Cells cells = press(source, shapes_[hand], patch);
     stats.steep_cells += cells.steep;
     if (cells.skin == 0) continue;
     fill_heights(patch, queue_);
@@ -212,37 +198,46 @@ void SkinContact::find_skin(int hand, TargetField& patch) {
   }
 }
 
-SkinContact::Cells SkinContact::press(const HandShape& shape, TargetField& patch) {
-  const auto point = [&](std::size_t cell) -> Vec3 {
-    const Vec2 x = patch.position(cell);
-    return patch.X_DP * Vec3(x.x(), x.y(), patch.height[cell]);
-  };
-  // (C6), of all cells before any of them is no skin any more: normals depend on their neighbours
-  for (int row = 0; row < patch.rows; ++row) {
-    for (int col = 0; col < patch.cols; ++col) {
-      const std::size_t cell = patch.index(row, col);
-      if (patch.skin[cell] == 0) continue;
-      const Vec3 normal = patch.X_DP.linear() * skin_normal(patch, row, col);
-      fade_[cell] = fade_of(-normal.dot(point(cell).normalized()));
-    }
-  }
+SkinContact::Cells SkinContact::press(const PressureSource& source, const HandShape& shape,
+                                      TargetField& patch) {
   if (has_weights_) patch.weight.assign(patch.size(), 0.0);
-  const Vec3 outside = -settings_.offset_cells * patch.cell * patch.X_DP.linear().col(2);
+  pressed_.clear();
+  points_.clear();
   Cells out;
   for (std::size_t cell = 0; cell < patch.size(); ++cell) {
     if (patch.skin[cell] == 0) continue;
-    if (fade_[cell] <= 0.0) {
+    const Vec2 x = patch.position(cell);
+    const Vec3 p_D = patch.X_DP * Vec3(x.x(), x.y(), patch.height[cell]);
+    const double fade = fade_at(p_D, patch);
+    if (fade <= 0.0) {
       patch.skin[cell] = 0;
       ++out.steep;
       continue;
     }
-    const Vec3 p_D = point(cell);
-    patch.pressure[cell] = fade_[cell] * std::max(0.0, pressure_at(p_D + outside));  // (C4)
+    pressed_.push_back({cell, fade});
+    points_.push_back(p_D);
     if (has_weights_) patch.weight[cell] = touch_at(shape, p_D);
     ++out.skin;
-    out.area += fade_[cell] * patch.cell * patch.cell;
+    out.area += fade * patch.cell * patch.cell;
   }
+  pressures_.resize(points_.size());
+  source.sample(points_, -patch.X_DP.linear().col(2), pressures_);
+  for (std::size_t i = 0; i < pressed_.size(); ++i)
+    patch.pressure[pressed_[i].cell] = pressed_[i].fade * std::max(0.0, pressures_[i]);  // (C4)
   return out;
+}
+
+/// (C6). The mean of four points a quarter of a cell away in both directions, so that a finger's
+/// flanks do not come and go by whole cells.
+double SkinContact::fade_at(const Vec3& p_D, const TargetField& patch) const {
+  double fade = 0.0;
+  for (const double u : {-0.25, 0.25}) {
+    for (const double v : {-0.25, 0.25}) {
+      const Vec3 q = p_D + patch.X_DP.linear() * Vec3(u * patch.cell, v * patch.cell, 0.0);
+      fade += 0.25 * fade_of(rays_.inwards(q).dot(q.normalized()));
+    }
+  }
+  return fade;
 }
 
 /// (C5)
@@ -256,43 +251,6 @@ double SkinContact::touch_at(const HandShape& shape, const Vec3& p_D) const {
       break;
   }
   return settings_.touch_palm;
-}
-
-void SkinContact::take_pressure(std::span<const float> pressure,
-                                std::span<const std::uint8_t> fluid_cells, double dt) {
-  fluid_ = fluid_cells;
-  pressure_ = pressure;
-  if (smoothed_.empty()) return;
-  const auto share = static_cast<float>(1.0 - std::exp(-dt / settings_.time_constant));
-  const float* now = pressure_.data();
-  const std::uint8_t* known = was_fluid_.data();
-  float* smoothed = smoothed_.data();
-  for (std::size_t c = 0, count = smoothed_.size(); c < count; ++c) {
-    // a cell that has just become fluid has no history
-    const float weight = known[c] != 0 ? share : 1.0F;
-    smoothed[c] += weight * (now[c] - smoothed[c]);
-  }
-  std::copy(fluid_.begin(), fluid_.end(), was_fluid_.begin());
-  pressure_ = smoothed_;
-}
-
-double SkinContact::pressure_at(const Vec3& p_D) const {
-  // trilinear between cell centres; cells inside a hand are left out and the weights renormalised
-  const Vec3 q = (p_D - grid_.p_DF) / grid_.cell - Vec3::Constant(0.5);
-  const int i = static_cast<int>(std::floor(q.x())), j = static_cast<int>(std::floor(q.y())),
-            k = static_cast<int>(std::floor(q.z()));
-  double sum = 0.0, weights = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const int ci = i + (corner & 1), cj = j + (corner >> 1 & 1), ck = k + (corner >> 2);
-    if (ci < 0 || cj < 0 || ck < 0 || ci >= grid_.nx || cj >= grid_.ny || ck >= grid_.nz) continue;
-    const std::size_t c = grid_.cell_index(ci, cj, ck);
-    if (fluid_[c] == 0) continue;
-    const double weight =
-        (1.0 - std::abs(q.x() - ci)) * (1.0 - std::abs(q.y() - cj)) * (1.0 - std::abs(q.z() - ck));
-    sum += weight * static_cast<double>(pressure_[c]);
-    weights += weight;
-  }
-  return weights > 1e-6 ? sum / weights : 0.0;
 }
 
 }  // namespace prostm

@@ -1,6 +1,6 @@
 #pragma once
-/// From the fluid's pressure on the hands to target fields (the paper's section IV-A,
-/// docs/design.md section C).
+/// From what presses on the hands to target fields (the paper's section IV-A, docs/design.md
+/// section C).
 
 #include <array>
 #include <boost/container/static_vector.hpp>
@@ -8,26 +8,23 @@
 #include <utility>
 #include <vector>
 
+#include "contact/pressure_source.hpp"
 #include "contact/skin_owner.hpp"
 #include "contact/skin_rays.hpp"
 #include "core/settings.hpp"
-#include "fluid/fluid.hpp"
 #include "hand/hand_raster.hpp"
 #include "target/target_field.hpp"
 
 namespace prostm {
 
 struct ContactSettings {
-  double offset_cells =
-      1.0;  ///< the pressure is read this many cells outside the skin, towards the array
-  double time_constant =
-      0.0;  ///< of an exponential smoothing of the fluid's pressure on the skin [s]; 0 = none
   // how much an error counts on each part of the hand, where all three are not the same
   double touch_palm = 1.0;    ///< on the palm and the ball of the thumb
   double touch_finger = 1.0;  ///< on the phalanges but the last
   double touch_tip = 1.0;     ///< on the last phalanges
 
   void visit(SettingsVisitor& v);
+  bool operator==(const ContactSettings&) const = default;
 };
 
 struct ContactStats {
@@ -44,12 +41,11 @@ struct ContactStats {
 /// array's side to the first crossing of the hand's signed distance. A plane is fitted to these
 /// points by least squares without regard to pressure, steep skin counting little (C1), with its
 /// axes and origin fixed so that they neither flip nor wander (C2). Each raster cell then marches
-/// along the plane's normal to the skin nearest to the array (C3), keeps its height, and reads the
-/// fluid's pressure `offset_cells` outside it, from fluid cells alone, clamped at 0 (C4). It fades
-/// to nothing where the skin is too steep for the array to press on, and skin beyond that has no
-/// target (C6); nor has skin outside the box. All of it is continuous in the hand's pose and
-/// remembers nothing of earlier ones, but for the smoothing. Where the settings touch_* differ the
-/// patches have weights (C5).
+/// along the plane's normal to the skin nearest to the array (C3), keeps its height, and takes the
+/// pressure that a source says is there, clamped at 0 (C4). It fades to nothing where the skin is
+/// too steep for the array to press on, and skin beyond that has no target (C6); nor has skin
+/// outside the box. All of it is continuous in the hand's pose and remembers nothing of earlier
+/// ones. Where the settings touch_* differ the patches have weights (C5).
 class SkinContact {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
@@ -60,34 +56,30 @@ class SkinContact {
     return static_cast<std::size_t>(max_side_) * static_cast<std::size_t>(max_side_);
   }
 
-  /// @param raster the hands of `hands` on the fluid's grid.  @param hands in frame D, of which
-  /// frame.time is written.
-  /// @param dt time since the last call, for the smoothing [s].
-  ContactStats extract(const Fluid& fluid, const HandRaster& raster, const HandFrame& hands,
-                       double dt, TargetFrame& out) noexcept;
-  /// The same with any pressure of the air, as Fluid::pressure() and Fluid::fluid_cells() give it.
-  /// Both are referred to until the next call. @pre cell_count() values each.
-  ContactStats extract(std::span<const float> pressure, std::span<const std::uint8_t> fluid_cells,
-                       const HandRaster& raster, const HandFrame& hands, double dt,
-                       TargetFrame& out) noexcept;
+  /// @param raster the hands of `hands` on the grid.  @param hands in frame D, of which frame.time
+  /// is written.
+  ContactStats extract(const PressureSource& source, const HandRaster& raster,
+                       const HandFrame& hands, TargetFrame& out) noexcept;
 
  private:
   struct SeenSkin {
     Vec3 p_D;
     double weight = 0.0;  // in (C1)
   };
+  struct Pressed {
+    std::size_t cell;
+    double fade;  // of (C6)
+  };
   struct Cells {
     int skin = 0, steep = 0;
     double area = 0.0;
   };
-  void take_pressure(std::span<const float> pressure, std::span<const std::uint8_t> fluid_cells,
-                     double dt);
   void find_visible();
   std::pair<Vec3, Vec3> fit_plane(std::span<const SeenSkin> visible, const Hand& hand) const;
   bool place_patch(std::span<const SeenSkin> visible, const Hand& hand, TargetField& patch) const;
   void find_skin(int hand, TargetField& patch);
-  Cells press(const HandShape& shape, TargetField& patch);
-  double pressure_at(const Vec3& p_D) const;
+  Cells press(const PressureSource& source, const HandShape& shape, TargetField& patch);
+  double fade_at(const Vec3& p_D, const TargetField& patch) const;
   double touch_at(const HandShape& shape, const Vec3& p_D) const;
 
   ContactSettings settings_;
@@ -98,12 +90,11 @@ class SkinContact {
   SkinRays rays_;
   SkinOwner owner_;
   std::array<std::vector<SeenSkin>, 2> visible_;  // skin of each hand seen from the array
-  std::vector<double> fade_;                      // of (C6), by cell of a patch
   std::vector<std::uint32_t> queue_;              // of fill_heights
-  std::span<const float> pressure_;      // one value a cell, the fluid's or smoothed over time
-  std::span<const std::uint8_t> fluid_;  // cells whose pressure is known
-  std::vector<float> smoothed_;          // empty without smoothing, as is was_fluid_
-  std::vector<std::uint8_t> was_fluid_;  // when the fluid was last looked at
+  // cells that something may press on, and where they are
+  std::vector<Pressed> pressed_;
+  std::vector<Vec3> points_;
+  std::vector<double> pressures_;
 };
 
 }  // namespace prostm

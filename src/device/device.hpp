@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "emit/focus_sample.hpp"
 
@@ -18,6 +19,11 @@ struct DeviceInfo {
   bool intensity_per_focus = false;  ///< false: one intensity for all foci of a sample
   bool streams = false;              ///< pulls an endless stream
   bool loads_segments = false;       ///< plays segments that are loaded whole
+  bool keeps_time = true;            ///< plays at its own times; false: when pull() says so
+  int decimation = 1;                ///< samples of an emission to one of the device
+
+  /// Of the samples that an emission makes for it [Hz].
+  double emission_rate() const { return sample_rate * decimation; }
 };
 
 struct DeviceStats {
@@ -34,8 +40,18 @@ enum class DeviceStatus : std::uint8_t {
   Vanished  ///< it was there and is gone: output has stopped, start() again when it is back
 };
 
+/// What a device that remembers its samples has played. Any thread.
+class PlayedSamples {
+ public:
+  virtual ~PlayedSamples() = default;
+  /// Samples first … first+n−1, sample-major. @throws std::out_of_range for samples that are
+  /// forgotten or not yet played.
+  virtual std::vector<FocusSample> read_back(std::int64_t first, std::int64_t n) const = 0;
+};
+
 /// Two ways in: an endless stream that pulls blocks at the device's own times (start), and segments
-/// that are loaded whole and repeat until the next one (load_segment).
+/// that are loaded whole and repeat until the next one (load_segment). start, stop, load_segment
+/// and pull belong to one thread, all else to any.
 class Device {
  public:
   virtual ~Device() = default;
@@ -47,13 +63,22 @@ class Device {
   /// Starts to pull from `source`, which must outlive stop(). @return Running or Refused.
   virtual DeviceStatus start(SampleSource& source) = 0;
   virtual void stop() = 0;
+  /// Plays n blocks now, fewer when it vanishes; nothing of a device that keeps time. @pre started.
+  virtual void pull(int n) { static_cast<void>(n); }
   /// Loads samples (sample-major, `foci` a sample) that the device repeats. @return Running or
   /// Refused.
   virtual DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) = 0;
 
   virtual DeviceStats stats() const = 0;
-  /// When a sample leaves the array, in seconds of the steady clock. @pre Running as a stream.
+  /// Samples of the stream that have left the array.
+  virtual std::int64_t samples() const = 0;
+  /// When a sample leaves the array, in seconds of the steady clock; of a device that keeps no
+  /// time, since the first sample. @pre Running as a stream.
   virtual double play_time(std::int64_t sample) const = 0;
+  /// When the block of a sample was asked for, likewise: play_time less what is queued before it.
+  virtual double ask_time(std::int64_t sample) const { return play_time(sample); }
+  /// What it played; null where it does not remember.
+  virtual const PlayedSamples* played() const { return nullptr; }
 };
 
 }  // namespace prostm

@@ -86,18 +86,6 @@ struct Stream {
 
 }  // namespace
 
-void SimulatedArraySettings::visit(SettingsVisitor& v) {
-  v.field("sample_rate", sample_rate);
-  v.field("block_samples", block_samples);
-  v.field("max_foci", max_foci);
-  v.field("queue_blocks", queue_blocks);
-  v.field("most_queue_blocks", most_queue_blocks);
-  v.field("history", history);
-  v.field("realtime", realtime);
-  v.field("solver", solver);
-  v.field("memoryless", memoryless);
-}
-
 struct SimulatedArray::Impl {
   Impl(const SimulatedArraySettings& s, const TransducerArray& a, const Medium& m);
 
@@ -142,7 +130,7 @@ SimulatedArray::Impl::Impl(const SimulatedArraySettings& s, const TransducerArra
     : settings(validated(s)),
       array(a),
       medium(m),
-      info{"simulated " + a.name, s.sample_rate, s.block_samples, s.max_foci, true, true, true},
+      info(info_of(s, a)),
       history_samples(static_cast<std::int64_t>(std::ceil(s.history * s.sample_rate))),
       most_queue(std::max(s.queue_blocks, s.most_queue_blocks)) {
   stats.queue_blocks = s.queue_blocks;

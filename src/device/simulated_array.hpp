@@ -36,15 +36,15 @@ struct SimulatedFaults {
 /// In real time its own thread pulls a block every block period by an absolute schedule
 /// (BlockClock), and catches up at once when it wakes late. The thread's priority is raised where
 /// that is allowed (raise_thread_priority); nothing needs it. Samples count from 0 at each start.
-/// All functions but start, stop, load_segment and pull may be called by any thread; those four
-/// belong to one.
-class SimulatedArray final : public Device {
+class SimulatedArray final : public Device, public PlayedSamples {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
   SimulatedArray(const SimulatedArraySettings& settings, const TransducerArray& array,
                  const Medium& medium);
   ~SimulatedArray() override;
 
+  /// Of an array that these would make.
+  static DeviceInfo info_of(const SimulatedArraySettings& settings, const TransducerArray& array);
   const DeviceInfo& info() const override;
   DeviceStatus status() const override;
   /// Also says why the last start or segment was refused while something else went on running.
@@ -55,21 +55,16 @@ class SimulatedArray final : public Device {
   /// refused.
   DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override;
   DeviceStats stats() const override;
-  /// Without a clock (realtime = false): seconds since the first sample.
+  std::int64_t samples() const override;
   double play_time(std::int64_t sample) const override;
-  /// When the block of a sample was asked for, likewise: play_time less the queue, for the first
-  /// sample of a block. Without a clock the same as play_time.
-  double ask_time(std::int64_t sample) const;
+  double ask_time(std::int64_t sample) const override;
+  void pull(int n) override;
+  const PlayedSamples* played() const override { return this; }
+  /// With `foci` a sample, back to `history`.
+  std::vector<FocusSample> read_back(std::int64_t first, std::int64_t n) const override;
+  int foci() const;  ///< per sample, of the running source or segment; 0 before the first
 
   void set_faults(const SimulatedFaults& faults);
-  /// Pulls n blocks now, fewer when it vanishes. @pre settings.realtime is false, started.
-  void pull(int n);
-
-  /// Samples first … first+n−1 as they were played, sample-major with `foci` a sample. What is
-  /// older than `history` or not yet played is an error. @throws std::out_of_range.
-  std::vector<FocusSample> read_back(std::int64_t first, std::int64_t n) const;
-  int foci() const;  ///< per sample, of the running source or segment; 0 before the first
-  std::int64_t samples() const;  ///< played so far
 
   /// Envelopes of the transducers, (A9), at the ends of samples first … first+n−1 as they were
   /// played, sample-major: solved again, from up to kLeadIn samples before. @throws

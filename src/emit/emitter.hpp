@@ -32,6 +32,7 @@ struct EmitSettings {
   std::string am_waveform = "sine-magnitude";  ///< of the intensity, see Waveform
 
   void visit(SettingsVisitor& v);
+  bool operator==(const EmitSettings&) const = default;
 };
 
 /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound;

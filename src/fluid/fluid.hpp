@@ -50,6 +50,7 @@ struct FluidSettings {
   double dissipation = 0.0;  ///< decay rate of the smoke's density [1/s]
 
   void visit(SettingsVisitor& v);
+  bool operator==(const FluidSettings&) const = default;
 };
 
 struct FluidStats {

@@ -32,11 +32,12 @@ void LatencyLog::plan(const ContactFrame& contact, const PlanFrame& plan,
   entry.submitted = run_start + plan.start + plan.plan_time + plan.lift_time;
 }
 
-void LatencyLog::follow(const TakeOver& event, const SimulatedArray& device) noexcept {
+void LatencyLog::follow(const TakeOver& event, const Device& device) noexcept {
   const Plan& entry = plans_[static_cast<std::size_t>(event.plan) % plans_.size()];
-  const double leaves = device.play_time(event.first_sample),
-               asked = device.ask_time(event.first_sample),
-               known = device.ask_time(event.arrival_sample);
+  const int decimation = device.info().decimation;
+  const double leaves = device.play_time(event.first_sample / decimation),
+               asked = device.ask_time(event.first_sample / decimation),
+               known = device.ask_time(event.arrival_sample / decimation);
 
   Latency latency = entry.latency;
   latency.part[kBlockWait] = known - entry.submitted;
@@ -46,7 +47,7 @@ void LatencyLog::follow(const TakeOver& event, const SimulatedArray& device) noe
   total_.add(latency.total);
   for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].add(latency.part[i]);
   if (event.redrawn_sample >= 0) {
-    redraw_.add(device.play_time(event.redrawn_sample) - entry.arrival);
+    redraw_.add(device.play_time(event.redrawn_sample / decimation) - entry.arrival);
   }
   last_ = latency;
 }

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/distribution.hpp"
-#include "device/simulated_array.hpp"
+#include "device/device.hpp"
 #include "emit/emitter.hpp"
 #include "pipeline/pipeline.hpp"
 
@@ -49,7 +49,7 @@ class LatencyLog {
   /// [s].
   void plan(const ContactFrame& contact, const PlanFrame& plan, double run_start) noexcept;
   /// The emitter reports on a plan.
-  void follow(const TakeOver& event, const SimulatedArray& device) noexcept;
+  void follow(const TakeOver& event, const Device& device) noexcept;
 
   /// Of the plan that was followed last; none before the first.
   const std::optional<Latency>& last() const { return last_; }

@@ -9,11 +9,12 @@
 
 #include "contact/skin_contact.hpp"
 #include "core/worker_pool.hpp"
-#include "device/simulated_array.hpp"
+#include "device/device.hpp"
+#include "device/sample_chain.hpp"
 #include "emit/emitter.hpp"
-#include "fluid/fluid.hpp"
 #include "hand/hand_raster.hpp"
 #include "pipeline/settings.hpp"
+#include "pipeline/world.hpp"
 #include "plan/planner.hpp"
 #include "track/hand_source.hpp"
 
@@ -43,8 +44,10 @@ struct ContactFrame {
 /// Hand, smoke and skin: the stages that run at the fluid's rate.
 class SmokeStage {
  public:
+  /// @param world that the hands meet; null: the smoke of the settings.
   /// @throws std::invalid_argument with a sentence.
-  SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands);
+  SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+             std::unique_ptr<World> world = nullptr);
 
   /// Fluid step `step` (from 1) with the hands at run time `time` [s], dt after the last one; makes
   /// targets on every `steps_per_plan`th. Writes `due` = `taken` = time.
@@ -74,8 +77,7 @@ class SmokeStage {
   void tell(std::shared_ptr<Mute> mute) { mute_ = std::move(mute); }
 
   const FluidStats& fluid_stats() const { return fluid_stats_; }  ///< of the last whole step
-  const Fluid& fluid() const { return fluid_; }
-  const Scene& scene() const { return scene_; }
+  const World& world() const { return *world_; }
   std::size_t max_cells() const { return contact_.max_cells(); }
   HandSource& hands() { return *hands_; }
   const HandSource& hands() const { return *hands_; }
@@ -85,9 +87,8 @@ class SmokeStage {
   std::shared_ptr<Mute> mute_;  // none without a clock
   HandFilter filter_;
   Pose X_DT_;
-  Scene scene_;
   WorkerPool pool_;
-  Fluid fluid_;
+  std::unique_ptr<World> world_;
   HandRasteriser rasteriser_;
   SkinContact contact_;
   FluidStats fluid_stats_;
@@ -108,15 +109,17 @@ struct PlanFrame {
   double plan_time = 0.0, lift_time = 0.0;  ///< [s]
   double max_skin_length = 0.0;             ///< longest path on the skin [m]
   double full_scale_pressure = 0.0;         ///< rendered, at intensity 1 [Pa]
+  double emission_rate = 0.0;               ///< samples of the emission [Hz]
 };
 
 /// Paths or foci from targets: the stages that run at the planner's rate.
 class PlanStage {
  public:
   /// @param max_cells of a target raster.  @param full_scale of the scene, where the settings give
-  /// none [Pa].
+  /// none [Pa].  @param device that plays the emission.
   /// @throws std::invalid_argument with a sentence.
-  PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale);
+  PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale,
+            const DeviceInfo& device);
 
   /// Plans a target and hands the result to the emitter; without a plan the output fades. Writes
   /// `start` = `taken` of the target.
@@ -126,6 +129,8 @@ class PlanStage {
   void continue_from(const PlanStage& other) { updates_ = other.updates_; }
 
   Emitter& emitter() { return *emitter_; }
+  /// The emission as the device takes it.
+  SampleChain& samples() { return *samples_; }
   double full_scale_pressure() const {
     return emit_settings_.full_scale_pressure;
   }  ///< rendered, at intensity 1 [Pa]
@@ -133,7 +138,9 @@ class PlanStage {
  private:
   std::variant<Planner, AmPlanner> planner_;
   EmitSettings emit_settings_;
+  double emission_rate_;  // [Hz]
   std::unique_ptr<Emitter> emitter_;
+  std::unique_ptr<SampleChain> samples_;
   std::int64_t updates_ = 0;
 };
 
@@ -144,12 +151,20 @@ class Pipeline {
  public:
   /// @param mute what else silences the output; not null. In real time it is also on while a step
   /// finds no hand, so that the output does not wait for the next plan to fade.
+  /// @param device that plays; null: the one that the settings name.
+  /// @param world that the hands meet; null: the smoke of the settings.
   /// @throws std::invalid_argument with a sentence.
   Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
-           std::shared_ptr<Mute> mute = std::make_shared<Mute>());
+           std::shared_ptr<Mute> mute = std::make_shared<Mute>(),
+           std::unique_ptr<Device> device = nullptr, std::unique_ptr<World> world = nullptr);
+
+  /// The device stops at once; silence() before is what spares the skin a click.
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
 
   /// One fluid step of dt [s]: the device plays up to it, then the line runs top to bottom. True
-  /// when a plan update came with it: see plan(). @pre settings.simulated_array.realtime is false.
+  /// when a plan update came with it: see plan(). @pre the device keeps no time of its own.
   bool step(double dt);
 
   const ContactFrame& contact() const { return contact_frame_; }
@@ -158,7 +173,8 @@ class Pipeline {
 
   /// Takes other settings between two steps, and rebuilds what they concern: hands stay, and so
   /// does the smoke where the box is the same. Where plans or their emission change the device
-  /// starts anew, so that its samples count from 0. Not taken: another fluid_rate, array or device.
+  /// starts anew, so that its samples count from 0. Not taken: another fluid_rate, array or device,
+  /// and nothing of hands, smoke and contact where the world is the caller's own.
   /// @throws std::invalid_argument with a sentence; then everything is as it was.
   void reconfigure(const PipelineSettings& settings);
 
@@ -167,31 +183,34 @@ class Pipeline {
 
   SmokeStage& smoke() { return *smoke_; }
   PlanStage& plans() { return *plans_; }
-  SimulatedArray& device() { return device_; }
-  DeviceStats device_stats() const;  ///< over all starts of the device
-  EmitStats emit_stats() const;      ///< of all emitters that there were
+  Device& device() { return *device_; }
+  DeviceStats device_stats() const;      ///< over all starts of the device
+  EmitStats emit_stats() const;          ///< of all emitters that there were
+  std::int64_t limited_samples() const;  ///< that the last limiters changed; 0 unless a stage erred
 
  private:
   /// In real time, so that nothing clicks when the device stops, or plays on.
   void fade_out();
   /// The device plays another emitter, after the fade of the one before. @return why it cannot, and
   /// plays the one before; or nothing.
-  std::string restart(Emitter& emitter);
+  std::string restart(PlanStage& plans);
 
   PipelineSettings settings_;
   std::shared_ptr<Mute> mute_;
+  const bool own_world_;  // the caller's
   std::unique_ptr<SmokeStage> smoke_;
+  std::unique_ptr<Device> device_;
   std::unique_ptr<PlanStage> plans_;
-  SimulatedArray device_;
   DeviceStats device_before_;
   EmitStats emit_before_;
+  std::int64_t limited_before_ = 0;
   ContactFrame contact_frame_;
   PlanFrame plan_frame_;
   std::int64_t steps_ = 0;
   double time_ = 0.0;
 };
 
-/// Lets a device without a clock play everything that is due at run time `time` [s].
-void play_until(SimulatedArray& device, double time);
+/// Lets a device that keeps no time play everything that is due at run time `time` [s].
+void play_until(Device& device, double time);
 
 }  // namespace prostm

@@ -52,7 +52,7 @@ void PlanLog::add(const ContactFrame& contact, const PlanFrame& frame, double ru
   }
 }
 
-void PlanLog::follow(Emitter& emitter, const SimulatedArray& device) {
+void PlanLog::follow(Emitter& emitter, const Device& device) {
   TakeOver event;
   while (emitter.next_take_over(event)) latency_.follow(event, device);
 }

@@ -37,7 +37,7 @@ class PlanLog {
   /// @param run_start what the device's clock shows at run time 0 [s].
   void add(const ContactFrame& contact, const PlanFrame& frame, double run_start);
   /// Reads what the emitter reported since.
-  void follow(Emitter& emitter, const SimulatedArray& device);
+  void follow(Emitter& emitter, const Device& device);
 
   const LatencyLog& latency() const { return latency_; }
   void write(RunSummary& out) const;

@@ -102,7 +102,7 @@ bool FluidSide::meet(double due, ContactFrame& frame) {
 
 void FluidSide::settled(double time) {
   log_.settle(pipeline_.smoke().fluid_stats());
-  if (shared_.snapshots != nullptr) shared_.snapshots->smoke(pipeline_.smoke().fluid());
+  if (shared_.snapshots != nullptr) shared_.snapshots->smoke(pipeline_.smoke().world());
   shared_.steps.store(log_.steps(), std::memory_order_relaxed);
   shared_.run_time.store(time, std::memory_order_relaxed);
 }

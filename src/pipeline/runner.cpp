@@ -90,7 +90,7 @@ class Run {
     if (!observer_.on_progress(time)) shared_.end.stop();
   }
   void check_device() const {
-    const SimulatedArray& device = pipeline_.device();
+    const Device& device = pipeline_.device();
     if (device.status() == DeviceStatus::Vanished) throw std::runtime_error(device.problem());
   }
 
@@ -180,7 +180,7 @@ void Run::look() {
 /// A pause belongs to those who look: somebody who has just come sees the smoke, and when nobody
 /// has been there for a while the run goes on.
 void Run::keep_the_pause(bool watched) {
-  if (watched && !watched_) steering_->snapshots().smoke(pipeline_.smoke().fluid());
+  if (watched && !watched_) steering_->snapshots().smoke(pipeline_.smoke().world());
   const double now = steady_now();
   if (watched) alone_since_ = now;
   if (now - alone_since_ < pause_kept_) return;
@@ -195,6 +195,7 @@ RunSummary Run::summary() {
   plans_.log().write(s);
   s.device = pipeline_.device_stats();
   s.emit = pipeline_.emit_stats();
+  s.limited_samples = pipeline_.limited_samples();
   s.stopped = over();
   s.seconds =
       pace_.realtime ? shared_.run_time.load() : static_cast<double>(s.fluid_steps) * pace_.dt;

@@ -48,6 +48,7 @@ struct RunSummary {
   std::int64_t skin_cells = 0, steep_cells = 0;  ///< of ContactStats, of all updates
   DeviceStats device;
   EmitStats emit;
+  std::int64_t limited_samples = 0;  ///< that the limiter before the device had to change
   double max_path_length = 0, max_skin_length = 0;
   double mean_divergence = 0;  ///< FluidStats::divergence_rms over the steps
   std::int64_t fluid_resets = 0;
@@ -76,7 +77,7 @@ class RunObserver {
 /// Runs `pipeline` from its beginning. However it ends, whatever fails and on whichever thread, all
 /// threads have ended then, the output has faded out, and the device is stopped. @return the
 /// summary of options.seconds, or of less when it was stopped; what failed is in it. @pre not run
-/// or stepped before; settings.simulated_array.realtime as the mode asks; options.live and
+/// or stepped before; the device keeps time as the mode asks; options.live and
 /// options.stay only in real time.
 RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
                RunObserver& observer);

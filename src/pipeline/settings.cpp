@@ -10,6 +10,7 @@ namespace prostm {
 void PipelineSettings::visit(SettingsVisitor& v) {
   v.field("scene", scene);
   v.field("method", method);
+  v.field("device", device);
   v.field("array", array);
   v.field("array_width", array_width);
   v.field("tracker", tracker);
@@ -25,21 +26,24 @@ int PipelineSettings::steps_per_plan() const {
   return method_from_name(method) == Method::Am ? 1 : 2;
 }
 
+double PipelineSettings::emission_rate() const {
+  return device_kind(device).info(device_setup()).emission_rate();
+}
+
 double PipelineSettings::sigma() const {
   return method_from_name(method) == Method::Am ? am.sigma : plan.sigma;
 }
 
-PlanSettings playable_plan_settings(const PipelineSettings& settings) {
+PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate) {
   PlanSettings plan = settings.plan;
-  const double rate = settings.simulated_array.sample_rate;
-  plan.rise_time = 1.0 / (largest_slew(settings.emit.fade_time, rate) * rate);
+  plan.rise_time = 1.0 / (largest_slew(settings.emit.fade_time, emission_rate) * emission_rate);
   plan.silent_below = settings.emit.silent_below;
   if (plan.full_scale_pressure == 0.0) plan.full_scale_pressure = settings.emit.full_scale_pressure;
   return plan;
 }
 
-PlanSettings plan_settings(const PipelineSettings& settings) {
-  PlanSettings plan = playable_plan_settings(settings);
+PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate) {
+  PlanSettings plan = playable_plan_settings(settings, emission_rate);
   FocusWidths& out = plan.widths;
   if (!settings.array_width) out = {};
   if (!settings.array_width || !out.empty()) return plan;
@@ -65,11 +69,15 @@ EmitSettings emit_settings(const PipelineSettings& settings, double largest) {
 std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(
     PipelineSettings& settings) {
   const auto group = [](auto& stage) { return [&stage](SettingsVisitor& v) { stage.visit(v); }; };
+  const auto contact = [&settings](SettingsVisitor& v) {
+    settings.fluid_pressure.visit(v);
+    settings.contact.visit(v);
+  };
   return {{"pipeline", group(settings)},
           {"track", group(settings.track)},
           {"scripted_hand", group(settings.scripted_hand)},
           {"fluid", group(settings.fluid)},
-          {"contact", group(settings.contact)},
+          {"contact", contact},
           {"plan", group(settings.plan)},
           {"am", group(settings.am)},
           {"emit", group(settings.emit)},

@@ -9,9 +9,10 @@
 #include "am/am_planner.hpp"
 #include "contact/skin_contact.hpp"
 #include "core/settings.hpp"
-#include "device/simulated_array.hpp"
+#include "device/device_kinds.hpp"
 #include "emit/emitter.hpp"
 #include "fluid/fluid.hpp"
+#include "fluid/fluid_pressure.hpp"
 #include "plan/planner.hpp"
 #include "track/hand_source.hpp"
 
@@ -22,6 +23,7 @@ inline constexpr double kLiveBudget = 2e-3;  ///< for a plan of preset best in r
 struct PipelineSettings {
   std::string scene = "one-plume";  ///< see scene_from_name
   std::string method = "pro-stm";   ///< see method_from_name
+  std::string device = "sim";       ///< what plays, see device_kinds
   std::string array = "usx";        ///< what `transducers` are, by name: usx, autd3 or a file
   /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
   bool array_width = false;
@@ -38,6 +40,7 @@ struct PipelineSettings {
   TrackSettings track;
   ScriptedHandSettings scripted_hand;
   FluidSettings fluid;
+  FluidPressureSettings fluid_pressure;  ///< in files with `contact`
   ContactSettings contact;
   PlanSettings plan;
   AmSettings am;
@@ -50,17 +53,23 @@ struct PipelineSettings {
   /// for a method that is unknown.
   int steps_per_plan() const;
 
+  /// What `device` is made from.
+  DeviceSetup device_setup() const { return {simulated_array, transducers, Medium{}}; }
+
+  /// Samples of an emission for it [Hz].
+  double emission_rate() const;
+
   /// The fall-off of a focal point that the method counts on [m].
   double sigma() const;
   /// The fields of this struct that belong to no stage.
   void visit(SettingsVisitor& v);
 };
 
-/// The planner's settings with what the emission can play, (P18).
-PlanSettings playable_plan_settings(const PipelineSettings& settings);
+/// The planner's settings with what an emission of so many samples a second can play, (P18).
+PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate);
 /// The same with the widths that `array_width` asks for: those of `plan`, or (A22) of `transducers`
 /// where there are none.
-PlanSettings plan_settings(const PipelineSettings& settings);
+PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate);
 
 /// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest
 /// pressure that is to be rendered [Pa].

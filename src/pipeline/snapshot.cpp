@@ -86,9 +86,9 @@ void Snapshots::step(const ContactFrame& frame, const SmokeStage& stage) {
   step_.publish();
 }
 
-void Snapshots::smoke(const Fluid& fluid) {
-  if (!watched()) return;
-  view_smoke(fluid, smoke_.draft());
+void Snapshots::smoke(const World& world) {
+  if (!watched() || world.fluid() == nullptr) return;
+  view_smoke(*world.fluid(), smoke_.draft());
   smoke_.publish();
 }
 
@@ -100,6 +100,7 @@ void Snapshots::plan(const ContactFrame& contact, const PlanFrame& plan, double 
   s.plan = plan.plan;
   s.settings = settings_;
   s.full_scale_pressure = plan.full_scale_pressure;
+  s.emission_rate = plan.emission_rate;
   s.contact_time = contact.contact_time;
   s.plan_time = plan.plan_time;
   s.lift_time = plan.lift_time;
@@ -115,8 +116,7 @@ void render(const PlanSnapshot& plan, RenderedPlan& out) {
   if (plan.planned) {
     EmitSettings emit = plan.settings->emit;
     emit.full_scale_pressure = plan.full_scale_pressure;
-    played =
-        played_pressures(plan.plan, plan.target, emit, plan.settings->simulated_array.sample_rate);
+    played = played_pressures(plan.plan, plan.target, emit, plan.emission_rate);
   }
   double most = 0.0;
   for (std::size_t i = 0; i < plan.target.patches.size(); ++i) {

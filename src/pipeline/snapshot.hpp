@@ -48,6 +48,7 @@ struct PlanSnapshot {
   Plan plan;
   std::shared_ptr<const PipelineSettings> settings;       ///< that it was planned with
   double full_scale_pressure = 0.0;                       ///< rendered, at intensity 1 [Pa]
+  double emission_rate = 0.0;                             ///< samples of the emission [Hz]
   double contact_time = 0, plan_time = 0, lift_time = 0;  ///< [s]
   double latency =
       std::numeric_limits<double>::quiet_NaN();  ///< of the last one that was emitted [s]
@@ -71,7 +72,7 @@ class Snapshots {
   /// A step has met its hands.
   void step(const ContactFrame& frame, const SmokeStage& stage);
   /// The fluid has settled: its smoke, while somebody looks.
-  void smoke(const Fluid& fluid);
+  void smoke(const World& world);
 
   // ---- the planner's thread ----
   /// Publishes an update. @param latency of the last plan that was emitted, NaN without one [s].

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 
 #include "core/stage_timer.hpp"
 
@@ -137,12 +138,13 @@ void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fa
 
 double Steering::intensity() const {
   if (!link_.snapshots.watched()) return 0.0;
-  const SimulatedArray& device = pipeline_.device();
+  const Device& device = pipeline_.device();
+  if (device.played() == nullptr) return std::numeric_limits<double>::quiet_NaN();
   const auto n = static_cast<std::int64_t>(kLookBack * device.info().sample_rate);
   const std::int64_t played = device.samples();
   if (played < n) return 0.0;
   double strongest = 0.0;
-  for (const FocusSample& sample : device.read_back(played - n, n))
+  for (const FocusSample& sample : device.played()->read_back(played - n, n))
     strongest = std::max(strongest, static_cast<double>(sample.intensity));
   return strongest;
 }

@@ -21,6 +21,7 @@ struct FocusWidths {
   /// For a target: at the middle of its pressure on the skin, with the tilt of its plane; with no
   /// pressure, at the plane's origin. @pre not empty. Allocates nothing.
   double on(const TargetField& target) const noexcept;
+  bool operator==(const FocusWidths&) const = default;
 };
 
 /// @throws std::invalid_argument with a sentence: lists that do not ascend or are empty beside

@@ -75,6 +75,7 @@ struct PlanSettings {
   GainLaw gain_law() const { return {gain, gain_exponent, draw_rate}; }
 
   void visit(SettingsVisitor& v);
+  bool operator==(const PlanSettings&) const = default;
 };
 
 enum class PlanStatus : std::uint8_t {

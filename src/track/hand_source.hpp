@@ -71,6 +71,7 @@ struct TrackSettings {
       0.100;  ///< innovation of a velocity at which the low-pass is half open [m/s]
 
   void visit(SettingsVisitor& v);
+  bool operator==(const TrackSettings&) const = default;
 };
 
 /// A recording: frames at irregular times, as read by `io`.

@@ -174,6 +174,25 @@ void FrameMaker::take_plan(ViewFrame& frame) {
   fill_paths(plan, frame);
 }
 
+void FrameMaker::fill_scores(ViewFrame& frame) const {
+  const PlanSnapshot& plan = snapshots_.plan();
+  const bool scored = plan.planned;
+  const Metrics& m = rendered_.metrics;
+  set(frame, kRmse, scored ? m.rmse : kNone);
+  set(frame, kCorrelation, scored ? m.correlation : kNone);
+  set(frame, kCoverage, scored ? m.coverage : kNone);
+  set(frame, kSkill0, scored ? m.skill_0 : kNone);
+  set(frame, kSkill8, scored ? m.skill_8 : kNone);
+  set(frame, kOverlap, scored ? m.overlap : kNone);
+  set(frame, kSpill, scored ? m.spill : kNone);
+  constexpr double kMm = 1e3;
+  set(frame, kSigmaMm, scored ? kMm * rendered_.sigma : kNone);
+  const Metrics& setting = rendered_.metrics_at_setting;
+  set(frame, kSettingSigmaMm, scored ? kMm * plan.settings->sigma() : kNone);
+  set(frame, kSettingRmse, scored ? setting.rmse : kNone);
+  set(frame, kSettingCorrelation, scored ? setting.correlation : kNone);
+}
+
 void FrameMaker::fill_numbers(ViewFrame& frame) {
   const StepSnapshot& step = snapshots_.step();
   const PlanSnapshot& plan = snapshots_.plan();
@@ -211,15 +230,7 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   set(frame, kLateBlocks, static_cast<double>(run.device.late_blocks));
   set(frame, kMissedBlocks, static_cast<double>(run.device.missed_blocks));
   set(frame, kQueueBlocks, run.device.queue_blocks);
-  const Metrics& m = rendered_.metrics;
-  const bool scored = plan.planned;
-  set(frame, kRmse, scored ? m.rmse : kNone);
-  set(frame, kCorrelation, scored ? m.correlation : kNone);
-  set(frame, kCoverage, scored ? m.coverage : kNone);
-  set(frame, kSkill0, scored ? m.skill_0 : kNone);
-  set(frame, kSkill8, scored ? m.skill_8 : kNone);
-  set(frame, kOverlap, scored ? m.overlap : kNone);
-  set(frame, kSpill, scored ? m.spill : kNone);
+  fill_scores(frame);
   set(frame, kMaxTargetPa, rendered_.max_target);
   set(frame, kFullScalePa, run.full_scale_pressure);
   set(frame, kLapsCompleted,
@@ -229,12 +240,6 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   set(frame, kTrackerAgeMs, frame.hand_count > 0 ? kMs * step.hands.age : kNone);
   set(frame, kIntensity, run.intensity);
   set(frame, kSaturated, static_cast<double>(run.emit.saturated));
-  constexpr double kMm = 1e3;
-  set(frame, kSigmaMm, scored ? kMm * rendered_.sigma : kNone);
-  const Metrics& setting = rendered_.metrics_at_setting;
-  set(frame, kSettingSigmaMm, scored ? kMm * plan.settings->sigma() : kNone);
-  set(frame, kSettingRmse, scored ? setting.rmse : kNone);
-  set(frame, kSettingCorrelation, scored ? setting.correlation : kNone);
 }
 
 }  // namespace prostm::viewer

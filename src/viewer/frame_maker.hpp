@@ -39,6 +39,7 @@ class FrameMaker {
 
  private:
   void take_plan(ViewFrame& frame);
+  void fill_scores(ViewFrame& frame) const;
   void fill_numbers(ViewFrame& frame);
 
   Snapshots& snapshots_;

@@ -155,7 +155,7 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
         (["run", "--seconds", "9", "--figure-at", "nan", "--figure", "f.png"], ["--figure-at", "nan"]),
         (["run", "--grid", "63"], ["63"]),
         (["run", "--paths", "9"], ["9"]),
-        (["run", "--device", "a"], ["--device a is unknown"]),
+        (["run", "--device", "a"], ["device 'a' is unknown: it must be sim"]),
         (["run", "--seed", "-1"], ["--seed = -1", "between 0"]),
         (["run", "--preset", "worst"], ["worst"]),
         (["run", "--budget-ms", "-1"], ["budget", "between 0"]),

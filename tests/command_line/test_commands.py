@@ -200,7 +200,7 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
     summary = run_summary(prostm, "--as-fast-as-possible", "--record", recording, "--figure", figure)
     assert summary["format"] == "prostm-run/1" and finite_or_null(summary)
     assert summary["fluid_steps"] == 400 and summary["plans"] + summary["empty_updates"] == 200
-    assert summary["blocks"] == 8000 and summary["missed_blocks"] == 0
+    assert summary["blocks"] == 8000 and summary["missed_blocks"] == summary["limited_samples"] == 0
     assert summary["plans"] > 50
     assert summary["max_focus_step_mm"] <= 0.2 + 1e-6 and summary["max_path_length_mm"] <= 140.5
     assert figure.read_bytes().startswith(b"\x89PNG")

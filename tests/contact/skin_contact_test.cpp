@@ -5,6 +5,9 @@
 #include <cmath>
 #include <memory>
 
+#include "core/units.hpp"
+#include "fluid/fluid.hpp"
+#include "fluid/fluid_pressure.hpp"
 #include "support/heap_guard.hpp"
 #include "track/hand_source.hpp"
 
@@ -21,17 +24,19 @@ constexpr int kCells = 64;
 /// A scripted hand in smoke, with everything that a target needs.
 struct Bench {
   explicit Bench(const ScriptedHandSettings& hand, const std::string& scene = "one-plume",
-                 bool filter_on = true, int threads = 2, const ContactSettings& settings = {})
+                 bool filter_on = true, int threads = 2, const ContactSettings& settings = {},
+                 int cells = kCells)
       : pool(threads),
         filter(filter_settings(filter_on)),
         source(make_scripted_hand(hand, filter_settings(filter_on))),
-        fluid(fluid_settings(), scene_from_name(scene), pool),
+        fluid(fluid_settings(cells), scene_from_name(scene), pool),
+        pressure({}, fluid.grid()),
         rasteriser(fluid.grid()),
         contact(settings, fluid.grid()) {}
 
-  static FluidSettings fluid_settings() {
+  static FluidSettings fluid_settings(int cells) {
     FluidSettings s;
-    s.cells = kCells;
+    s.cells = cells;
     return s;
   }
   static TrackSettings filter_settings(bool on) {
@@ -50,13 +55,15 @@ struct Bench {
     fluid.step(kStep, rasteriser.raster());
   }
   ContactStats extract() {
-    return contact.extract(fluid, rasteriser.raster(), hands, kStep, target);
+    pressure.take(fluid.pressure(), fluid.fluid_cells(), kStep);
+    return contact.extract(pressure, rasteriser.raster(), hands, target);
   }
 
   WorkerPool pool;
   HandFilter filter;
   std::unique_ptr<HandSource> source;
   Fluid fluid;
+  FluidPressure pressure;
   HandRasteriser rasteriser;
   SkinContact contact;
   HandFrame hands;
@@ -118,8 +125,20 @@ TEST(SkinContact, PlaneAxesFollowTheDevice) {
   EXPECT_GT(patches, 50);
 }
 
+/// The cosine of the angle between the skin and the way to the array, by the exact distance.
+double cosine_of(const HandShape& shape, const Vec3& p_D) {
+  constexpr double kNear = 2e-3;  // [m]
+  Vec3 gradient;
+  for (int a = 0; a < 3; ++a) {
+    const Vec3 step = kNear * Vec3::Unit(a);
+    gradient[a] = shape.distance(p_D + step) - shape.distance(p_D - step);
+  }
+  return -gradient.normalized().dot(p_D.normalized());
+}
+
 TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
-  Bench bench(still_hand());
+  // fine cells under sanitizers too: coarse ones fade nearly everywhere
+  Bench bench(still_hand(), "one-plume", true, 2, {}, 64);
   for (int i = 0; i < 150; ++i) bench.step();
   bench.extract();
   const TargetField& patch = bench.target.patches.at(0);
@@ -127,6 +146,8 @@ TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
   const auto pressure = bench.fluid.pressure();
   const auto free = bench.fluid.fluid_cells();
   EXPECT_GT(max_pressure(patch), 0.0);
+  const HandShape shape(bench.hands.hands[0]);
+  int facing = 0;
   for (int row = 0; row < patch.rows; ++row) {
     for (int col = 0; col < patch.cols; ++col) {
       const std::size_t c = patch.index(row, col);
@@ -137,7 +158,8 @@ TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
       // a clamped weighted mean of the eight cells around the reading point lies between their
       // extremes
       const Vec2 x = patch.position(row, col);
-      const Vec3 p = patch.X_DP * Vec3(x.x(), x.y(), patch.height[c] - grid.cell);
+      const Vec3 skin = patch.X_DP * Vec3(x.x(), x.y(), patch.height[c]);
+      const Vec3 p = skin - grid.cell * patch.X_DP.linear().col(2);
       const Vec3 q = (p - grid.p_DF) / grid.cell - Vec3::Constant(0.5);
       double low = 1e9, high = -1e9;
       for (int corner = 0; corner < 8; ++corner) {
@@ -150,10 +172,14 @@ TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
         high = std::max(high, static_cast<double>(pressure[cell]));
       }
       if (high < low) continue;
-      EXPECT_GE(patch.pressure[c], std::max(low, 0.0) - 1e-9);
       EXPECT_LE(patch.pressure[c], std::max(high, 0.0) + 1e-9);
+      // steeper skin than 40° fades; so may a cell that has some within it
+      if (cosine_of(shape, skin) < std::cos(20 * kPi / 180)) continue;
+      EXPECT_GE(patch.pressure[c], std::max(low, 0.0) - 1e-9);
+      ++facing;
     }
   }
+  EXPECT_GT(facing, 100);
 }
 
 TEST(SkinContact, TwoHandsAreTwoPatches) {
@@ -410,11 +436,6 @@ TEST(SkinContact, TrackerNoiseDoesNotShakeTheTarget) {
 TEST(SkinContact, RejectsBadSettings) {
   const GridShape grid{32, 32, 32, 0.01, Vec3::Zero()};
   ContactSettings s;
-  s.offset_cells = 0.0;
-  EXPECT_THROW(SkinContact(s, grid), std::invalid_argument);
-  s = {};
-  s.time_constant = -1.0;
-  EXPECT_THROW(SkinContact(s, grid), std::invalid_argument);
   for (double ContactSettings::*touch :
        {&ContactSettings::touch_palm, &ContactSettings::touch_finger,
         &ContactSettings::touch_tip}) {

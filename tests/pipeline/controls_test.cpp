@@ -12,6 +12,7 @@
 
 #include "core/input_error.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/simulated.hpp"
 #include "pipeline/snapshot.hpp"
 
 namespace prostm {
@@ -113,7 +114,7 @@ Outcome outcome_of(const LiveSettings& from, LiveSettings wanted) {
   wanted.pipeline.emit.stall_time *= 1.01;
   pipeline.reconfigure(wanted.pipeline);
   for (int i = 0; i < 10; ++i) pipeline.step(0.02);
-  const SimulatedArray& device = pipeline.device();
+  const SimulatedArray& device = test::simulated(pipeline);
   return {device.read_back(device.samples() - 4000, 4000), pipeline.plan().plan};
 }
 
@@ -165,13 +166,13 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   ASSERT_GT(pipeline.plan().plan.paths.size(), 2U);
   const std::int64_t blocks = pipeline.device_stats().blocks;
   const std::int64_t updates = pipeline.plan().id;
-  const auto smoke = pipeline.smoke().fluid().smoke();
+  const auto smoke = pipeline.smoke().world().fluid()->smoke();
   const std::vector<float> before(smoke.begin(), smoke.end());
 
   s.pipeline.plan.paths = 2;
   s.pipeline.fluid.jet_speed = 0.5;
   pipeline.reconfigure(s.pipeline);
-  const auto after = pipeline.smoke().fluid().smoke();
+  const auto after = pipeline.smoke().world().fluid()->smoke();
   EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
   while (!pipeline.step(0.02)) {
   }
@@ -183,6 +184,19 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   pipeline.reconfigure(s.pipeline);
   pipeline.step(0.02);
   EXPECT_FALSE(pipeline.plan().plan.foci.empty());
+}
+
+TEST(Reconfigure, AnyDifferenceCountsAndNoneDoesNot) {
+  const LiveSettings s = small_settings();
+  Pipeline pipeline = pipeline_of(s);
+  for (int i = 0; i < 20; ++i) pipeline.step(0.02);
+  const std::int64_t played = pipeline.device().samples();
+  pipeline.reconfigure(s.pipeline);
+  EXPECT_EQ(pipeline.device().samples(), played) << "nothing is made anew";
+  PipelineSettings other = s.pipeline;
+  other.plan.gain *= 1.0 + 1e-9;
+  pipeline.reconfigure(other);
+  EXPECT_EQ(pipeline.device().samples(), 0) << "another planner and emitter";
 }
 
 TEST(Reconfigure, WhatIsRefusedLeavesEverythingAsItWas) {
@@ -197,9 +211,9 @@ TEST(Reconfigure, WhatIsRefusedLeavesEverythingAsItWas) {
   EXPECT_THROW(pipeline.reconfigure(bad), std::invalid_argument);
   SimulatedFaults faults;
   faults.refuse = true;
-  pipeline.device().set_faults(faults);
+  test::simulated(pipeline).set_faults(faults);
   EXPECT_EQ(pipeline.device().status(), DeviceStatus::Running);
-  pipeline.device().set_faults({});
+  test::simulated(pipeline).set_faults({});
   bool planned = false;
   for (int i = 0; i < 4; ++i) planned = pipeline.step(0.02) || planned;
   EXPECT_TRUE(planned);

@@ -63,8 +63,8 @@ TEST(LatencyLog, WithoutAClockIsWhatOneComputesByHand) {
 TEST(LatencyLog, PartsOfAClockedPlanAddUp) {
   PipelineSettings settings;
   settings.simulated_array.queue_blocks = 3;
-  PlanStage plans(settings, 1, 1.0);  // a source for the device, silent here
   SimulatedArray device(settings.simulated_array, usx_array(), Medium{});
+  PlanStage plans(settings, 1, 1.0, device.info());  // a source for the device, silent here
   ASSERT_EQ(device.start(plans.emitter()), DeviceStatus::Running);
   device.stop();  // its schedule stays, and no longer shifts
   // the run began half a second before the device; its hands were taken 2 ms late, and a tracker's

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/runner.hpp"
+#include "pipeline/simulated.hpp"
 
 namespace prostm {
 namespace {
@@ -83,7 +84,7 @@ Keeper run_keeping(const char* method, RunMode mode, RunSummary& summary,
   Keeper keeper;
   summary = run(pipeline, settings, {kSeconds, mode}, keeper);
   const std::int64_t n = pipeline.device().samples();
-  played = pipeline.device().read_back(0, n);
+  played = test::simulated(pipeline).read_back(0, n);
   return keeper;
 }
 
@@ -137,7 +138,7 @@ TEST(Pipeline, WithoutAHandNothingIsPlayed) {
   for (int i = 0; i < 100; ++i) pipeline.step(0.02);
   EXPECT_EQ(pipeline.plan().status, PlanStatus::EmptyTarget);
   EXPECT_EQ(pipeline.device().stats().blocks, 2000);
-  for (const FocusSample& s : pipeline.device().read_back(0, pipeline.device().samples()))
+  for (const FocusSample& s : test::simulated(pipeline).read_back(0, pipeline.device().samples()))
     EXPECT_EQ(s.intensity, 0.0F);
 }
 
@@ -155,13 +156,13 @@ TEST_P(EachMethod, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
     const bool hand = !pipeline.contact().hands.hands.empty();
     if (hand) {
       const HandShape shape(pipeline.contact().hands.hands[0]);
-      const Vec3 margin = Vec3::Constant(2.0 * pipeline.smoke().fluid().grid().cell + 0.02);
+      const Vec3 margin = Vec3::Constant(2.0 * pipeline.smoke().world().grid().cell + 0.02);
       recent.emplace_back(shape.lower() - margin, shape.upper() + margin);
       if (recent.size() > 5) recent.erase(recent.begin());
     }
     const std::int64_t n = pipeline.device().samples();
     float loudest = 0.0F;
-    for (const FocusSample& s : pipeline.device().read_back(seen, n - seen)) {
+    for (const FocusSample& s : test::simulated(pipeline).read_back(seen, n - seen)) {
       loudest = std::max(loudest, s.intensity);
       if (s.intensity <= 0.01F || !hand) continue;
       EXPECT_TRUE(std::any_of(
@@ -206,9 +207,9 @@ TEST(Pipeline, RealTimeRunAccountsForEveryStep) {
 
 TEST(Pipeline, PlansWithTheWidthOfTheArrayWhereItIsAskedTo) {
   PipelineSettings settings = small_settings(false);
-  EXPECT_TRUE(plan_settings(settings).widths.empty());
+  EXPECT_TRUE(plan_settings(settings, settings.emission_rate()).widths.empty());
   settings.array_width = true;
-  const FocusWidths widths = plan_settings(settings).widths;
+  const FocusWidths widths = plan_settings(settings, settings.emission_rate()).widths;
   EXPECT_NEAR(widths.at(0.2, 0.0, 0.0), 4.3e-3, 0.1e-3);
   EXPECT_GT(widths.at(0.3, 0.0, 0.0), 1.3 * widths.at(0.2, 0.0, 0.0));
 

@@ -13,6 +13,7 @@
 
 #include "pipeline/recent_rate.hpp"
 #include "pipeline/runner.hpp"
+#include "pipeline/simulated.hpp"
 #include "support/eventually.hpp"
 
 namespace prostm {
@@ -84,7 +85,7 @@ std::string what(const RunSummary& summary) {
 
 /// The device is stopped; what it played last sounded, fell silent without a jump, and stays so.
 void expect_faded(const Pipeline& made) {
-  const SimulatedArray& device = const_cast<Pipeline&>(made).device();
+  const SimulatedArray& device = test::simulated(const_cast<Pipeline&>(made));
   EXPECT_EQ(device.status(), DeviceStatus::Idle);
   const std::int64_t all = device.stats().blocks * device.info().block_samples;
   ASSERT_TRUE(test::eventually([&] { return device.samples() == all; }));
@@ -154,7 +155,7 @@ TEST_P(RunEnds, WhenTheHandsThrow) {
 TEST_P(RunEnds, WhenTheDeviceVanishes) {
   SimulatedFaults faults;
   faults.vanish_after = 300;
-  pipeline_.device().set_faults(faults);
+  test::simulated(pipeline_).set_faults(faults);
   EXPECT_EQ(what(run_until(Ender::By::Nothing)),
             "The simulated array vanished after 300 blocks, as it was told to; start it again.");
 }

@@ -28,6 +28,7 @@ PlanSnapshot small_contact() {
   PlanStats stats;
   s.planned = planner.plan(s.target, s.plan, stats) == PlanStatus::Planned;
   s.settings = settings;
+  s.emission_rate = 40e3;
   return s;
 }
 
@@ -61,7 +62,7 @@ TEST(RenderedPlan, IsAtTheArraysWidthAndAtTheSettings) {
   EXPECT_EQ(wide.metrics.rmse, wide.metrics_at_setting.rmse);
   PipelineSettings settings = *s.settings;
   settings.array_width = true;
-  settings.plan.widths = plan_settings(settings).widths;
+  settings.plan.widths = plan_settings(settings, settings.emission_rate()).widths;
   s.settings = std::make_shared<PipelineSettings>(settings);
   render(s, narrow);
   EXPECT_EQ(narrow.sigma, settings.plan.sigma_on(s.target.patches[0]));

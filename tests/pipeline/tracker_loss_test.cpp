@@ -12,6 +12,7 @@
 
 #include "core/stage_timer.hpp"
 #include "pipeline/runner.hpp"
+#include "pipeline/simulated.hpp"
 #include "support/eventually.hpp"
 #include "track/live/live_tracker.hpp"
 
@@ -100,7 +101,7 @@ TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {
       make_live_hand(std::make_unique<StandIn>(mode, settings), settings.track));
   Noted& hands = *noted;
   Pipeline pipeline(settings, std::move(noted));
-  const SimulatedArray& device = pipeline.device();
+  const SimulatedArray& device = test::simulated(pipeline);
   hands.device = &device;
   UntilToldToStop observer;
   std::thread thread([&] { run(pipeline, settings, {3600.0, RunMode::RealTime}, observer); });

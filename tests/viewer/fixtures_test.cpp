@@ -11,6 +11,7 @@
 
 #include "core/file.hpp"
 #include "support/heap_guard.hpp"
+#include "support/places.hpp"
 #include "viewer/wire.hpp"
 
 namespace prostm {
@@ -184,7 +185,7 @@ Json to_json(const Fixture& fixture) {
 }
 
 std::string fixture_file(const std::string& name) {
-  return std::string(PROSTM_SOURCE_DIR) + "/web/fixtures/" + name;
+  return test::source_file("web/fixtures/" + name);
 }
 
 std::string message(const Fixture& fixture) {

@@ -14,6 +14,7 @@
 
 #include "io/pose_file.hpp"
 #include "pipeline/runner.hpp"
+#include "pipeline/simulated.hpp"
 #include "track/hand_source.hpp"
 #include "viewer/pipeline_view.hpp"
 #include "viewer/view_support.hpp"
@@ -124,7 +125,7 @@ class LiveRun {
   }
   int fluid_steps() const { return numbers().at("run").at("fluid_steps"); }
   int plan_updates() const { return numbers().at("run").at("plan_updates"); }
-  const SimulatedArray& device() const { return pipeline_->device(); }
+  const SimulatedArray& device() const { return simulated(*pipeline_); }
   /// The strongest intensity of samples first … last − 1.
   float loudest(std::int64_t first, std::int64_t last) const {
     float most = 0.0F;

@@ -1,0 +1,40 @@
+// Something else than smoke that presses, through the whole pipeline: what one has to write.
+#include <gtest/gtest.h>
+
+#include "pipeline/pipeline.hpp"
+
+namespace prostm {
+namespace {
+
+/// A plate that presses evenly on all skin that is lower than it.
+class Plate final : public World, public PressureSource {
+ public:
+  const GridShape& grid() const override { return grid_; }
+  double full_scale_pressure() const override { return 2.0; }
+  void meet(const HandRaster&) noexcept override {}
+  const PressureSource& pressure(double) noexcept override { return *this; }
+  void sample(std::span<const Vec3> p_D, const Vec3&,
+              std::span<double> out) const noexcept override {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = p_D[i].z() < 0.23 ? 2.0 : 0.0;
+  }
+
+ private:
+  GridShape grid_{64, 64, 64, 0.36 / 64, Vec3(-0.18, -0.18, 0.0)};
+};
+
+TEST(OtherWorld, IsFelt) {
+  PipelineSettings settings;
+  settings.simulated_array.realtime = false;
+  Pipeline pipeline(settings, make_scripted_hand(settings.scripted_hand, settings.track),
+                    std::make_shared<Mute>(), nullptr, std::make_unique<Plate>());
+  double most = 0.0;
+  for (int n = 0; n < 150; ++n) {
+    if (pipeline.step(0.02) && pipeline.plan().status == PlanStatus::Planned)
+      most = std::max(most, max_pressure(pipeline.contact().target.patches.at(0)));
+  }
+  EXPECT_EQ(most, 2.0);
+  EXPECT_GT(pipeline.emit_stats().laps_started, 100);
+}
+
+}  // namespace
+}  // namespace prostm

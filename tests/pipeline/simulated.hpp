@@ -1,0 +1,13 @@
+#pragma once
+/// The array of a pipeline whose settings name the simulated one.
+
+#include "device/simulated_array.hpp"
+#include "pipeline/pipeline.hpp"
+
+namespace prostm::test {
+
+inline SimulatedArray& simulated(Pipeline& pipeline) {
+  return dynamic_cast<SimulatedArray&>(pipeline.device());
+}
+
+}  // namespace prostm::test
