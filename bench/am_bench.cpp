@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "figure/figures.hpp"
 #include "planner/am.hpp"
 #include "program.hpp"
+#include "prostm/figure/figures.hpp"
 
 namespace prostm::bench {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "contact/skin_contact.hpp"
-#include "core/distribution.hpp"
-#include "core/worker_pool.hpp"
-#include "fluid/fluid.hpp"
-#include "fluid/fluid_pressure.hpp"
+#include "prostm/contact/skin_contact.hpp"
+#include "prostm/core/distribution.hpp"
+#include "prostm/core/worker_pool.hpp"
+#include "prostm/fluid/fluid.hpp"
+#include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/track/hand_source.hpp"
 #include "report.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

@@ -10,12 +10,12 @@
 #include <thread>
 #include <vector>
 
-#include "core/distribution.hpp"
-#include "core/random.hpp"
-#include "core/stage_timer.hpp"
-#include "core/units.hpp"
-#include "device/simulated_array.hpp"
-#include "emit/path_emitter.hpp"
+#include "prostm/core/distribution.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/device/simulated_array.hpp"
+#include "prostm/emit/detail/path_emitter.hpp"
 #include "report.hpp"
 
 namespace prostm {

@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "acoustics/loop_field.hpp"
-#include "acoustics/propagation_kernels.hpp"
-#include "core/distribution.hpp"
-#include "core/stage_timer.hpp"
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
+#include "prostm/acoustics/loop_field.hpp"
+#include "prostm/acoustics/propagation_kernels.hpp"
+#include "prostm/core/distribution.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/detail/loop_drives.hpp"
 #include "report.hpp"
-#include "score/loop_drives.hpp"
 
 namespace prostm {
 namespace {

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "core/distribution.hpp"
-#include "core/stage_timer.hpp"
-#include "core/worker_pool.hpp"
-#include "fluid/fluid.hpp"
-#include "hand/hand_raster.hpp"
+#include "prostm/core/distribution.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/core/worker_pool.hpp"
+#include "prostm/fluid/fluid.hpp"
+#include "prostm/hand/hand_raster.hpp"
+#include "prostm/track/hand_source.hpp"
 #include "report.hpp"
-#include "track/hand_source.hpp"
 
 namespace {
 

@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
-#include "io/hand_file.hpp"
-#include "pipeline/runner.hpp"
 #include "program.hpp"
+#include "prostm/io/hand_file.hpp"
+#include "prostm/pipeline/runner.hpp"
 
 namespace prostm {
 namespace {

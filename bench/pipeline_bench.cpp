@@ -2,8 +2,8 @@
 /// hand to the samples of the 40 ms that follow, on the machine's cores, without waiting for a
 /// clock.
 
-#include "core/stage_timer.hpp"
-#include "pipeline/pipeline.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/pipeline/pipeline.hpp"
 #include "report.hpp"
 
 namespace prostm {

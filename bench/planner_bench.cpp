@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "figure/figures.hpp"
 #include "planner/am.hpp"
 #include "planner/bending.hpp"
 #include "planner/budgets.hpp"
@@ -24,6 +23,7 @@
 #include "planner/vectors.hpp"
 #include "planner/weights.hpp"
 #include "program.hpp"
+#include "prostm/figure/figures.hpp"
 
 namespace prostm::bench {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "core/distribution.hpp"
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
+#include "prostm/core/distribution.hpp"
+#include "prostm/plan/planner.hpp"
 #include "report.hpp"
 
 namespace prostm {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "io/hand_file.hpp"
 #include "program.hpp"
-#include "track/causal_track.hpp"
+#include "prostm/io/hand_file.hpp"
+#include "prostm/track/detail/causal_track.hpp"
 
 namespace prostm {
 namespace {

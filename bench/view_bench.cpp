@@ -14,11 +14,11 @@
 #include <thread>
 #include <vector>
 
-#include "core/stage_timer.hpp"
-#include "pipeline/runner.hpp"
 #include "program.hpp"
-#include "viewer/pipeline_view.hpp"
-#include "viewer/server.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/pipeline/runner.hpp"
+#include "prostm/viewer/pipeline_view.hpp"
+#include "prostm/viewer/server.hpp"
 
 namespace prostm {
 namespace {

@@ -63,7 +63,7 @@ else()
   set(body "  static const PageFile kFiles[] = {\n${rows}  };\n  return kFiles;")
 endif()
 file(WRITE ${OUT} "// Written by cmake/build_page.cmake.
-#include \"viewer/page_files.hpp\"
+#include \"prostm/viewer/page_files.hpp\"
 
 ${bytes}
 namespace prostm {

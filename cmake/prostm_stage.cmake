@@ -18,20 +18,17 @@ add_library(prostm_slow_headers STATIC ${PROJECT_BINARY_DIR}/slow_headers.cpp)
 target_link_libraries(prostm_slow_headers PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json Threads::Threads)
 prostm_precompile(prostm_slow_headers prostm_slow_headers ${prostm_slow_headers})
 
-# One static library per folder of src/, with what is in folders of it. Which folder may include which is held by tools/check_layers.py.
+# One static library per folder of src/prostm/, with what is in folders of it. Which folder may include which is held by
+# tools/check_layers.py.
 function(prostm_stage name)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
-  if(sources)
-    add_library(prostm_${name} STATIC ${sources})
-    target_include_directories(prostm_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
-    target_link_libraries(prostm_${name} ${ARGN})
-    prostm_precompile(prostm_${name} prostm_slow_headers)
-  else()
-    add_library(prostm_${name} INTERFACE)
-    target_include_directories(prostm_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
-    list(TRANSFORM ARGN REPLACE "^(PUBLIC|PRIVATE)$" "INTERFACE")
-    target_link_libraries(prostm_${name} ${ARGN})
-  endif()
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/prostm/${name}/*.cpp)
+  add_library(prostm_${name} STATIC ${sources})
+  add_library(prostm::${name} ALIAS prostm_${name})
+  set_target_properties(prostm_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(prostm_${name} PUBLIC cxx_std_20)
+  target_include_directories(prostm_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
+  target_link_libraries(prostm_${name} ${ARGN})
+  prostm_precompile(prostm_${name} prostm_slow_headers)
 endfunction()
 
 # One test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry.

@@ -1,8 +1,8 @@
 /// NPY fields: any bytes are a valid field or an InputError.
 #include <cstdint>
 
-#include "core/input_error.hpp"
-#include "io/field_file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/field_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

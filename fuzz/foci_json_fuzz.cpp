@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "acoustics/propagation.hpp"
-#include "core/input_error.hpp"
-#include "io/foci_file.hpp"
+#include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/foci_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

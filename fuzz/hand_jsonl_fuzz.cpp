@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/input_error.hpp"
-#include "io/hand_file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/hand_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // most inputs would fail at the header, so one is given

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "track/live/leap_frame.hpp"
+#include "prostm/track/live/leap_frame.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   prostm::HandFrame frame;

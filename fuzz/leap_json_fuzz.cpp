@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/input_error.hpp"
-#include "io/hand_file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/hand_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

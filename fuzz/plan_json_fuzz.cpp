@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "core/input_error.hpp"
-#include "io/plan_file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/plan_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

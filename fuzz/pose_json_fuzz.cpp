@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "core/input_error.hpp"
-#include "io/pose_file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/pose_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

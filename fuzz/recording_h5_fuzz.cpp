@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/input_error.hpp"
-#include "io/recorder.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/recorder.hpp"
 
 namespace {
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "core/input_error.hpp"
-#include "io/settings_file.hpp"
-#include "plan/planner.hpp"
-#include "track/hand_source.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/settings_file.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/track/hand_source.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "viewer/page_message.hpp"
+#include "prostm/viewer/page_message.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "viewer/server.hpp"
+#include "prostm/viewer/server.hpp"
 
 namespace {
 

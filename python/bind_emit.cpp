@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "core/require.hpp"
-#include "emit/emitter.hpp"
+#include "prostm/core/require.hpp"
+#include "prostm/emit/emitter.hpp"
 #include "settings.hpp"
 
 namespace prostm::python {

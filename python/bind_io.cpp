@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "core/file.hpp"
-#include "io/field_file.hpp"
-#include "io/plan_file.hpp"
 #include "plan_result.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/io/field_file.hpp"
+#include "prostm/io/plan_file.hpp"
 
 namespace prostm::python {
 namespace {

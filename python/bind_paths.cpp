@@ -3,10 +3,10 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "core/require.hpp"
-#include "plan/planner.hpp"
-#include "plan/quasi_static.hpp"
 #include "plan_result.hpp"
+#include "prostm/core/require.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/plan/quasi_static.hpp"
 
 namespace prostm::python {
 namespace {

@@ -4,10 +4,10 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "am/am_planner.hpp"
 #include "bindings.hpp"
-#include "plan/planner.hpp"
 #include "plan_result.hpp"
+#include "prostm/am/am_planner.hpp"
+#include "prostm/plan/planner.hpp"
 #include "settings.hpp"
 
 namespace prostm::python {

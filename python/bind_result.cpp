@@ -6,12 +6,12 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "core/file.hpp"
-#include "core/require.hpp"
-#include "io/plan_file.hpp"
-#include "io/settings_file.hpp"
 #include "plan_result.hpp"
-#include "score/score.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/core/require.hpp"
+#include "prostm/io/plan_file.hpp"
+#include "prostm/io/settings_file.hpp"
+#include "prostm/score/score.hpp"
 
 namespace prostm::python {
 namespace {

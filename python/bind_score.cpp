@@ -5,10 +5,10 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "core/require.hpp"
-#include "plan/planner.hpp"
 #include "plan_result.hpp"
-#include "score/score.hpp"
+#include "prostm/core/require.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/score.hpp"
 
 namespace prostm::python {
 namespace {

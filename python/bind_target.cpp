@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "target/target_field.hpp"
+#include "prostm/target/target_field.hpp"
 
 namespace prostm::python {
 namespace {

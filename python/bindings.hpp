@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry.hpp"
+#include "prostm/core/geometry.hpp"
 
 namespace prostm::python {
 

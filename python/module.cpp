@@ -1,7 +1,8 @@
 /// import prostm._prostm: what the package prostm/ shows under its own name.
 
 #include "bindings.hpp"
-#include "core/input_error.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/version.hpp"
 
 PYBIND11_MODULE(_prostm, m) {
   namespace py = pybind11;

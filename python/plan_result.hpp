@@ -5,11 +5,11 @@
 #include <string>
 #include <variant>
 
-#include "am/am_planner.hpp"
 #include "bindings.hpp"
-#include "emit/played.hpp"
-#include "plan/method.hpp"
-#include "plan/planner.hpp"
+#include "prostm/am/am_planner.hpp"
+#include "prostm/emit/played.hpp"
+#include "prostm/plan/method.hpp"
+#include "prostm/plan/planner.hpp"
 
 namespace prostm::python {
 

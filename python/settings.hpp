@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "bindings.hpp"
-#include "core/settings.hpp"
+#include "prostm/core/settings.hpp"
 
 namespace prostm::python {
 

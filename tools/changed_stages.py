@@ -3,7 +3,7 @@
 
 usage: changed_stages.py COMMIT
 
-COMMIT is one whose whole run passed. A stage is a folder of src/ or tests/. pipeline, viewer and app (the command line)
+COMMIT is one whose whole run passed. A stage is a folder of src/prostm/ or tests/. pipeline, viewer and app (the command line)
 are always among them. All are asked for when COMMIT is no ancestor of HEAD, or when a file has changed that belongs to no
 stage and is built or run with all: CMake's files, the scripts, what tests share.
 """
@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 ALWAYS = {"pipeline", "viewer", "app"}
 # what no sanitizer or fuzzer looks at
-ELSEWHERE = ("docs", "web", "bench", "python", "README.md", "CHANGELOG.md", "LICENSE", ".ci", ".gitignore")
+ELSEWHERE = ("docs", "web", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md", "LICENSE", ".ci", ".gitignore")
 
 
 def git(*arguments):
@@ -25,15 +25,16 @@ def git(*arguments):
 def stage_of(path):
     """The stage of a changed file; "" for one that is none's and matters to none, None for one that matters to all."""
     parts = Path(path).parts
-    if parts[:2] in (("bench", "fields"), ("bench", "textbook")):
+    if parts[:2] == ("tests", "fields") or parts[:3] == ("src", "prostm", "textbook"):
         return None  # tests of several stages link them
     if parts[0] in ELSEWHERE:
         return ""
     if parts[0] == "apps" or parts[:2] == ("tests", "command_line"):
         return "app"
-    if parts[0] in ("src", "tests") and len(parts) > 2 and (ROOT / "src" / parts[1]).is_dir():
-        return parts[1]
-    if parts[:2] in (("tests", "python"), ("tests", "bench")):
+    folder = parts[2:] if parts[:2] == ("src", "prostm") else parts[1:] if parts[0] == "tests" else ()
+    if len(folder) > 1 and (ROOT / "src/prostm" / folder[0]).is_dir():
+        return folder[0]
+    if parts[:2] in (("tests", "python"), ("tests", "lab")):
         return ""
     return None
 

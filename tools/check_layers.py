@@ -10,16 +10,28 @@ import re
 import sys
 from pathlib import Path
 
-# Which folders of src/ a folder may include directly is what its prostm_stage(…) of CMakeLists.txt links; core is open to
-# all. Programs and modules may include every stage that their folder's CMakeLists.txt links, and what those link.
-STAGE = re.compile(r"^prostm_stage\((\w+)([^)]*)\)", re.M)
-LINKED = re.compile(r"^\s*target_link_libraries\(([^)]*)\)", re.M)
+# Which stages (folders of src/prostm/) a stage may include directly is what its prostm_stage(…) of CMakeLists.txt links;
+# core is open to all. Programs and modules may include every stage that their folder's CMakeLists.txt links, and what those
+# link. What lies in a folder detail/ is private to its stage; tests, benchmarks and the lab may look at it.
+STAGE = re.compile(r"^\s*prostm_stage\((\w+)([^)]*)\)", re.M)
+LINKED = re.compile(r"^\s*(?:target_link_libraries|prostm_lab)\(([^)]*)\)", re.M)
 OURS = re.compile(r"\bprostm_(\w+)\b")
-PROGRAMS = ("apps", "python", "bench", "fuzz")
+PROGRAMS = ("apps", "python", "bench", "lab", "fuzz")
+MAY_LOOK_INSIDE = ("tests", "bench", "lab")
+STAGES = "src/prostm/"
+OF_ALL = (STAGES + "prostm.hpp", STAGES + "version.hpp")
+
+# Rooms inside a stage: a folder of it -> the stage's folders and headers that it must not include.
+ROOMS = {
+    "plan/detail/paper": ("plan/detail/fit", "plan/planner.hpp"),
+    "plan/detail/fit": ("plan/detail/paper", "plan/planner.hpp"),
+    "plan/detail": ("plan/detail/paper", "plan/detail/fit", "plan/planner.hpp"),
+}
 
 # Threads, mutexes and clocks live here only.
-MAY_USE_THREADS = ("src/core/worker_pool.", "src/track/live/", "src/device/", "src/pipeline/", "src/viewer/")
-MAY_USE_CLOCKS = ("src/core/stage_timer.",) + MAY_USE_THREADS[1:]
+MAY_USE_THREADS = tuple(STAGES + place for place in
+                        ("core/worker_pool.", "track/live/", "track/detail/", "device/", "pipeline/", "viewer/"))
+MAY_USE_CLOCKS = (STAGES + "core/stage_timer.",) + MAY_USE_THREADS[1:]
 THREAD_HEADERS = {"thread", "mutex", "condition_variable", "shared_mutex", "stop_token", "semaphore", "barrier",
                   "latch", "future"}
 CLOCK_HEADERS = {"chrono", "ctime", "time.h", "sys/time.h"}
@@ -84,20 +96,44 @@ def without_text(source):
     return TEXT_OR_COMMENT.sub(lambda m: "\n" * m.group(0).count("\n") or " ", source)
 
 
-def check_program_include(top, name, layers, programs):
-    """The same of a file outside src/: a stage that its folder links, or no header of a stage."""
-    layer = name.split("/")[0]
-    if "/" not in name or layer not in layers or top not in programs or layer in programs[top]:
-        return None
-    return f"{top} must not include {layer}: no target of {top}/CMakeLists.txt links prostm_{layer}"
+def room_of(path):
+    """The innermost folder of ROOMS that holds a file or header, or None; `path` begins with the stage."""
+    return max((room for room in ROOMS if path.startswith(room + "/")), key=len, default=None)
 
 
-def check_include(path, folder, quoted, name, layers, programs):
-    """What is wrong with one #include line, or None. `folder` is the stage, None outside src/."""
+def check_stage_include(place, stage, header, layers):
+    """What is wrong when the file at place (in its stage) includes the header, both as stage/…, or None."""
+    layer = header.split("/")[0]
+    allowed = [stage, "core"] + layers[stage]
+    if layer not in allowed:
+        return f"{stage} must not include {layer}: it may include {', '.join(sorted(set(allowed)))}"
+    if layer != stage and "/detail/" in header:
+        return f'"prostm/{header}" is private to {layer}'
+    for closed in ROOMS.get(room_of(place), ()):
+        if header == closed or header.startswith(closed + "/") and room_of(header) == closed:
+            return f"{room_of(place)} must not include {closed}"
+    return None
+
+
+def check_program_include(top, header, layers, programs):
+    """The same of a file outside src/: only stages that its folder links, nothing private but in tests and the like."""
+    layer = header.split("/")[0]
+    if top in programs and layer not in programs[top]:
+        return f"{top} must not include {layer}: no target of {top}/CMakeLists.txt links prostm_{layer}"
+    if "/detail/" in header and top not in MAY_LOOK_INSIDE:
+        return f'"prostm/{header}" is private to {layer}'
+    return None
+
+
+def check_include(path, stage, quoted, name, layers, programs):
+    """What is wrong with one #include line, or None. `stage` is None outside src/."""
     if name in LANGUAGE_HEADERS and not quoted:
         return f"<{name}> is not accepted by both compilers"
-    if folder is None:
-        return check_program_include(path.split("/")[0], name, layers, programs) if quoted else None
+    header = name.removeprefix("prostm/")
+    is_ours = header != name and header.split("/")[0] in layers
+    if stage is None:
+        top = path.split("/")[0]
+        return check_program_include(top, header, layers, programs) if is_ours and quoted else None
     if not quoted:
         if name in THREAD_HEADERS and not path.startswith(MAY_USE_THREADS):
             return f"<{name}>: " + WORDS[0][2]
@@ -105,27 +141,22 @@ def check_include(path, folder, quoted, name, layers, programs):
             return f"<{name}>: " + WORDS[1][2]
         if name in PRINTING_HEADERS:
             return f"<{name}>: " + WORDS[2][2]
-        if name.split("/")[0] in layers and "/" in name:
-            return f"<{name}> is one of our own headers: include it with quotes"
-        return None
+        return f"<{name}> is one of our own headers: include it with quotes" if is_ours else None
     if name.startswith("."):
-        return f'"{name}" is relative: include from src/, as "stage/file.hpp"'
-    layer = name.split("/")[0]
-    if layer not in layers or "/" not in name:
-        return f'"{name}" is no header of a stage: stages include "stage/file.hpp"'
-    allowed = [folder, "core"] + layers[folder]
-    if layer not in allowed:
-        return f"{folder} must not include {layer}: it may include {', '.join(sorted(set(allowed)))}"
-    return None
+        return f'"{name}" is relative: include from src/, as "prostm/stage/file.hpp"'
+    if not is_ours:
+        return f'"{name}" is no header of a stage: stages include "prostm/stage/file.hpp"'
+    return check_stage_include(path.removeprefix(STAGES), stage, header, layers)
 
 
 def check_file(root, file, layers, programs):
     """Violations of one C++ file, as (line, sentence)."""
     path = file.relative_to(root).as_posix()
-    parts = path.split("/")
-    folder = parts[1] if parts[0] == "src" else None
-    if folder is not None and (folder not in layers or len(parts) < 3):
-        return [(1, f"src/{folder} is in no layer: add prostm_stage({folder} …) to CMakeLists.txt")]
+    if path in OF_ALL:
+        return []
+    folder = path.removeprefix(STAGES).split("/")[0] if path.startswith("src/") else None
+    if folder is not None and (folder not in layers or not path.startswith(STAGES)):
+        return [(1, f"{path} is in no layer: it belongs into {STAGES}STAGE/, with prostm_stage(STAGE …) in CMakeLists.txt")]
     source = file.read_text(encoding="utf-8")
     found = []
     for number, line in enumerate(source.split("\n"), 1):
@@ -148,7 +179,7 @@ def check_tree(root):
     layers = read_layers(root)
     programs = read_programs(root, layers)
     lines = []
-    for top in ("src", "apps", "python", "bench", "fuzz", "tests", "tools", "docs", "cmake"):
+    for top in ("src", "apps", "python", "bench", "lab", "examples", "fuzz", "tests", "tools", "docs", "cmake"):
         for file in sorted((root / top).rglob("*")):
             if not file.is_file() or "__pycache__" in file.parts:
                 continue

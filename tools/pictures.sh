@@ -15,5 +15,5 @@ for scene in one-plume four-plumes; do "$prostm" capture --scene $scene --frames
 "$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png" \
   --bending-figure "$root/docs/pictures/bending.png"
 "$root/build/release/am_bench" --frames 2 --figure "$root/docs/pictures/am.png" one-plume.h5 four-plumes.h5
-"$root/build/release/skin_bench" --figures "$root/docs/pictures"
-"$root/build/release/methods_bench" --frames 1 --figure "$root/docs/pictures/methods.png"
+"$root/build/release/skin_lab" --figures "$root/docs/pictures"
+"$root/build/release/methods_lab" --frames 1 --figure "$root/docs/pictures/methods.png"

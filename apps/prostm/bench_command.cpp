@@ -4,14 +4,14 @@
 #include <array>
 #include <cmath>
 
-#include "am/am_planner.hpp"
 #include "common.hpp"
-#include "core/input_error.hpp"
-#include "emit/played.hpp"
-#include "io/recorder.hpp"
-#include "plan/planner.hpp"
-#include "score/score.hpp"
-#include "textbook/textbook.hpp"
+#include "prostm/am/am_planner.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/emit/played.hpp"
+#include "prostm/io/recorder.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/score.hpp"
+#include "prostm/textbook/textbook.hpp"
 
 namespace prostm::app {
 namespace {

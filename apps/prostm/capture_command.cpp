@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "common.hpp"
-#include "core/input_error.hpp"
-#include "io/recorder.hpp"
-#include "pipeline/runner.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/recorder.hpp"
+#include "prostm/pipeline/runner.hpp"
 
 namespace prostm::app {
 namespace {

@@ -13,16 +13,16 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/file.hpp"
-#include "core/input_error.hpp"
-#include "core/require.hpp"
-#include "core/stage_timer.hpp"
-#include "io/array_file.hpp"
-#include "io/hand_file.hpp"
-#include "io/pose_file.hpp"
-#include "track/live/leap_client.hpp"
-#include "track/live/openxr_hands.hpp"
-#include "track/live/page_hand.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/require.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/io/array_file.hpp"
+#include "prostm/io/hand_file.hpp"
+#include "prostm/io/pose_file.hpp"
+#include "prostm/track/live/leap_client.hpp"
+#include "prostm/track/live/openxr_hands.hpp"
+#include "prostm/track/live/page_hand.hpp"
 
 namespace prostm::app {
 namespace {

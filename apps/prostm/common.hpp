@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "acoustics/focus_solver.hpp"
-#include "core/distribution.hpp"
-#include "io/settings_file.hpp"
 #include "options.hpp"
-#include "pipeline/settings.hpp"
-#include "score/score.hpp"
-#include "track/hand_source.hpp"
+#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/core/distribution.hpp"
+#include "prostm/io/settings_file.hpp"
+#include "prostm/pipeline/settings.hpp"
+#include "prostm/score/score.hpp"
+#include "prostm/track/hand_source.hpp"
 
 namespace prostm::app {
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "common.hpp"
-#include "device/device_kinds.hpp"
-#include "track/live/openxr_hands.hpp"
+#include "prostm/device/device_kinds.hpp"
+#include "prostm/track/live/openxr_hands.hpp"
 
 namespace prostm::app {
 namespace {

@@ -4,17 +4,17 @@
 #include <array>
 #include <cmath>
 
-#include "acoustics/focus_width.hpp"
 #include "common.hpp"
-#include "core/file.hpp"
-#include "core/input_error.hpp"
-#include "core/units.hpp"
-#include "emit/compensation.hpp"
-#include "figure/figures.hpp"
-#include "io/field_file.hpp"
-#include "io/physical_file.hpp"
-#include "io/plan_file.hpp"
-#include "score/physical.hpp"
+#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/emit/compensation.hpp"
+#include "prostm/figure/figures.hpp"
+#include "prostm/io/field_file.hpp"
+#include "prostm/io/physical_file.hpp"
+#include "prostm/io/plan_file.hpp"
+#include "prostm/score/physical.hpp"
 
 namespace prostm::app {
 namespace {

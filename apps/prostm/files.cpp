@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/input_error.hpp"
+#include "prostm/core/input_error.hpp"
 
 namespace prostm::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/file.hpp"
+#include "prostm/core/file.hpp"
 
 namespace prostm::app {
 

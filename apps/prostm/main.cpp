@@ -10,10 +10,11 @@
 #include <system_error>
 
 #include "common.hpp"
-#include "core/input_error.hpp"
-#include "figure/figures.hpp"
-#include "io/recorder.hpp"
 #include "options.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/figure/figures.hpp"
+#include "prostm/io/recorder.hpp"
+#include "prostm/version.hpp"
 
 namespace {
 

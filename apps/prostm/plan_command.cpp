@@ -4,22 +4,22 @@
 #include <cmath>
 #include <optional>
 
-#include "acoustics/focus_width.hpp"
-#include "am/am_planner.hpp"
 #include "common.hpp"
-#include "core/file.hpp"
-#include "core/input_error.hpp"
-#include "core/random.hpp"
-#include "emit/emitter.hpp"
-#include "emit/played.hpp"
-#include "figure/figures.hpp"
-#include "io/digitised_figure.hpp"
-#include "io/field_file.hpp"
-#include "io/plan_file.hpp"
-#include "plan/planner.hpp"
-#include "plan/quasi_static.hpp"
-#include "score/physical.hpp"
-#include "score/score.hpp"
+#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/am/am_planner.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/emit/emitter.hpp"
+#include "prostm/emit/played.hpp"
+#include "prostm/figure/figures.hpp"
+#include "prostm/io/digitised_figure.hpp"
+#include "prostm/io/field_file.hpp"
+#include "prostm/io/plan_file.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/plan/quasi_static.hpp"
+#include "prostm/score/physical.hpp"
+#include "prostm/score/score.hpp"
 
 namespace prostm::app {
 namespace {

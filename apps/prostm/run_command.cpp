@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "common.hpp"
-#include "core/input_error.hpp"
-#include "emit/played.hpp"
-#include "figure/figures.hpp"
-#include "io/recorder.hpp"
-#include "pipeline/runner.hpp"
-#include "plan/quasi_static.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/emit/played.hpp"
+#include "prostm/figure/figures.hpp"
+#include "prostm/io/recorder.hpp"
+#include "prostm/pipeline/runner.hpp"
+#include "prostm/plan/quasi_static.hpp"
 #include "run_summary.hpp"
 #include "view.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/runner.hpp"
+#include "prostm/pipeline/runner.hpp"
 
 namespace prostm::app {
 

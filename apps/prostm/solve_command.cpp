@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "acoustics/focus_solver.hpp"
-#include "acoustics/propagation.hpp"
 #include "common.hpp"
-#include "core/file.hpp"
-#include "io/array_file.hpp"
-#include "io/foci_file.hpp"
+#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/io/array_file.hpp"
+#include "prostm/io/foci_file.hpp"
 
 namespace prostm::app {
 

@@ -5,9 +5,10 @@
 #include <algorithm>
 
 #include "common.hpp"
-#include "core/input_error.hpp"
-#include "io/pose_file.hpp"
-#include "viewer/page_files.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/pose_file.hpp"
+#include "prostm/version.hpp"
+#include "prostm/viewer/page_files.hpp"
 
 namespace prostm::app {
 namespace {

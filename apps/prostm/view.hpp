@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "options.hpp"
-#include "pipeline/live.hpp"
-#include "pipeline/pipeline.hpp"
-#include "viewer/pipeline_view.hpp"
-#include "viewer/server.hpp"
+#include "prostm/pipeline/live.hpp"
+#include "prostm/pipeline/pipeline.hpp"
+#include "prostm/viewer/pipeline_view.hpp"
+#include "prostm/viewer/server.hpp"
 
 namespace prostm::app {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "acoustics/focus_solver.hpp"
-#include "core/random.hpp"
+#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/core/random.hpp"
 #include "solvers/solver_tables.hpp"
 
 namespace prostm::bench {

@@ -1,9 +1,9 @@
 #include <fmt/core.h>
 
-#include "acoustics/live_focus_solver.hpp"
-#include "core/random.hpp"
-#include "core/stage_timer.hpp"
 #include "fields/moving_foci.hpp"
+#include "prostm/acoustics/live_focus_solver.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/stage_timer.hpp"
 #include "solvers/solver_tables.hpp"
 #include "solvers/textbook_gs_pat.hpp"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <complex>
 
-#include "acoustics/live_focus_solver.hpp"
-#include "acoustics/propagation.hpp"
-#include "core/units.hpp"
 #include "fields/moving_foci.hpp"
+#include "prostm/acoustics/live_focus_solver.hpp"
+#include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/units.hpp"
 #include "solvers/solver_tables.hpp"
 
 namespace prostm::bench {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "acoustics/array.hpp"
+#include "prostm/acoustics/array.hpp"
 
 namespace prostm::bench {
 

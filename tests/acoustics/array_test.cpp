@@ -1,11 +1,11 @@
-#include "acoustics/array.hpp"
+#include "prostm/acoustics/array.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

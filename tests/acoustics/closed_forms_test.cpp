@@ -4,9 +4,9 @@
 #include <cmath>
 #include <complex>
 
-#include "acoustics/loop_field.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/acoustics/loop_field.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -1,11 +1,11 @@
-#include "acoustics/fft2.hpp"
+#include "prostm/acoustics/detail/fft2.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "acoustics/focus_solver.hpp"
+#include "prostm/acoustics/focus_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "acoustics/array.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/acoustics/array.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 #include "support/load.hpp"
 
 namespace prostm {

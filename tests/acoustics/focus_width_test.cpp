@@ -1,4 +1,4 @@
-#include "acoustics/focus_width.hpp"
+#include "prostm/acoustics/focus_width.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/units.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "acoustics/live_focus_solver.hpp"
+#include "prostm/acoustics/live_focus_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "acoustics/propagation.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
 #include "fields/moving_foci.hpp"
+#include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
 #include "support/only_targets.hpp"

@@ -1,4 +1,4 @@
-#include "acoustics/loop_field.hpp"
+#include "prostm/acoustics/loop_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "acoustics/complex_product.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/acoustics/detail/complex_product.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "acoustics/array.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/acoustics/array.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -1,12 +1,12 @@
-#include "acoustics/propagation_kernels.hpp"
+#include "prostm/acoustics/propagation_kernels.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "acoustics/skin_response.hpp"
-#include "core/geometry.hpp"
-#include "core/units.hpp"
+#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/core/geometry.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm::test {
 

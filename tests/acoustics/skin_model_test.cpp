@@ -1,12 +1,12 @@
-#include "acoustics/skin_model.hpp"
+#include "prostm/acoustics/skin_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

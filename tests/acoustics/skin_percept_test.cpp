@@ -1,4 +1,4 @@
-#include "acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin_percept.hpp"
 
 #include <gtest/gtest.h>
 

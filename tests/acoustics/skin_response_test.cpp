@@ -1,4 +1,4 @@
-#include "acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin_response.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "acoustics/skin_loops.hpp"
 #include "acoustics/skin_stepper.hpp"
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/units.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

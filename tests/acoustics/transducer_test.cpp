@@ -1,13 +1,13 @@
-#include "acoustics/transducer.hpp"
+#include "prostm/acoustics/transducer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "acoustics/array.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/acoustics/array.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

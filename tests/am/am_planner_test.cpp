@@ -1,4 +1,4 @@
-#include "am/am_planner.hpp"
+#include "prostm/am/am_planner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,14 +6,14 @@
 #include <limits>
 #include <vector>
 
-#include "am/am_pressures.hpp"
-#include "core/random.hpp"
 #include "fields/fields.hpp"
-#include "plan/quasi_static.hpp"
 #include "plan/random_fields.hpp"
-#include "score/score.hpp"
+#include "prostm/am/am_pressures.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/plan/quasi_static.hpp"
+#include "prostm/score/score.hpp"
+#include "prostm/target/pressure_share.hpp"
 #include "support/heap_guard.hpp"
-#include "target/pressure_share.hpp"
 
 namespace prostm {
 namespace {

@@ -14,7 +14,7 @@ class Checkout:
     def __init__(self, folder):
         self.folder = folder
         self.git("init", "-q")
-        self.write("src/plan/plan.cpp", "src/device/device.cpp", "src/core/core.cpp", "tests/plan/plan_test.cpp",
+        self.write("src/prostm/plan/plan.cpp", "src/prostm/device/device.cpp", "src/prostm/core/core.cpp", "tests/plan/plan_test.cpp",
                    "docs/design.md", "CMakeLists.txt", "tests/support/main.cpp")
         (folder / "tools").mkdir()
         shutil.copy(TOOL, folder / "tools")
@@ -47,10 +47,10 @@ def checkout(tmp_path):
 
 
 def test_a_change_asks_for_its_stage(checkout):
-    checkout.write("src/plan/plan.cpp")
+    checkout.write("src/prostm/plan/plan.cpp")
     checkout.commit()
     assert checkout.stages(checkout.first) == sorted(ALWAYS + ["plan"])
-    checkout.write("src/device/device.cpp")  # not committed
+    checkout.write("src/prostm/device/device.cpp")  # not committed
     checkout.write("tests/core/new_test.cpp")  # not known to git
     assert checkout.stages(checkout.first) == sorted(ALWAYS + ["plan", "device", "core"])
 
@@ -62,16 +62,16 @@ def test_what_no_sanitizer_looks_at_asks_for_the_few_that_always_run(checkout):
 
 
 @pytest.mark.parametrize("path", ["CMakeLists.txt", "tests/support/main.cpp", "tools/fuzz.sh", "run", "fuzz/a_fuzz.cpp",
-                                  "bench/fields/fields.cpp"])
+                                  "tests/fields/fields.cpp"])
 def test_what_belongs_to_all_asks_for_all(checkout, path):
-    checkout.write("src/plan/plan.cpp", path)
+    checkout.write("src/prostm/plan/plan.cpp", path)
     checkout.commit()
     assert checkout.stages(checkout.first) == []
 
 
 def test_a_commit_that_is_no_ancestor_asks_for_all(checkout):
     checkout.git("checkout", "-q", "-b", "other")
-    checkout.write("src/core/core.cpp")
+    checkout.write("src/prostm/core/core.cpp")
     other = checkout.commit()
     checkout.git("checkout", "-q", "-")
     assert checkout.stages(other) == checkout.stages("") == checkout.stages("0" * 40) == []

@@ -16,16 +16,18 @@ GOOD = {
                       "prostm_stage(device PUBLIC prostm_emit prostm_acoustics)\nprostm_stage(score PUBLIC prostm_plan)\n"
                       "prostm_stage(io PUBLIC prostm_score)\n",
     "apps/CMakeLists.txt": "target_link_libraries(prostm PRIVATE prostm_io\n  fmt::fmt)\n",
-    "src/core/worker_pool.cpp": '#include <thread>\n#include "core/worker_pool.hpp"\nstd::mutex mutex;\n',
-    "src/core/stage_timer.hpp": "#include <chrono>\nusing Clock = std::chrono::steady_clock;\n",
-    "src/target/field.hpp": '#include "core/units.hpp"\n#include <vector>\n',
-    "src/plan/planner.cpp": '#include "plan/planner.hpp"\n#include "target/field.hpp"\n'
+    "src/prostm/core/worker_pool.cpp": '#include <thread>\n#include "prostm/core/worker_pool.hpp"\nstd::mutex mutex;\n',
+    "src/prostm/core/stage_timer.hpp": "#include <chrono>\nusing Clock = std::chrono::steady_clock;\n",
+    "src/prostm/target/field.hpp": '#include "prostm/core/units.hpp"\n#include <vector>\n',
+    "src/prostm/plan/planner.cpp": '#include "prostm/plan/planner.hpp"\n#include "prostm/target/field.hpp"\n'
                             '// std::cout << "a comment may say #include <thread> and std::mutex"\n'
                             'const char* text = "std::cout << printf(1)";\nint n = 10\'000; char c = \'"\';\n',
-    "src/device/simulated.cpp": '#include <thread>\n#include <chrono>\n#include "emit/emitter.hpp"\n',
-    "src/io/file.cpp": '#include "score/score.hpp"\n#include <fstream>\nint n = std::snprintf(b, 9, "x");\n',
-    "apps/prostm/main.cpp": '#include <iostream>\n#include "io/file.hpp"\nint main() { std::cout << 1; }\n',
-    "tests/plan/planner_test.cpp": '#include <thread>\n#include "io/file.hpp"\n',
+    "src/prostm/device/simulated.cpp": '#include <thread>\n#include <chrono>\n#include "prostm/emit/emitter.hpp"\n',
+    "src/prostm/io/file.cpp": '#include "prostm/score/score.hpp"\n#include <fstream>\nint n = std::snprintf(b, 9, "x");\n',
+    "apps/prostm/main.cpp": '#include <iostream>\n#include "prostm/io/file.hpp"\nint main() { std::cout << 1; }\n',
+    "src/prostm/plan/detail/fit/fit.cpp": '#include "prostm/plan/detail/fit/fit.hpp"\n#include "prostm/plan/detail/a.hpp"\n',
+    "src/prostm/prostm.hpp": '#include "prostm/device/device.hpp"\n#include "prostm/version.hpp"\n',
+    "tests/plan/planner_test.cpp": '#include <thread>\n#include "prostm/io/file.hpp"\n#include "prostm/plan/detail/a.hpp"\n',
 }
 
 
@@ -54,37 +56,43 @@ def test_accepts_a_tree_that_keeps_the_rules(tree):
 
 
 @pytest.mark.parametrize("name, text, line, word", [
-    ("src/target/a.hpp", '\n#include "plan/plan.hpp"\n', 2, "target must not include plan"),
-    ("src/plan/a.cpp", '#include "fluid/fluid.hpp"\n', 1, "plan must not include fluid"),
-    ("src/core/a.hpp", '#include "target/field.hpp"\n', 1, "core must not include target"),
-    ("src/acoustics/a.cpp", '  #  include "emit/emitter.hpp"\n', 1, "acoustics must not include emit"),
-    ("src/plan/a.cpp", '#include <target/field.hpp>\n', 1, "with quotes"),
-    ("src/plan/a.cpp", '#include "../target/field.hpp"\n', 1, "relative"),
-    ("src/plan/a.cpp", '#include "field.hpp"\n', 1, "no header of a stage"),
-    ("src/plan/a.cpp", '#include "prostm/run.hpp"\n', 1, "no header of a stage"),
-    ("src/magic/a.cpp", "\n", 1, "in no layer"),
-    ("src/emit/a.cpp", '#include "acoustics/array.hpp"\n', 1, "emit must not include acoustics"),
-    ("apps/prostm/a.cpp", '\n#include "fluid/fluid.hpp"\n', 2, "apps must not include fluid"),
-    ("src/fluid/a.cpp", "#include <thread>\n", 1, "<thread>"),
-    ("src/fluid/a.cpp", "#include <mutex>\n", 1, "<mutex>"),
-    ("src/hand/a.cpp", "#include <condition_variable>\n", 1, "<condition_variable>"),
-    ("src/core/latest.hpp", "#include <mutex>\n", 1, "<mutex>"),
-    ("src/core/worker_pool.hpp", "#include <chrono>\n", 1, "<chrono>"),
-    ("src/track/a.cpp", "#include <chrono>\n", 1, "<chrono>"),
-    ("src/emit/a.cpp", "void f();\nstd::jthread worker;\n", 2, "std::jthread"),
-    ("src/emit/a.cpp", "std::scoped_lock l(m); std::shared_mutex m;\n", 1, "std::shared_mutex"),
-    ("src/plan/a.cpp", "auto t = std::chrono::steady_clock::now();\n", 1, "std::chrono"),
-    ("src/plan/a.cpp", "#include <iostream>\n", 1, "<iostream>"),
-    ("src/device/a.cpp", "std::cout << 1;\n", 1, "std::cout"),
-    ("src/io/a.cpp", 'std::fprintf(stderr, "x");\n', 1, "fprintf"),
-    ("src/io/a.cpp", 'fmt::print("x");\n', 1, "fmt::print"),
-    ("src/plan/a.cpp", "#include <format>\n", 1, "<format>"),
+    ("src/prostm/target/a.hpp", '\n#include "prostm/plan/plan.hpp"\n', 2, "target must not include plan"),
+    ("src/prostm/plan/a.cpp", '#include "prostm/fluid/fluid.hpp"\n', 1, "plan must not include fluid"),
+    ("src/prostm/core/a.hpp", '#include "prostm/target/field.hpp"\n', 1, "core must not include target"),
+    ("src/prostm/acoustics/a.cpp", '  #  include "prostm/emit/emitter.hpp"\n', 1, "acoustics must not include emit"),
+    ("src/prostm/plan/a.cpp", '#include <prostm/target/field.hpp>\n', 1, "with quotes"),
+    ("src/prostm/plan/a.cpp", '#include "../target/field.hpp"\n', 1, "relative"),
+    ("src/prostm/plan/a.cpp", '#include "field.hpp"\n', 1, "no header of a stage"),
+    ("src/prostm/plan/a.cpp", '#include "prostm/run.hpp"\n', 1, "no header of a stage"),
+    ("src/prostm/magic/a.cpp", "\n", 1, "in no layer"),
+    ("src/prostm/emit/a.cpp", '#include "prostm/acoustics/array.hpp"\n', 1, "emit must not include acoustics"),
+    ("apps/prostm/a.cpp", '\n#include "prostm/fluid/fluid.hpp"\n', 2, "apps must not include fluid"),
+    ("apps/prostm/a.cpp", '#include "prostm/plan/detail/costs.hpp"\n', 1, "private to plan"),
+    ("src/prostm/emit/a.cpp", '#include "prostm/plan/detail/costs.hpp"\n', 1, "private to plan"),
+    ("src/prostm/plan/detail/paper/a.cpp", '#include "prostm/plan/detail/fit/b.hpp"\n', 1, "must not include plan/detail/fit"),
+    ("src/prostm/plan/detail/fit/a.cpp", '#include "prostm/plan/planner.hpp"\n', 1, "must not include plan/planner.hpp"),
+    ("src/prostm/plan/detail/a.cpp", '#include "prostm/plan/detail/fit/b.hpp"\n', 1, "must not include plan/detail/fit"),
+    ("src/plan/a.cpp", "\n", 1, "in no layer"),
+    ("src/prostm/fluid/a.cpp", "#include <thread>\n", 1, "<thread>"),
+    ("src/prostm/fluid/a.cpp", "#include <mutex>\n", 1, "<mutex>"),
+    ("src/prostm/hand/a.cpp", "#include <condition_variable>\n", 1, "<condition_variable>"),
+    ("src/prostm/core/latest.hpp", "#include <mutex>\n", 1, "<mutex>"),
+    ("src/prostm/core/worker_pool.hpp", "#include <chrono>\n", 1, "<chrono>"),
+    ("src/prostm/track/a.cpp", "#include <chrono>\n", 1, "<chrono>"),
+    ("src/prostm/emit/a.cpp", "void f();\nstd::jthread worker;\n", 2, "std::jthread"),
+    ("src/prostm/emit/a.cpp", "std::scoped_lock l(m); std::shared_mutex m;\n", 1, "std::shared_mutex"),
+    ("src/prostm/plan/a.cpp", "auto t = std::chrono::steady_clock::now();\n", 1, "std::chrono"),
+    ("src/prostm/plan/a.cpp", "#include <iostream>\n", 1, "<iostream>"),
+    ("src/prostm/device/a.cpp", "std::cout << 1;\n", 1, "std::cout"),
+    ("src/prostm/io/a.cpp", 'std::fprintf(stderr, "x");\n', 1, "fprintf"),
+    ("src/prostm/io/a.cpp", 'fmt::print("x");\n', 1, "fmt::print"),
+    ("src/prostm/plan/a.cpp", "#include <format>\n", 1, "<format>"),
     ("apps/prostm/a.cpp", "#include <expected>\n", 1, "<expected>"),
     ("tests/plan/a_test.cpp", "auto v = x | std::views::take(3);\n", 1, "std::views"),
     ("bench/a_bench.cpp", "auto v = x | std::ranges::views::reverse;\n", 1, "views"),
-    ("src/plan/planner_old.cpp", "\n", 1, "old copy"),
-    ("src/plan/planner_v2.cpp", "\n", 1, "old copy"),
-    ("src/plan/planner.cpp.bak", "\n", 1, "old copy"),
+    ("src/prostm/plan/planner_old.cpp", "\n", 1, "old copy"),
+    ("src/prostm/plan/planner_v2.cpp", "\n", 1, "old copy"),
+    ("src/prostm/plan/planner.cpp.bak", "\n", 1, "old copy"),
     ("docs/design_old.md", "\n", 1, "old copy"),
 ])
 def test_finds_each_violation_where_it_is(tree, name, text, line, word):
@@ -96,13 +104,13 @@ def test_finds_each_violation_where_it_is(tree, name, text, line, word):
 
 
 def test_finds_every_violation_of_a_file(tree):
-    status, lines = check(tree([("src/emit/a.cpp", "#include <thread>\n#include <iostream>\nstd::thread t;\n")]))
+    status, lines = check(tree([("src/prostm/emit/a.cpp", "#include <thread>\n#include <iostream>\nstd::thread t;\n")]))
     assert status == 1
     assert [line.split(":")[1] for line in lines] == ["1", "2", "3"]
 
 
 def test_a_program_may_include_what_the_linked_stages_link(tree):
-    files = [("apps/prostm/a.cpp", '#include "plan/plan.hpp"\n#include "core/units.hpp"\n#include "options.hpp"\n')]
+    files = [("apps/prostm/a.cpp", '#include "prostm/plan/plan.hpp"\n#include "prostm/core/units.hpp"\n#include "options.hpp"\n')]
     assert check(tree(files))[0] == 0
 
 

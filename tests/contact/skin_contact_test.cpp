@@ -1,15 +1,15 @@
-#include "contact/skin_contact.hpp"
+#include "prostm/contact/skin_contact.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "core/units.hpp"
-#include "fluid/fluid.hpp"
-#include "fluid/fluid_pressure.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/fluid/fluid.hpp"
+#include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

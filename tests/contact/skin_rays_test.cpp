@@ -1,13 +1,13 @@
-#include "contact/skin_rays.hpp"
+#include "prostm/contact/detail/skin_rays.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contact/skin_owner.hpp"
-#include "core/random.hpp"
+#include "prostm/contact/detail/skin_owner.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

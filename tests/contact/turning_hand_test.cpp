@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "acoustics/focus_width.hpp"
-#include "contact/skin_contact.hpp"
-#include "core/units.hpp"
-#include "fluid/fluid_pressure.hpp"
-#include "io/hand_file.hpp"
-#include "plan/lifted_plan.hpp"
-#include "plan/planner.hpp"
-#include "score/physical.hpp"
+#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/contact/skin_contact.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/io/hand_file.hpp"
+#include "prostm/plan/lifted_plan.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/physical.hpp"
+#include "prostm/track/hand_source.hpp"
 #include "support/shared.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

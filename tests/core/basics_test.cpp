@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "core/geometry.hpp"
-#include "core/medium.hpp"
-#include "core/stage_timer.hpp"
-#include "core/units.hpp"
+#include "prostm/core/geometry.hpp"
+#include "prostm/core/medium.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/distribution.hpp"
+#include "prostm/core/distribution.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -1,4 +1,4 @@
-#include "core/file.hpp"
+#include "prostm/core/file.hpp"
 
 #include <sys/stat.h>
 

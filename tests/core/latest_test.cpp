@@ -1,4 +1,4 @@
-#include "core/latest.hpp"
+#include "prostm/core/latest.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/medium.hpp"
+#include "prostm/core/medium.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 
 namespace prostm {
 namespace {

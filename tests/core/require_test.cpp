@@ -1,4 +1,4 @@
-#include "core/require.hpp"
+#include "prostm/core/require.hpp"
 
 #include <gtest/gtest.h>
 

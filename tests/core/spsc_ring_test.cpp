@@ -1,4 +1,4 @@
-#include "core/spsc_ring.hpp"
+#include "prostm/core/spsc_ring.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
 

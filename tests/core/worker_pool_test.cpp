@@ -1,4 +1,4 @@
-#include "core/worker_pool.hpp"
+#include "prostm/core/worker_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
 

@@ -1,8 +1,8 @@
-#include "device/block_clock.hpp"
+#include "prostm/device/detail/block_clock.hpp"
 
 #include <gtest/gtest.h>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 
 namespace prostm {
 namespace {

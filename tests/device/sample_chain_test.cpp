@@ -1,11 +1,11 @@
-#include "device/sample_chain.hpp"
+#include "prostm/device/sample_chain.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

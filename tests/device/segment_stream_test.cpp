@@ -1,8 +1,8 @@
-#include "device/segment_stream.hpp"
+#include "prostm/device/segment_stream.hpp"
 
 #include <gtest/gtest.h>
 
-#include "device/simulated_array.hpp"
+#include "prostm/device/simulated_array.hpp"
 
 namespace prostm {
 namespace {

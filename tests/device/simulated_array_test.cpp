@@ -1,4 +1,4 @@
-#include "device/simulated_array.hpp"
+#include "prostm/device/simulated_array.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "acoustics/transducer.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
-#include "emit/envelope.hpp"
-#include "emit/focus_emitter.hpp"
-#include "emit/path_emitter.hpp"
+#include "prostm/acoustics/transducer.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/emit/detail/envelope.hpp"
+#include "prostm/emit/detail/focus_emitter.hpp"
+#include "prostm/emit/detail/path_emitter.hpp"
 #include "support/eventually.hpp"
 #include "support/heap_guard.hpp"
 

@@ -1,12 +1,12 @@
-#include "emit/compensation.hpp"
+#include "prostm/emit/compensation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/units.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/target/skin_normal.hpp"
 #include "support/heap_guard.hpp"
-#include "target/skin_normal.hpp"
 
 namespace prostm {
 namespace {

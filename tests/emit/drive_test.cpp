@@ -1,12 +1,12 @@
-#include "emit/drive.hpp"
+#include "prostm/emit/drive.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "core/random.hpp"
-#include "emit/path_emitter.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/emit/detail/path_emitter.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "emit/focus_emitter.hpp"
+#include "prostm/emit/detail/focus_emitter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <memory>
 #include <set>
 
-#include "emit/envelope.hpp"
 #include "emit/paths.hpp"
+#include "prostm/emit/detail/envelope.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

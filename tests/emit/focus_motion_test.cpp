@@ -1,4 +1,4 @@
-#include "emit/focus_motion.hpp"
+#include "prostm/emit/detail/focus_motion.hpp"
 
 #include <gtest/gtest.h>
 

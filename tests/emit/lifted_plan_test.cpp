@@ -1,4 +1,4 @@
-#include "plan/lifted_plan.hpp"
+#include "prostm/plan/lifted_plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
 #include "emit/paths.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

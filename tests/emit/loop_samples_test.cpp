@@ -1,12 +1,12 @@
-#include "emit/loop_samples.hpp"
+#include "prostm/emit/loop_samples.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "core/random.hpp"
 #include "emit/paths.hpp"
+#include "prostm/core/random.hpp"
 
 namespace prostm {
 namespace {

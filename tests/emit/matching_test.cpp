@@ -1,4 +1,4 @@
-#include "emit/matching.hpp"
+#include "prostm/emit/detail/matching.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 
 namespace prostm {
 namespace {

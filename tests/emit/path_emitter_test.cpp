@@ -1,4 +1,4 @@
-#include "emit/path_emitter.hpp"
+#include "prostm/emit/detail/path_emitter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
-#include "emit/path_emitter.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/emit/detail/path_emitter.hpp"
 
 namespace prostm::test {
 

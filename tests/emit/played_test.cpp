@@ -1,4 +1,4 @@
-#include "emit/played.hpp"
+#include "prostm/emit/played.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/units.hpp"
-#include "emit/compensation.hpp"
-#include "emit/path_emitter.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/emit/compensation.hpp"
+#include "prostm/emit/detail/path_emitter.hpp"
 
 namespace prostm {
 namespace {

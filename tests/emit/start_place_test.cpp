@@ -1,4 +1,4 @@
-#include "emit/start_place.hpp"
+#include "prostm/emit/detail/start_place.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm::fields {
 namespace {

@@ -1,12 +1,12 @@
-#include "figure/canvas.hpp"
+#include "prostm/figure/detail/canvas.hpp"
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
-#include "core/file.hpp"
-#include "figure/colours.hpp"
-#include "io/field_file.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/figure/detail/colours.hpp"
+#include "prostm/io/field_file.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.hpp"
-#include "figure/figures.hpp"
-#include "plan/quasi_static.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/figure/figures.hpp"
+#include "prostm/plan/quasi_static.hpp"
 
 namespace prostm::test {
 

@@ -1,11 +1,11 @@
-#include "figure/figures.hpp"
+#include "prostm/figure/figures.hpp"
 
 #include <functional>
 #include <stdexcept>
 
-#include "core/file.hpp"
 #include "figure/example_figures.hpp"
-#include "figure/panel.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/figure/detail/panel.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -2,8 +2,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/file.hpp"
 #include "figure/example_figures.hpp"
+#include "prostm/core/file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

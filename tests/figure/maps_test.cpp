@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "core/file.hpp"
-#include "figure/figures.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/figure/figures.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "hand/hand_raster.hpp"
+#include "prostm/hand/hand_raster.hpp"
 
 namespace prostm::test {
 

@@ -1,10 +1,10 @@
-#include "fluid/fluid_pressure.hpp"
+#include "prostm/fluid/fluid_pressure.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

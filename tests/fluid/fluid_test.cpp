@@ -1,6 +1,6 @@
 /// The fluid as others use it.
 
-#include "fluid/fluid.hpp"
+#include "prostm/fluid/fluid.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "analytic_raster.hpp"
-#include "fluid/obstacle.hpp"
+#include "prostm/fluid/detail/obstacle.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "analytic_raster.hpp"
-#include "core/random.hpp"
-#include "fluid/advection.hpp"
-#include "fluid/obstacle.hpp"
-#include "fluid/pressure_solver.hpp"
-#include "fluid/projection.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/fluid/detail/advection.hpp"
+#include "prostm/fluid/detail/obstacle.hpp"
+#include "prostm/fluid/detail/pressure_solver.hpp"
+#include "prostm/fluid/detail/projection.hpp"
 
 namespace prostm::fluid {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fluid/fluid.hpp"
+#include "prostm/fluid/fluid.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "fluid/surroundings.hpp"
+#include "prostm/fluid/detail/surroundings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "hand/body_set.hpp"
+#include "prostm/hand/detail/body_set.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/only_targets.hpp"
 
 namespace prostm {

@@ -1,12 +1,12 @@
-#include "hand/hand_raster.hpp"
+#include "prostm/hand/hand_raster.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

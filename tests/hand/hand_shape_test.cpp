@@ -1,15 +1,15 @@
-#include "hand/hand_shape.hpp"
+#include "prostm/hand/hand_shape.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.hpp"
-#include "io/hand_file.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/io/hand_file.hpp"
+#include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
 #include "support/shared.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

@@ -1,11 +1,11 @@
-#include "hand/primitives.hpp"
+#include "prostm/hand/detail/primitives.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 
 namespace prostm {
 namespace {

@@ -1,10 +1,10 @@
-#include "io/array_file.hpp"
+#include "prostm/io/array_file.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/random.hpp"
 #include "io/examples.hpp"
+#include "prostm/core/random.hpp"
 
 namespace prostm {
 namespace {

@@ -1,13 +1,13 @@
-#include "io/digitised_figure.hpp"
+#include "prostm/io/digitised_figure.hpp"
 
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/file.hpp"
 #include "io/examples.hpp"
-#include "io/field_file.hpp"
-#include "score/score.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/io/field_file.hpp"
+#include "prostm/score/score.hpp"
 #include "support/shared.hpp"
 
 namespace prostm {

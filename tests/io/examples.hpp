@@ -8,9 +8,9 @@
 #include <initializer_list>
 #include <string>
 
-#include "plan/plan.hpp"
+#include "prostm/plan/plan.hpp"
+#include "prostm/target/target_field.hpp"
 #include "support/input_errors.hpp"
-#include "target/target_field.hpp"
 
 namespace prostm::test {
 

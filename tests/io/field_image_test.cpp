@@ -3,8 +3,8 @@
 #include <cstring>
 #include <limits>
 
-#include "io/field_file.hpp"
 #include "io/png_writer.hpp"
+#include "prostm/io/field_file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/file.hpp"
-#include "core/json.hpp"
 #include "io/examples.hpp"
-#include "io/field_file.hpp"
 #include "io/random_field.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/core/json.hpp"
+#include "prostm/io/field_file.hpp"
 #include "support/shared.hpp"
 
 namespace prostm {

@@ -1,4 +1,4 @@
-#include "io/foci_file.hpp"
+#include "prostm/io/foci_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <complex>
 #include <nlohmann/json.hpp>
 
-#include "acoustics/propagation.hpp"
-#include "core/input_error.hpp"
-#include "core/units.hpp"
+#include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/plan_file.hpp"
+#include "prostm/io/plan_file.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,11 +1,11 @@
-#include "io/pose_file.hpp"
+#include "prostm/io/pose_file.hpp"
 
 #include <gtest/gtest.h>
 
-#include "core/file.hpp"
-#include "core/random.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/track/hand_frame.hpp"
 #include "support/input_errors.hpp"
-#include "track/hand_frame.hpp"
 
 namespace prostm {
 namespace {

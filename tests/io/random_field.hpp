@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "core/random.hpp"
-#include "target/target_field.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/target/target_field.hpp"
 
 namespace prostm::test {
 

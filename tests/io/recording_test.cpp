@@ -1,11 +1,11 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "core/file.hpp"
 #include "io/examples.hpp"
-#include "io/field_file.hpp"
 #include "io/random_field.hpp"
-#include "io/recorder.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/io/field_file.hpp"
+#include "prostm/io/recorder.hpp"
 #include "support/full_disk.hpp"
 
 namespace prostm {

@@ -1,8 +1,8 @@
-#include "io/settings_file.hpp"
+#include "prostm/io/settings_file.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "core/file.hpp"
+#include "prostm/core/file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

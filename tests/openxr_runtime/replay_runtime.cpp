@@ -23,7 +23,7 @@
 #include <optional>
 #include <string>
 
-#include "io/hand_file.hpp"
+#include "prostm/io/hand_file.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 /// The table of controls, and pipelines that take other settings between their steps.
 
-#include "pipeline/controls.hpp"
+#include "prostm/pipeline/controls.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <set>
 #include <string>
 
-#include "core/input_error.hpp"
-#include "pipeline/pipeline.hpp"
 #include "pipeline/simulated.hpp"
-#include "pipeline/snapshot.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/pipeline/pipeline.hpp"
+#include "prostm/pipeline/snapshot.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/latency.hpp"
+#include "prostm/pipeline/latency.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "pipeline/runner.hpp"
+#include "prostm/pipeline/runner.hpp"
 
 namespace prostm {
 namespace {

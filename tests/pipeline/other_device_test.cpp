@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pipeline/runner.hpp"
+#include "prostm/pipeline/runner.hpp"
 
 namespace prostm {
 namespace {

@@ -1,7 +1,7 @@
 // Something else than smoke that presses, through the whole pipeline: what one has to write.
 #include <gtest/gtest.h>
 
-#include "pipeline/pipeline.hpp"
+#include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/pipeline.hpp"
+#include "prostm/pipeline/pipeline.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "pipeline/runner.hpp"
 #include "pipeline/simulated.hpp"
+#include "prostm/pipeline/runner.hpp"
 
 namespace prostm {
 namespace {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/recent_rate.hpp"
-#include "pipeline/runner.hpp"
 #include "pipeline/simulated.hpp"
+#include "prostm/pipeline/detail/recent_rate.hpp"
+#include "prostm/pipeline/runner.hpp"
 #include "support/eventually.hpp"
 
 namespace prostm {

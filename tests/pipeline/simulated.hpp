@@ -1,8 +1,8 @@
 #pragma once
 /// The array of a pipeline whose settings name the simulated one.
 
-#include "device/simulated_array.hpp"
-#include "pipeline/pipeline.hpp"
+#include "prostm/device/simulated_array.hpp"
+#include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm::test {
 

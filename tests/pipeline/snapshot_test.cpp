@@ -1,11 +1,11 @@
-#include "pipeline/snapshot.hpp"
+#include "prostm/pipeline/snapshot.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "emit/played.hpp"
+#include "prostm/emit/played.hpp"
 
 namespace prostm {
 namespace {

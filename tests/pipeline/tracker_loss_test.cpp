@@ -10,11 +10,11 @@
 #include <thread>
 #include <vector>
 
-#include "core/stage_timer.hpp"
-#include "pipeline/runner.hpp"
 #include "pipeline/simulated.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/pipeline/runner.hpp"
+#include "prostm/track/live/live_tracker.hpp"
 #include "support/eventually.hpp"
-#include "track/live/live_tracker.hpp"
 
 namespace prostm {
 namespace {

@@ -1,13 +1,13 @@
-#include "plan/costs.hpp"
+#include "prostm/plan/detail/paper/costs.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
 
-#include "core/random.hpp"
 #include "fields/fields.hpp"
-#include "plan/refine.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/plan/detail/paper/refine.hpp"
 
 namespace prostm {
 namespace {

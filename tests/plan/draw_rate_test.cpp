@@ -6,8 +6,8 @@
 #include <string>
 
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
 #include "plan_checks.hpp"
+#include "prostm/plan/planner.hpp"
 #include "random_fields.hpp"
 
 namespace prostm {

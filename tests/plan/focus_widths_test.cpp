@@ -1,4 +1,4 @@
-#include "plan/focus_widths.hpp"
+#include "prostm/plan/focus_widths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/plan/planner.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -1,5 +1,5 @@
 /// γ as a function of a path's period, (P9b).
-#include "plan/gain.hpp"
+#include "prostm/plan/gain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 
 #include "fields/fields.hpp"
 #include "fields/skin_shapes.hpp"
-#include "plan/planner.hpp"
-#include "plan/quasi_static.hpp"
 #include "plan_checks.hpp"
-#include "score/disturbance.hpp"
-#include "score/score.hpp"
-#include "textbook/textbook.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/plan/quasi_static.hpp"
+#include "prostm/score/disturbance.hpp"
+#include "prostm/score/score.hpp"
+#include "prostm/textbook/textbook.hpp"
 
 namespace prostm {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "plan/descent.hpp"
-#include "plan/fit_planner.hpp"
+#include "prostm/plan/detail/fit/descent.hpp"
+#include "prostm/plan/detail/fit/fit_planner.hpp"
 
 namespace prostm::test {
 

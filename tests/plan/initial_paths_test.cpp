@@ -4,9 +4,9 @@
 #include <array>
 #include <numeric>
 
-#include "core/random.hpp"
-#include "plan/clustering.hpp"
-#include "plan/tours.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/plan/clustering.hpp"
+#include "prostm/plan/detail/tours.hpp"
 
 namespace prostm {
 namespace {

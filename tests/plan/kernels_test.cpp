@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
-#include "plan/cell_tiles.hpp"
-#include "plan/distances.hpp"
-#include "plan/pressure_raster.hpp"
-#include "plan/spacing.hpp"
-#include "plan/validity.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/plan/detail/fit/cell_tiles.hpp"
+#include "prostm/plan/detail/fit/distances.hpp"
+#include "prostm/plan/detail/fit/spacing.hpp"
+#include "prostm/plan/detail/pressure_raster.hpp"
+#include "prostm/plan/detail/validity.hpp"
 #include "support/load.hpp"
 
 namespace prostm::planning {

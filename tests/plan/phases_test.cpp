@@ -1,4 +1,4 @@
-#include "plan/phases.hpp"
+#include "prostm/plan/detail/fit/phases.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/plan/planner.hpp"
 #include "support/load.hpp"
 
 namespace prostm::planning {

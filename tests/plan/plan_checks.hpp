@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/planner.hpp"
+#include "prostm/plan/planner.hpp"
 
 namespace prostm::test {
 

@@ -1,4 +1,4 @@
-#include "plan/planner.hpp"
+#include "prostm/plan/planner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 
 #include "fields/fields.hpp"
 #include "plan_checks.hpp"
+#include "prostm/textbook/textbook.hpp"
 #include "random_fields.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
-#include "textbook/textbook.hpp"
 
 namespace prostm {
 namespace {

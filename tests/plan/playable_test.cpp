@@ -1,4 +1,4 @@
-#include "plan/playable.hpp"
+#include "prostm/plan/detail/fit/playable.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,14 +6,14 @@
 #include <cmath>
 #include <vector>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
-#include "emit/emitter.hpp"
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
 #include "plan_checks.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/emit/emitter.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/score.hpp"
 #include "random_fields.hpp"
-#include "score/score.hpp"
 #include "support/load.hpp"
 
 namespace prostm {

@@ -6,12 +6,12 @@
 #include <functional>
 
 #include "fields/fields.hpp"
-#include "io/field_file.hpp"
-#include "plan/planner.hpp"
-#include "score/score.hpp"
+#include "prostm/io/field_file.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/score.hpp"
+#include "prostm/textbook/textbook.hpp"
 #include "support/load.hpp"
 #include "support/shared.hpp"
-#include "textbook/textbook.hpp"
 
 namespace prostm {
 namespace {

@@ -1,9 +1,9 @@
-#include "plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static.hpp"
 
 #include <gtest/gtest.h>
 
-#include "core/random.hpp"
 #include "plan_checks.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "emit/path_emitter.hpp"
 #include "fields/skin_shapes.hpp"
-#include "plan/lifted_plan.hpp"
-#include "plan/planner.hpp"
-#include "plan/spacing.hpp"
 #include "plan_checks.hpp"
+#include "prostm/emit/detail/path_emitter.hpp"
+#include "prostm/plan/detail/fit/spacing.hpp"
+#include "prostm/plan/lifted_plan.hpp"
+#include "prostm/plan/planner.hpp"
 #include "random_fields.hpp"
 #include "support/load.hpp"
 

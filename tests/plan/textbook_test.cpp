@@ -1,6 +1,6 @@
 /// The textbook planner is compiled once for each kind of machine, and chosen where it runs.
 
-#include "textbook/textbook.hpp"
+#include "prostm/textbook/textbook.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,9 +1,9 @@
-#include "plan/validity.hpp"
+#include "prostm/plan/detail/validity.hpp"
 
 #include <gtest/gtest.h>
 
-#include "core/random.hpp"
 #include "plan_checks.hpp"
+#include "prostm/core/random.hpp"
 #include "support/load.hpp"
 
 namespace prostm {

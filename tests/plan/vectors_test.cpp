@@ -7,8 +7,8 @@
 #include <string>
 
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
-#include "score/score.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/score.hpp"
 #include "support/load.hpp"
 #include "support/only_targets.hpp"
 

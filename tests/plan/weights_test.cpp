@@ -7,16 +7,16 @@
 
 #include "fields/fields.hpp"
 #include "gradient_check.hpp"
-#include "plan/cell_weights.hpp"
-#include "plan/descent.hpp"
-#include "plan/initial_loops.hpp"
-#include "plan/planner.hpp"
-#include "plan/quasi_static.hpp"
 #include "plan_checks.hpp"
+#include "prostm/plan/detail/fit/cell_weights.hpp"
+#include "prostm/plan/detail/fit/descent.hpp"
+#include "prostm/plan/detail/fit/initial_loops.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/plan/quasi_static.hpp"
+#include "prostm/target/pressure_share.hpp"
 #include "random_fields.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
-#include "target/pressure_share.hpp"
 
 namespace prostm::planning {
 namespace {

@@ -1,10 +1,10 @@
-#include "score/disturbance.hpp"
+#include "prostm/score/disturbance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/units.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

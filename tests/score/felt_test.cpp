@@ -1,12 +1,12 @@
-#include "score/felt.hpp"
+#include "prostm/score/felt.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.hpp"
 #include "fields/fields.hpp"
+#include "prostm/core/units.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "score/physical.hpp"
+#include "prostm/score/physical.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "core/units.hpp"
-#include "emit/compensation.hpp"
-#include "plan/lifted_plan.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/emit/compensation.hpp"
+#include "prostm/plan/lifted_plan.hpp"
 
 namespace prostm {
 namespace {

@@ -1,15 +1,15 @@
-#include "score/score.hpp"
+#include "prostm/score/score.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <utility>
 
-#include "am/am_planner.hpp"
-#include "core/random.hpp"
 #include "fields/fields.hpp"
-#include "plan/planner.hpp"
-#include "plan/quasi_static.hpp"
+#include "prostm/am/am_planner.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/plan/quasi_static.hpp"
 
 namespace prostm {
 namespace {

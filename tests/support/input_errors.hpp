@@ -10,7 +10,7 @@
 #include <functional>
 #include <string>
 
-#include "core/input_error.hpp"
+#include "prostm/core/input_error.hpp"
 
 namespace prostm::test {
 

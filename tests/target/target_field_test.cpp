@@ -1,4 +1,4 @@
-#include "target/target_field.hpp"
+#include "prostm/target/target_field.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -1,12 +1,12 @@
-#include "track/calibration_guide.hpp"
+#include "prostm/track/calibration_guide.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "core/random.hpp"
-#include "track/hand_source.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/track/hand_source.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "track/calibration.hpp"
+#include "prostm/track/calibration.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/random.hpp"
+#include "prostm/core/random.hpp"
 
 namespace prostm {
 namespace {

@@ -1,12 +1,12 @@
-#include "track/causal_track.hpp"
+#include "prostm/track/detail/causal_track.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "core/random.hpp"
 #include "hands.hpp"
+#include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -1,4 +1,4 @@
-#include "track/hand_frame.hpp"
+#include "prostm/track/hand_frame.hpp"
 
 #include <gtest/gtest.h>
 

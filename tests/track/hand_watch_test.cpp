@@ -1,4 +1,4 @@
-#include "track/live/hand_watch.hpp"
+#include "prostm/track/detail/hand_watch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

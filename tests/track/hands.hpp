@@ -1,7 +1,7 @@
 #pragma once
 /// Hands for tests of tracks.
 
-#include "track/hand_frame.hpp"
+#include "prostm/track/hand_frame.hpp"
 
 namespace prostm::test {
 

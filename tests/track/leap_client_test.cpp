@@ -1,11 +1,11 @@
-#include "track/live/leap_client.hpp"
+#include "prostm/track/live/leap_client.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "core/file.hpp"
-#include "io/hand_file.hpp"
 #include "leap_json.hpp"
 #include "leap_server.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/io/hand_file.hpp"
 #include "support/eventually.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"

@@ -1,9 +1,9 @@
-#include "track/live/leap_frame.hpp"
+#include "prostm/track/live/leap_frame.hpp"
 
 #include <gtest/gtest.h>
 
 #include "leap_json.hpp"
-#include "track/hand_source.hpp"
+#include "prostm/track/hand_source.hpp"
 
 namespace prostm {
 namespace {

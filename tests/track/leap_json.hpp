@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "track/hand_frame.hpp"
+#include "prostm/track/hand_frame.hpp"
 
 namespace prostm::test {
 

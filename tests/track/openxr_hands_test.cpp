@@ -1,4 +1,4 @@
-#include "track/live/openxr_hands.hpp"
+#include "prostm/track/live/openxr_hands.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "core/file.hpp"
-#include "io/hand_file.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/io/hand_file.hpp"
 #include "support/eventually.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"

@@ -1,4 +1,4 @@
-#include "track/live/page_hand.hpp"
+#include "prostm/track/live/page_hand.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <thread>
 
-#include "core/random.hpp"
-#include "core/units.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -5,12 +5,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/random.hpp"
 #include "hands.hpp"
-#include "io/hand_file.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/io/hand_file.hpp"
+#include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
 #include "support/shared.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

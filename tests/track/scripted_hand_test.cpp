@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
-#include "track/hand_source.hpp"
 
 namespace prostm {
 namespace {

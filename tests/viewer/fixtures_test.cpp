@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/file.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/viewer/wire.hpp"
 #include "support/heap_guard.hpp"
 #include "support/places.hpp"
-#include "viewer/wire.hpp"
 
 namespace prostm {
 namespace {

@@ -12,11 +12,11 @@
 #include <string>
 #include <thread>
 
-#include "io/pose_file.hpp"
-#include "pipeline/runner.hpp"
 #include "pipeline/simulated.hpp"
-#include "track/hand_source.hpp"
-#include "viewer/pipeline_view.hpp"
+#include "prostm/io/pose_file.hpp"
+#include "prostm/pipeline/runner.hpp"
+#include "prostm/track/hand_source.hpp"
+#include "prostm/viewer/pipeline_view.hpp"
 #include "viewer/view_support.hpp"
 
 namespace prostm::test {

@@ -1,12 +1,12 @@
 /// Every message of a page, good and bad.
 
-#include "viewer/page_message.hpp"
+#include "prostm/viewer/page_message.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "core/units.hpp"
+#include "prostm/core/units.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

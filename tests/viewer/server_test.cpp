@@ -1,6 +1,6 @@
 /// The server and pages without browsers.
 
-#include "viewer/server.hpp"
+#include "prostm/viewer/server.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "core/input_error.hpp"
+#include "prostm/core/input_error.hpp"
 #include "viewer/view_support.hpp"
 
 namespace prostm {

@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "prostm/viewer/server.hpp"
 #include "support/eventually.hpp"
-#include "viewer/server.hpp"
 
 namespace prostm::test {
 

@@ -1,0 +1,149 @@
+#include "methods/rendering.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/am/am_planner.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/emit/loop_samples.hpp"
+#include "prostm/plan/planner.hpp"
+
+namespace prostm::bench {
+namespace {
+
+constexpr double kRate = 40e3;         // of samples [Hz]
+constexpr double kModulation = 200.0;  // of the flat field [Hz]
+
+/// @param sigma of the array's focus [m].
+Plan plan_by(Way way, const TargetField& target, double sigma) {
+  Plan plan;
+  PlanStats stats;
+  PlanSettings settings;
+  switch (way) {
+    case Way::Am:
+      AmPlanner(AmSettings{}, target.size()).plan(target, plan, stats);
+      break;
+    case Way::Circles:
+      plan = circles_at_mass_centres(target, settings.gain_law(), settings.max_length(), 1);
+      break;
+    case Way::PaperValid:
+    case Way::Best:
+    case Way::BestNarrow:
+      settings.preset = way == Way::PaperValid ? "paper-valid" : "best";
+      if (way == Way::BestNarrow) settings.sigma = sigma;
+      Planner(settings, target.size()).plan(target, plan, stats);
+      break;
+    case Way::Flat:
+      break;
+  }
+  return plan;
+}
+
+/// The plan as it sounds once it is running, full scale at its own largest pressure.
+LoopSamples loop_of(const Plan& plan, const TargetField& target) {
+  TargetFrame frame;
+  frame.patches.push_back(target);
+  LiftedPlan lifted;
+  lift(plan, frame, lifted);
+  EmitSettings settings;
+  settings.foci = static_cast<int>(lifted.paths.size() + lifted.foci.size());
+  for (const LiftedPath& path : lifted.paths) {
+    for (const double p : path.pressure) {
+      settings.full_scale_pressure = std::max(settings.full_scale_pressure, p);
+    }
+  }
+  for (const LiftedFocus& focus : lifted.foci) {
+    settings.full_scale_pressure = std::max(settings.full_scale_pressure, focus.pressure);
+  }
+  return loop_samples(lifted, settings, kRate);
+}
+
+/// 1 Pa on all skin at the peak of the modulation, whose intensity is |sin|.
+std::vector<double> flat_loop(const TargetField& raster, int parts) {
+  std::vector<double> out;
+  for (int k = 0; k < parts; ++k) {
+    const double sine = std::sin(kPi * k / parts);
+    for (const std::uint8_t skin : raster.skin) out.push_back(skin != 0 ? sine * sine : 0.0);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string to_string(Way way) {
+  switch (way) {
+    case Way::PaperValid:
+      return "paper-valid";
+    case Way::Best:
+      return "best";
+    case Way::BestNarrow:
+      return "best, its width";
+    case Way::Am:
+      return "AM";
+    case Way::Circles:
+      return "four circles";
+    case Way::Flat:
+      return "flat";
+  }
+  return "";
+}
+
+struct Renderer::Parts {
+  Parts(const TransducerArray& given, const TargetField& raster)
+      : array(given),
+        packed(given, medium),
+        pool(2),
+        skin(raster),
+        sigma(focus_width(packed, medium, raster.X_DP.translation(), -raster.X_DP.linear().col(2),
+                          raster.X_DP.linear().col(0))
+                  .sigma()) {}
+
+  void play(const TargetField& target, Rendering& out);
+
+  Medium medium;
+  TransducerArray array;
+  PackedArray packed;
+  WorkerPool pool;
+  FeelingSkin skin;
+  double sigma;  // of a focus in the raster's middle [m]
+};
+
+/// What the array puts on the skin, and the skin's answer.
+void Renderer::Parts::play(const TargetField& target, Rendering& out) {
+  const LoopSamples loop = loop_of(out.plan, target);
+  LoopDriveResult drives;
+  loop_drives(
+      array, medium, loop, {}, [](int, int) { return true; }, drives);
+  out.mean_power = drives.mean_power;
+  out.field = physical_field(packed, medium, target, loop, drives, pool);
+  out.felt = skin.feel(packed, medium, target, loop, drives, pool);
+}
+
+Renderer::Renderer(const TransducerArray& array, const TargetField& raster)
+    : parts_(std::make_unique<Parts>(array, raster)) {}
+
+Renderer::~Renderer() = default;
+
+Rendering Renderer::render(Way way, const TargetField& target) {
+  Rendering out;
+  out.plan = plan_by(way, target, parts_->sigma);
+  if (way == Way::Flat) {
+    constexpr int kParts = 25;
+    out.field.envelope.assign(target.size(), 0.0);
+    for (std::size_t c = 0; c < target.size(); ++c) {
+      if (target.skin[c] != 0) out.field.envelope[c] = 1.0;
+    }
+    out.field.largest = 1.0;
+    out.felt = parts_->skin.feel(target, 1.0 / kModulation, kParts, flat_loop(target, kParts));
+  } else {
+    parts_->play(target, out);
+  }
+  out.of_envelope = score_physical(target, out.field.envelope, 0.0);
+  out.of_felt = score_physical(target, out.felt.percept, 0.0);
+  out.ghosts = ghosts_of(target, out.felt.percept);
+  return out;
+}
+
+}  // namespace prostm::bench

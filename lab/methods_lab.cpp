@@ -1,0 +1,23 @@
+/// Ways to render a target, played by the array and felt by the skin, under three controls.
+
+#include "methods/comparison.hpp"
+#include "program.hpp"
+#include "prostm/figure/figures.hpp"
+
+int main(int argc, char** argv) {
+  using namespace prostm;
+  CLI::App app("ways to render a target, played by the array and felt by the skin");
+  int frames = 3;
+  std::string figure;
+  app.add_option("--frames", frames, "of each generated sequence")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  app.add_option("--figure", figure, "draw what each way puts on the skin, and what is felt");
+  return bench::run(app, argc, argv, [&] {
+    if (!figure.empty()) check_figure(figure);
+    std::vector<bench::Row> rows;
+    bench::compare_ways(frames, rows);
+    if (!figure.empty()) bench::draw_ways(figure);
+    return rows;
+  });
+}

@@ -1,0 +1,96 @@
+#pragma once
+/// What every benchmark program shares: its one option, its table and its JSON.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "prostm/core/distribution.hpp"
+#include "prostm/core/file.hpp"
+#include "prostm/core/input_error.hpp"
+
+namespace prostm::bench {
+
+/// The value that `share` of all are not above, by the nearest-rank rule; 0 when there is none.
+inline double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const double rank = std::max(std::ceil(share * static_cast<double>(values.size())), 1.0);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// One line of a table: a distribution, and the median of what it is compared with.
+struct Row {
+  std::string name, unit;
+  Summary ours;
+  std::string baseline;       ///< empty when nothing is compared
+  double baseline_p50 = 0.0;  ///< in `unit`
+};
+
+inline void print(const std::vector<Row>& rows) {
+  fmt::print("{:<44} {:>6} {:>10} {:>10} {:>10}   {}\n", "", "unit", "p50", "p99", "max",
+             "against (p50, ratio)");
+  for (const Row& row : rows) {
+    fmt::print("{:<44} {:>6} {:>10.4g} {:>10.4g} {:>10.4g}", row.name, row.unit, row.ours.p50,
+               row.ours.p99, row.ours.max);
+    if (!row.baseline.empty()) {
+      fmt::print("   {} ({:.4g}, {:.2f})", row.baseline, row.baseline_p50,
+                 row.baseline_p50 / row.ours.p50);
+    }
+    fmt::print("\n");
+  }
+}
+
+/// [{"name","unit","n","p50","p99","max","baseline","baseline_p50","ratio"}, …]; ratio = baseline
+/// over ours.
+inline std::string to_json(const std::vector<Row>& rows) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Row& row : rows) {
+    nlohmann::ordered_json one = {
+        {"name", row.name},    {"unit", row.unit},        {"n", row.ours.n},
+        {"p50", row.ours.p50}, {"p99", row.ours.p99},     {"max", row.ours.max},
+        {"baseline", nullptr}, {"baseline_p50", nullptr}, {"ratio", nullptr}};
+    if (!row.baseline.empty()) {
+      one["baseline"] = row.baseline;
+      one["baseline_p50"] = row.baseline_p50;
+      if (row.ours.p50 > 0.0) one["ratio"] = row.baseline_p50 / row.ours.p50;
+    }
+    list.push_back(one);
+  }
+  return list.dump(1) + "\n";
+}
+
+/// Prints rows and, where a file is named, writes them. @return 0
+inline int print_and_write(const std::vector<Row>& rows, const std::string& json) {
+  fmt::print("\n");
+  print(rows);
+  if (!json.empty()) write_file(json, to_json(rows));
+  return 0;
+}
+
+/// The main() of a benchmark: `program [--json FILE]`, where `measure` gives the rows.
+template <class Measure>
+int run(int argc, char** argv, Measure measure) {
+  std::string json;
+  if (argc == 3 && std::strcmp(argv[1], "--json") == 0) {
+    json = argv[2];
+  } else if (argc != 1) {
+    fmt::print(stderr, "{}: the only option is --json FILE\n", argv[0]);
+    return 2;
+  }
+  try {
+    return print_and_write(measure(), json);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}: {}\n", argv[0], error.what());
+    return 2;
+  }
+}
+
+}  // namespace prostm::bench

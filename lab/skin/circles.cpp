@@ -1,0 +1,164 @@
+/// Circles against speed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/figure/figures.hpp"
+#include "skin/experiments.hpp"
+#include "skin/stimuli.hpp"
+
+namespace prostm::bench {
+namespace {
+
+constexpr double kCircumferences[] = {0.05, 0.1, 0.15, 0.2};  // [m]
+constexpr int kFastest = 15;                                  // [m/s]
+constexpr std::size_t kNominal = 4;
+
+/// One curve over the speeds 1 to 15 m/s.
+struct Curve {
+  std::vector<double> intensity;     ///< [m]
+  std::vector<double> displacement;  ///< largest rms on the palm [m]
+  std::vector<double> velocity;      ///< the same [m/s]
+};
+
+std::vector<double> speeds() {
+  std::vector<double> all;
+  for (int v = 1; v <= kFastest; ++v) all.push_back(v);
+  return all;
+}
+
+double largest_rms_displacement(const SkinResponse& response, std::size_t cells) {
+  double most = 0.0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    double sum = 0.0;
+    for (int n = 1; n <= response.harmonics(); ++n) {
+      sum += 0.5 * std::norm(response.displacement(n)[c]);
+    }
+    most = std::max(most, sum);
+  }
+  return std::sqrt(most);
+}
+
+void append(SkinResponse& response, const Palm& palm, const PressureLoop& loop, Curve& curve) {
+  response.prepare(loop.period, loop.samples);
+  response.respond(loop);
+  std::vector<double> map(palm.cells());
+  rms_velocity(response, map);
+  curve.intensity.push_back(perceived_intensity(response));
+  curve.displacement.push_back(largest_rms_displacement(response, palm.cells()));
+  curve.velocity.push_back(*std::max_element(map.begin(), map.end()));
+}
+
+/// What a circle does on each of the nine skins, and on the nominal one with memoryless
+/// transducers.
+struct CircleCurves {
+  std::vector<Curve> skins;
+  Curve memoryless;
+};
+
+CircleCurves compute(double circumference, const StmField& field, const Palm& palm,
+                     std::vector<SkinResponse>& responses) {
+  CircleCurves curves{std::vector<Curve>(responses.size()), {}};
+  const Lap lap = circle_lap(circumference);
+  for (const double speed : speeds()) {
+    const double period = circumference / speed;
+    const std::vector<double> real = field.pressure(lap, period, false);
+    for (std::size_t s = 0; s < responses.size(); ++s) {
+      append(responses[s], palm, {period, StmField::kSamples, real}, curves.skins[s]);
+    }
+    const std::vector<double> ideal = field.pressure(lap, period, true);
+    append(responses[kNominal], palm, {period, StmField::kSamples, ideal}, curves.memoryless);
+  }
+  return curves;
+}
+
+/// "6.2 (4.9 – 8.8)": where a quantity of the nine skins has its peak.
+std::string peaks(const CircleCurves& curves, std::vector<double> Curve::*quantity) {
+  double low = HUGE_VAL, high = 0.0;
+  for (const Curve& curve : curves.skins) {
+    const double at = peak_place(speeds(), curve.*quantity);
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  return fmt::format("{:.1f} ({:.1f} – {:.1f})",
+                     peak_place(speeds(), curves.skins[kNominal].*quantity), low, high);
+}
+
+void print_peaks_of_skins(const std::vector<CircleCurves>& all) {
+  const auto skins = skin_settings_interval();
+  fmt::print("\nspeed at which the intensity of each circle has its peak, on each skin [m/s]\n");
+  for (std::size_t s = 0; s < skins.size(); ++s) {
+    fmt::print("  plateau {:>4.0f} m/s, loss {:.2f}:", skins[s].fast_speed, skins[s].loss);
+    for (const CircleCurves& curves : all) {
+      fmt::print(" {:>6.1f}", peak_place(speeds(), curves.skins[s].intensity));
+    }
+    fmt::print("\n");
+  }
+}
+
+void print_curves(double circumference, const CircleCurves& curves) {
+  fmt::print("\ncircle of {:.0f} mm: rms displacement at 250 Hz that is felt alike [µm]\n",
+             1e3 * circumference);
+  fmt::print("{:>8} {:>8} {:>9} {:>17} {:>12} {:>20} {:>18}\n", "m/s", "Hz", "nominal",
+             "low – high", "memoryless", "displacement [µm]", "velocity [mm/s]");
+  for (std::size_t i = 0; i < speeds().size(); ++i) {
+    double low = HUGE_VAL, high = 0.0;
+    for (const Curve& curve : curves.skins) {
+      low = std::min(low, curve.intensity[i]);
+      high = std::max(high, curve.intensity[i]);
+    }
+    const Curve& nominal = curves.skins[kNominal];
+    fmt::print("{:>8.0f} {:>8.1f} {:>9.3f} {:>8.3f} – {:>6.3f} {:>12.3f} {:>20.3f} {:>18.3f}\n",
+               speeds()[i], speeds()[i] / circumference, 1e6 * nominal.intensity[i], 1e6 * low,
+               1e6 * high, 1e6 * curves.memoryless.intensity[i], 1e6 * nominal.displacement[i],
+               1e3 * nominal.velocity[i]);
+  }
+}
+
+Chart chart_of(const std::string& title, const std::vector<CircleCurves>& all, bool memoryless) {
+  Chart chart{title, "speed of the focal point / (m/s)", "felt alike at 250 Hz / µm rms", false, {},
+              false};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Curve& curve = memoryless ? all[i].memoryless : all[i].skins[kNominal];
+    ChartSeries series{fmt::format("{:.0f} mm", 1e3 * kCircumferences[i]), speeds(), {}};
+    for (const double value : curve.intensity) series.y.push_back(1e6 * value);
+    chart.series.push_back(series);
+  }
+  return chart;
+}
+
+}  // namespace
+
+void compute_circles(const std::string& figure, std::vector<Row>& rows) {
+  const Palm palm;
+  const StmField field(usx_array(), palm);
+  std::vector<SkinResponse> responses;
+  for (const SkinSettings& settings : skin_settings_interval()) {
+    responses.emplace_back(SkinModel(settings), palm.patch);
+  }
+  std::vector<CircleCurves> all;
+  for (const double circumference : kCircumferences) {
+    all.push_back(compute(circumference, field, palm, responses));
+    print_curves(circumference, all.back());
+  }
+  fmt::print(
+      "\nspeed of the peak [m/s], nominal (lowest – highest of nine skins); published: 5 to 8\n");
+  fmt::print("{:>8} {:>22} {:>12} {:>24} {:>24}\n", "mm", "intensity", "memoryless", "displacement",
+             "velocity");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    fmt::print("{:>8.0f} {:>22} {:>12.1f} {:>24} {:>24}\n", 1e3 * kCircumferences[i],
+               peaks(all[i], &Curve::intensity), peak_place(speeds(), all[i].memoryless.intensity),
+               peaks(all[i], &Curve::displacement), peaks(all[i], &Curve::velocity));
+    rows.push_back(value_row(fmt::format("circle {:.0f} mm, peak", 1e3 * kCircumferences[i]), "m/s",
+                             peak_place(speeds(), all[i].skins[kNominal].intensity)));
+  }
+  print_peaks_of_skins(all);
+  if (figure.empty()) return;
+  draw_charts({chart_of("Transducers that follow in 0.23 ms", all, false),
+               chart_of("Transducers that follow at once", all, true)},
+              figure);
+}
+
+}  // namespace prostm::bench

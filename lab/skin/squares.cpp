@@ -1,0 +1,185 @@
+/// Squares of 1 and 3 cm.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "prostm/core/units.hpp"
+#include "prostm/figure/figures.hpp"
+#include "skin/experiments.hpp"
+#include "skin/stimuli.hpp"
+
+namespace prostm::bench {
+namespace {
+
+constexpr double kSides[] = {0.01, 0.03};  // [m]
+constexpr int kFastest = 12;               // [m/s]
+constexpr double kShown[] = {2, 4, 6, 8, 10, 12};
+
+/// What the map of rms velocity of a square looks like.
+struct Look {
+  double outline = 0.0;      ///< mean along the square [m/s]
+  double inside = 0.0;       ///< largest in the inner half, over the largest of the map
+  double middle = 0.0;       ///< over the mean along the square
+  bool peak_inside = false;  ///< a local maximum lies in the inner half
+  double half_width = 0.0;   ///< of the area above half of the largest, as a square's side [m]
+};
+
+double value_at(const std::vector<double>& map, const Palm& palm, const Vec2& x) {
+  // bilinear
+  const double c = x.x() / palm.patch.cell + 0.5 * (palm.patch.cols - 1);
+  const double r = x.y() / palm.patch.cell + 0.5 * (palm.patch.rows - 1);
+  const int i = static_cast<int>(c), j = static_cast<int>(r);
+  const double s = c - i, t = r - j;
+  const auto at = [&](int row, int col) {
+    return map[static_cast<std::size_t>(row * palm.patch.cols + col)];
+  };
+  return (1 - t) * ((1 - s) * at(j, i) + s * at(j, i + 1)) +
+         t * ((1 - s) * at(j + 1, i) + s * at(j + 1, i + 1));
+}
+
+Look look_at(const std::vector<double>& map, const Palm& palm, double side) {
+  Look look;
+  const Lap lap = square_lap(side);
+  constexpr int kPlaces = 200;
+  for (int k = 0; k < kPlaces; ++k) {
+    look.outline += value_at(map, palm, lap(static_cast<double>(k) / kPlaces)) / kPlaces;
+  }
+  look.middle = value_at(map, palm, Vec2::Zero()) / look.outline;
+  const double most = *std::max_element(map.begin(), map.end());
+  const double inner = 0.25 * side;
+  double area = 0.0;
+  for (int j = 1; j + 1 < palm.patch.rows; ++j) {
+    for (int i = 1; i + 1 < palm.patch.cols; ++i) {
+      const auto c = static_cast<std::size_t>(j * palm.patch.cols + i);
+      if (map[c] > 0.5 * most) area += palm.patch.cell * palm.patch.cell;
+      if (palm.at(j, i).cwiseAbs().maxCoeff() > inner) continue;
+      look.inside = std::max(look.inside, map[c] / most);
+      bool highest = true;
+      for (const int step : {1, palm.patch.cols - 1, palm.patch.cols, palm.patch.cols + 1}) {
+        const auto d = static_cast<std::size_t>(step);
+        highest = highest && map[c] >= map[c - d] && map[c] >= map[c + d];
+      }
+      look.peak_inside = look.peak_inside || highest;
+    }
+  }
+  look.half_width = std::sqrt(area);
+  return look;
+}
+
+/// Velocity of the skin in every cell over a lap: rms, and the largest [m/s].
+struct VelocityMaps {
+  std::vector<double> rms, largest;
+};
+VelocityMaps velocity_maps(const StmField& field, const Palm& palm, SkinResponse& response,
+                           double side, double speed) {
+  const double period = 4.0 * side / speed;
+  const std::vector<double> pressure = field.pressure(square_lap(side), period, false);
+  response.prepare(period, StmField::kSamples);
+  response.respond({period, StmField::kSamples, pressure});
+  VelocityMaps maps{std::vector<double>(palm.cells()), std::vector<double>(palm.cells(), 0.0)};
+  rms_velocity(response, maps.rms);
+  for (int k = 0; k < StmField::kSamples; ++k) {
+    std::vector<double> now(palm.cells(), 0.0);
+    for (int n = 1; n <= response.harmonics(); ++n) {
+      const double omega = 2.0 * kPi * response.frequency(n);
+      const auto turn =
+          std::polar(omega, 2.0 * kPi * (n * k % StmField::kSamples) / StmField::kSamples);
+      const auto w = response.displacement(n);
+      for (std::size_t c = 0; c < now.size(); ++c) {
+        now[c] -= w[c].real() * turn.imag() + w[c].imag() * turn.real();
+      }
+    }
+    for (std::size_t c = 0; c < now.size(); ++c) {
+      maps.largest[c] = std::max(maps.largest[c], std::abs(now[c]));
+    }
+  }
+  return maps;
+}
+
+/// Speeds, of 1 to 12 m/s, at which something holds: "8, 9".
+template <class Holds>
+std::string speeds_where(const std::vector<Look>& looks, Holds holds) {
+  std::string text;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (holds(looks[i])) text += fmt::format("{}{}", text.empty() ? "" : ", ", i + 1);
+  }
+  return text.empty() ? "none" : text;
+}
+
+FieldMap map_of(const std::vector<double>& values, const Palm& palm, double side, double speed,
+                const Look& look) {
+  FieldMap map{fmt::format("{:.0f} cm, {:.0f} m/s", 100.0 * side, speed),
+               fmt::format("middle over outline {:.2f}", look.middle),
+               palm.patch.rows,
+               palm.patch.cols,
+               palm.patch.cell,
+               values};
+  for (int k = 0; k < 4; ++k) map.outline.push_back(square_lap(side)(0.25 * k));
+  return map;
+}
+
+void print_looks(double side, const std::vector<Look>& rms, const std::vector<Look>& largest) {
+  fmt::print("\nsquare of {:.0f} cm, velocity of the nominal skin, rms over a lap and largest\n",
+             100.0 * side);
+  fmt::print("{:>6} {:>8} {:>10} {:>15} {:>15} {:>8} {:>16} | {:>15} {:>15} {:>8}\n", "m/s", "Hz",
+             "rms [mm/s]", "middle/outline", "inside/largest", "peak in", "half area [mm]",
+             "middle/outline", "inside/largest", "peak in");
+  for (std::size_t i = 0; i < rms.size(); ++i) {
+    const double speed = static_cast<double>(i + 1);
+    const Look &r = rms[i], &l = largest[i];
+    fmt::print(
+        "{:>6.0f} {:>8.1f} {:>10.3f} {:>15.2f} {:>15.2f} {:>8} {:>16.1f} | {:>15.2f} {:>15.2f} "
+        "{:>8}\n",
+        speed, speed / (4.0 * side), 1e3 * r.outline, r.middle, r.inside,
+        r.peak_inside ? "yes" : "no", 1e3 * r.half_width, l.middle, l.inside,
+        l.peak_inside ? "yes" : "no");
+  }
+}
+
+/// One size on the nine skins; the nominal one's maps go into the picture.
+void compute_square(double side, const StmField& field, const Palm& palm, MapFigure& picture,
+                    std::vector<Row>& rows) {
+  fmt::print(
+      "\nsquare of {:.0f} cm: speeds [m/s] at which a peak lies in the inner half, rms and largest "
+      "velocity\n",
+      100.0 * side);
+  const auto skins = skin_settings_interval();
+  std::vector<Look> nominal_rms, nominal_largest;
+  for (std::size_t s = 0; s < skins.size(); ++s) {
+    SkinResponse response(SkinModel(skins[s]), palm.patch);
+    std::vector<Look> rms, largest;
+    for (int speed = 1; speed <= kFastest; ++speed) {
+      const VelocityMaps maps = velocity_maps(field, palm, response, side, speed);
+      rms.push_back(look_at(maps.rms, palm, side));
+      largest.push_back(look_at(maps.largest, palm, side));
+      if (s == 4 && std::find(std::begin(kShown), std::end(kShown), speed) != std::end(kShown)) {
+        picture.maps.push_back(map_of(maps.rms, palm, side, speed, rms.back()));
+      }
+    }
+    const auto inside = [](const Look& look) { return look.peak_inside; };
+    fmt::print("  plateau {:>4.0f} m/s, loss {:.2f}: {:<30} {}\n", skins[s].fast_speed,
+               skins[s].loss, speeds_where(rms, inside), speeds_where(largest, inside));
+    if (s == 4) {
+      nominal_rms = rms;
+      nominal_largest = largest;
+    }
+  }
+  print_looks(side, nominal_rms, nominal_largest);
+  rows.push_back(
+      value_row(fmt::format("square {:.0f} cm, 8 m/s, middle over outline", 100.0 * side), "1",
+                nominal_rms[7].middle));
+}
+
+}  // namespace
+
+void compute_squares(const std::string& figure, std::vector<Row>& rows) {
+  const Palm palm;
+  const StmField field(usx_array(), palm);
+  MapFigure picture{"Skin velocity (rms) under squares", "of the largest", 6, {}};
+  for (const double side : kSides) compute_square(side, field, palm, picture, rows);
+  if (!figure.empty()) draw_maps(picture, figure);
+}
+
+}  // namespace prostm::bench

@@ -1,0 +1,28 @@
+/// What the skin does under moving focal points: published experiments, computed with parameters
+/// that were fixed before, and the cost of a response.
+
+#include "program.hpp"
+#include "prostm/figure/figures.hpp"
+#include "skin/experiments.hpp"
+
+int main(int argc, char** argv) {
+  using namespace prostm;
+  CLI::App app("what the skin does under moving focal points: published experiments");
+  std::string folder;
+  app.add_option("--figures", folder,
+                 "a folder; draw skin-circles.png, skin-squares.png, skin-lines.png and "
+                 "skin-gap.png");
+  return bench::run(app, argc, argv, [&] {
+    const auto figure = [&](const char* name) {
+      return folder.empty() ? std::string() : folder + "/" + name;
+    };
+    if (!folder.empty()) check_figure(figure("skin-circles.png"));
+    std::vector<bench::Row> rows;
+    bench::measure_response(rows);
+    bench::compute_circles(figure("skin-circles.png"), rows);
+    bench::compute_squares(figure("skin-squares.png"), rows);
+    bench::compute_regimes(figure("skin-lines.png"), rows);
+    bench::compute_gap(figure("skin-gap.png"), rows);
+    return rows;
+  });
+}

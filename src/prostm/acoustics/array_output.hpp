@@ -1,0 +1,44 @@
+#pragma once
+/// What an array sends out while it plays focal points: solved drives, and transducers that follow
+/// them.
+
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "prostm/acoustics/live_focus_solver.hpp"
+#include "prostm/acoustics/transducer.hpp"
+
+namespace prostm {
+
+struct ArrayOutputSettings {
+  LiveFocusSettings solver;
+  TransducerSettings transducer;
+};
+
+/// One sample after the other; allocates nothing once made.
+class ArrayOutput {
+ public:
+  /// All silent. @throws std::invalid_argument as LiveFocusSolver and TransducerDynamics do.
+  ArrayOutput(const TransducerArray& array, const Medium& medium,
+              const ArrayOutputSettings& settings);
+
+  /// Plays one sample.
+  void step(std::span<const LiveFocus> foci) noexcept;
+
+  /// Drives q of the last sample, |q| ≤ 1, one for each transducer.
+  std::span<const std::complex<double>> drives() const { return drives_; }
+  /// Envelopes of the transducers at its end: they take the place of q in (A1).
+  std::span<const std::complex<double>> envelopes() const { return transducers_.output(); }
+  const LiveFocusSolver& solver() const { return solver_; }
+
+  /// Forgets what was played: all silent again.
+  void reset();
+
+ private:
+  LiveFocusSolver solver_;
+  TransducerDynamics transducers_;
+  std::vector<std::complex<double>> drives_;
+};
+
+}  // namespace prostm

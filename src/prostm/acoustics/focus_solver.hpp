@@ -1,0 +1,56 @@
+#pragma once
+/// Drives of an array that make several focal points at the same time.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "prostm/acoustics/propagation.hpp"
+
+namespace prostm {
+
+enum class FocusMethod {
+  Superposition,  ///< (A11): the naive foci, added
+  Ibp,            ///< (A12): iterative back-propagation, phases alone [Marzo and Drinkwater 2019]
+  GsPat,          ///< (A13): Gerchberg-Saxton on the focal points [Plasencia et al. 2020]
+  Weighted,  ///< (A16): weighted Gerchberg-Saxton on phases alone [Di Leonardo et al. 2007], (A17)
+  Eigenvector,  ///< (A14): phases of the dominant eigenvector, then least squares with Tikhonov's
+                ///< regularisation [Long et al. 2014]
+  LevenbergMarquardt  ///< (A15): phases alone, to convergence: the slow reference
+};
+
+/// "superposition", "ibp", "gs-pat", "weighted", "eigenvector", "lm".
+const char* focus_method_name(FocusMethod method);
+/// Nothing when there is no method of that name.
+std::optional<FocusMethod> focus_method_from_name(std::string_view name);
+/// All names, with a comma between.
+std::string focus_method_names();
+
+struct FocusSettings {
+  FocusMethod method = FocusMethod::Weighted;
+  int iterations =
+      20;  ///< of Ibp, GsPat and Weighted; LevenbergMarquardt may take 50 times as many
+  double regularisation = 1.0;  ///< γ of Eigenvector, 0..1
+};
+
+struct FocusSolution {
+  Eigen::VectorXcd drive;     ///< q, N; |q_n| <= 1
+  Eigen::VectorXcd pressure;  ///< G q [Pa, rms], M
+  double level = 0.0;         ///< what is reached of the targets together: Σ a |Gq| / Σ a²
+};
+
+/// Drives whose pressures at the focal points have the magnitudes `target`, or, where that is more
+/// than the array can do, as large a common share of them as no drive above 1 allows: levels are
+/// lowered together, none is clipped. @param target a, M [Pa, rms]. @param start phases [rad] of
+/// the focal points to begin with, M, or empty: 0; those of the solution before keep drives from
+/// jumping.
+/// @throws std::invalid_argument for sizes that do not agree, no focal point or more than
+/// transducers, a target that is negative or not finite or none above 0, and a focal point that no
+/// transducer reaches.
+FocusSolution solve_foci(const Propagation& propagation, const Eigen::VectorXd& target,
+                         const FocusSettings& settings, const Eigen::VectorXd& start = {});
+
+/// Relative error of each focal point with target > 0, |p_m| / (level · a_m) − 1; 0 for the others.
+Eigen::VectorXd focus_errors(const FocusSolution& solution, const Eigen::VectorXd& target);
+
+}  // namespace prostm

@@ -1,0 +1,250 @@
+#include "prostm/acoustics/live_focus_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "prostm/acoustics/detail/solver_kernels.hpp"
+#include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/require.hpp"
+
+namespace prostm {
+namespace {
+
+using Complex = std::complex<float>;
+
+constexpr int kMost = static_cast<int>(kMaxLiveFoci);
+constexpr float kFarthest = 10.0F;      // coordinates of focal points, as of transducers [m]
+constexpr float kSilent = 1e-4F;        // amplitude
+constexpr float kLeastShare = 1e-6F;    // of what a focal point has alone
+constexpr float kMostWeight = 10.0F;    // in (A16), and its inverse
+constexpr double kDamping = 1e-2;       // in (A17), of the mean diagonal
+constexpr double kLeastDamping = 1e-9;  // where no phase changes anything
+
+static_assert(ComplexRows::kBlock == PackedArray::kRowBlock);  // rows of G are written in place
+
+const TransducerArray& validated(const TransducerArray& array, const LiveFocusSettings& settings) {
+  validate(array);
+  if (settings.method != FocusMethod::Weighted && settings.method != FocusMethod::Superposition &&
+      settings.method != FocusMethod::GsPat) {
+    throw std::invalid_argument("only superposition, gs-pat and weighted run live");
+  }
+  require_between("iterations", settings.iterations, 1, 1000);
+  if (settings.phase_levels != 0) require_between("phase_levels", settings.phase_levels, 2, 65536);
+  require_between("full_scale", settings.full_scale, 0.0, 1e6, "Pa");
+  require_between("bound", settings.bound, 1.0, 100.0);
+  return array;
+}
+
+Complex direction(const Complex& z) {
+  const float size = std::abs(z);
+  return size > 0.0F ? z / size : Complex(1.0F);
+}
+
+/// The box around an array's transducers and all that is nearer than kNearestPoint.
+Eigen::AlignedBox3f box_around(const TransducerArray& array) {
+  Eigen::AlignedBox3f box;
+  const Eigen::Vector3f margin = Eigen::Vector3f::Constant(static_cast<float>(kNearestPoint));
+  for (const Vec3& p : array.position) {
+    box.extend(p.cast<float>() - margin);
+    box.extend(p.cast<float>() + margin);
+  }
+  return box;
+}
+
+/// Whether p is on no transducer, where (A1) does not hold.
+bool is_clear(const PackedArray& packed, const Eigen::AlignedBox3f& box, const Eigen::Vector3f& p) {
+  if (!box.contains(p)) return true;
+  const Vec3 at = p.cast<double>();
+  return std::all_of(packed.array.position.begin(), packed.array.position.end(),
+                     [&](const Vec3& t) { return (at - t).norm() >= kNearestPoint; });
+}
+
+/// Finite and in range; comparing what is not a number would trap where that is on.
+bool is_within(float x, float low, float high) {
+  return std::isfinite(x) && x >= low && x <= high;
+}
+
+bool is_sound(const LiveFocus& focus) {
+  bool sound = is_within(focus.amplitude, kSilent, 1.0F);
+  for (const float x : focus.p_D) sound = sound && is_within(x, -kFarthest, kFarthest);
+  return sound;
+}
+
+Complex rounded_phase(const Complex& q, int levels) {
+  const float step = 2.0F * std::numbers::pi_v<float> / static_cast<float>(levels);
+  return std::polar(std::abs(q), step * std::round(std::arg(q) / step));
+}
+
+}  // namespace
+
+LiveFocusSolver::LiveFocusSolver(const TransducerArray& array, const Medium& medium,
+                                 const LiveFocusSettings& settings)
+    : settings_(settings),
+      packed_(validated(array, settings), medium),
+      near_(box_around(array)),
+      g_(kMaxLiveFoci, packed_.transducers()),
+      drive_(1, packed_.transducers()),
+      turns_(kMaxLiveFoci, packed_.transducers()),
+      correlation_(kMaxLiveFoci, kMaxLiveFoci),
+      magnitude_(1, kMaxLiveFoci),
+      x_(1, kMaxLiveFoci),
+      scratch_(1, kMaxLiveFoci) {
+  reset();
+}
+
+void LiveFocusSolver::reset() {
+  phase_.fill(1.0F);
+  weight_.fill(1.0F);
+}
+
+void LiveFocusSolver::solve(std::span<const LiveFocus> foci) noexcept {
+  if (!settings_.warm) reset();
+  count_ = 0;
+  unreached_ = 0;
+  for (std::size_t f = 0; f < foci.size(); ++f) {
+    if (is_within(foci[f].amplitude, 0.0F, kSilent)) {
+      if (f < kMaxLiveFoci) weight_[f] = 1.0F;
+    } else if (f >= kMaxLiveFoci || !add(foci[f], f)) {
+      ++unreached_;
+    }
+  }
+  switch (settings_.method) {
+    case FocusMethod::GsPat:
+      return scale(gs_pat());
+    case FocusMethod::Weighted:
+      return scale(weighted());
+    default:
+      return scale(superpose());
+  }
+}
+
+/// Takes a focal point, unless it cannot be had.
+bool LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
+  if (!is_sound(focus) || !is_clear(packed_, near_, focus.p_D)) return false;
+  propagation_row_in_single(packed_, focus.p_D.cast<double>(), g_.re(count_), g_.im(count_));
+  const solving::Magnitudes all = solving::magnitudes(g_, count_);
+  if (all.squares <= 0.0F) return false;
+  place_[count_] = place;
+  const auto full_scale = static_cast<float>(settings_.full_scale);
+  const auto bound = static_cast<float>(settings_.bound);
+  wanted_[count_] =
+      focus.amplitude * (full_scale > 0.0F ? std::min(full_scale / all.sum, bound) : 1.0F);
+  alone_[count_] = all.sum;
+  squares_[count_] = all.squares;
+  ++count_;
+  return true;
+}
+
+/// (A11). This and the next two set the drives, and return the largest.
+float LiveFocusSolver::superpose() {
+  for (std::size_t m = 0; m < count_; ++m) c_[m] = wanted_[m] * alone_[m] / squares_[m];
+  return solving::back_propagate(g_, {c_.data(), count_}, drive_);
+}
+
+/// (A13)
+float LiveFocusSolver::gs_pat() {
+  solving::correlate(g_, count_, correlation_);
+  std::fill_n(magnitude_.re(0), magnitude_.stride(), 0.0F);
+  for (std::size_t m = 0; m < count_; ++m) {
+    magnitude_.re(0)[m] = wanted_[m] * alone_[m];
+    x_.set(0, m, magnitude_.re(0)[m] * phase_[place_[m]]);
+  }
+  solving::iterate_gs_pat(correlation_, magnitude_, count_, settings_.iterations, x_, scratch_);
+  for (std::size_t m = 0; m < count_; ++m) {
+    phase_[place_[m]] = direction(x_.at(0, m));
+    c_[m] = x_.at(0, m) / squares_[m];
+  }
+  return solving::back_propagate(g_, {c_.data(), count_}, drive_);
+}
+
+/// (A16) and, once in the end, (A17)
+float LiveFocusSolver::weighted() {
+  if (count_ == 0) return superpose();
+  for (int i = 0; i < settings_.iterations; ++i) {
+    float largest = 0.0F;
+    for (std::size_t m = 0; m < count_; ++m) {
+      c_[m] = weight_[place_[m]] * wanted_[m] / alone_[m] * phase_[place_[m]];
+      largest = std::max(largest, std::abs(c_[m]));
+    }
+    for (std::size_t m = 0; m < count_; ++m) c_[m] /= largest;
+    solving::back_propagate_phases(g_, {c_.data(), count_}, drive_);
+    level_ = reach();
+    reweigh(level_);
+  }
+  even_out();
+  return 1.0F;
+}
+
+/// Phases are those reached, and weights grow where less than its share is.
+void LiveFocusSolver::reweigh(float level) {
+  float sum = 0.0F, all = 0.0F;
+  for (std::size_t m = 0; m < count_; ++m) {
+    const std::size_t f = place_[m];
+    phase_[f] = direction(y_[m]);
+    weight_[f] *= level * wanted_[m] / std::max(std::abs(y_[m]) / alone_[m], kLeastShare);
+    sum += wanted_[m] * weight_[f];
+    all += wanted_[m];
+  }
+  for (std::size_t m = 0; m < count_; ++m) {
+    float& weight = weight_[place_[m]];
+    weight = std::clamp(weight * all / sum, 1.0F / kMostWeight, kMostWeight);
+  }
+}
+
+/// (A17): one step of Gauss-Newton on the phases of the drives. @pre y_ and level_ are theirs.
+void LiveFocusSolver::even_out() {
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
+  std::array<float, kMaxLiveFoci * kMaxLiveFoci> products;
+  for (std::size_t m = 0; m < count_; ++m) c_[m] = direction(y_[m]) / alone_[m];
+  solving::phase_gradients(g_, {c_.data(), count_}, drive_, turns_, products);
+
+  const auto count = static_cast<Eigen::Index>(count_);
+  Matrix normal = Eigen::Map<const Eigen::MatrixXf>(products.data(), count, count).cast<double>();
+  normal.diagonal().array() += kDamping * normal.diagonal().mean() + kLeastDamping;
+  Vector x(count);
+  for (std::size_t m = 0; m < count_; ++m) {
+    const float residual = std::abs(y_[m]) / alone_[m] - level_ * wanted_[m];
+    x[static_cast<Eigen::Index>(m)] = static_cast<double>(-residual);
+  }
+  const Eigen::LLT<Eigen::Ref<Matrix>> factors(normal);  // in place
+  factors.solveInPlace(x);
+
+  std::array<float, kMaxLiveFoci> turn;
+  for (std::size_t m = 0; m < count_; ++m) {
+    turn[m] = static_cast<float>(x[static_cast<Eigen::Index>(m)]);
+  }
+  solving::turn_phases(turns_, {turn.data(), count_}, drive_);
+}
+
+/// y_ = G q. @return their level.
+float LiveFocusSolver::reach() {
+  solving::propagate_drives(g_, drive_, {y_.data(), count_});
+  float sum = 0.0F, squares = 0.0F;
+  for (std::size_t m = 0; m < count_; ++m) {
+    sum += wanted_[m] * std::abs(y_[m]) / alone_[m];
+    squares += wanted_[m] * wanted_[m];
+  }
+  return count_ == 0 ? 0.0F : sum / squares;
+}
+
+/// One factor for all drives, so that the level is 1 or the largest drive is.
+void LiveFocusSolver::scale(float largest) {
+  const float level = reach();
+  const float factor = count_ == 0 ? 0.0F : 1.0F / std::max(level, largest);
+  level_ = level * factor;
+  float *re = drive_.re(0), *im = drive_.im(0);
+  for (std::size_t n = 0; n < drive_.stride(); ++n) {
+    re[n] *= factor;
+    im[n] *= factor;
+  }
+  if (settings_.phase_levels == 0) return;
+  for (std::size_t n = 0; n < drive_.columns(); ++n) {
+    drive_.set(0, n, rounded_phase(drive_.at(0, n), settings_.phase_levels));
+  }
+}
+
+}  // namespace prostm

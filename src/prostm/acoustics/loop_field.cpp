@@ -1,0 +1,204 @@
+#include "prostm/acoustics/loop_field.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "prostm/acoustics/detail/complex_product.hpp"
+#include "prostm/acoustics/propagation.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // of the drives' power
+constexpr std::size_t kBlock = 48;   // points whose rows stay in the cache together
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+PackedMatrix packed_from(const Eigen::MatrixXcf& m, std::size_t rows) {
+  PackedMatrix out(rows, static_cast<std::size_t>(m.cols()));
+  for (Eigen::Index col = 0; col < m.cols(); ++col) {
+    for (Eigen::Index row = 0; row < m.rows(); ++row) {
+      out.set(static_cast<std::size_t>(row), static_cast<std::size_t>(col), m(row, col));
+    }
+  }
+  return out;
+}
+
+/// What one thread computes blocks of points with.
+struct Scratch {
+  Scratch(const PackedArray& packed, std::size_t cols)
+      : g_re(kBlock * packed.stride()), g_im(g_re.size()), z_re(kBlock * cols), z_im(z_re.size()) {}
+  std::vector<float> g_re, g_im, z_re, z_im;
+};
+
+/// The course of the pressure over the loop at a block's points.
+struct Course {
+  explicit Course(std::size_t cols) : re(kBlock * cols), im(re.size()), pressure(cols) {}
+  std::vector<float> re, im, pressure;
+};
+
+float mean_of(std::span<const float> x) {
+  return static_cast<float>(std::accumulate(x.begin(), x.end(), 0.0) /
+                            static_cast<double>(x.size()));
+}
+
+/// Calls f(first point, number of points, scratch, thread) for all blocks, each thread with a
+/// scratch of its own, which holds G's rows there and their product with `right`.
+template <class F>
+void for_blocks(const PackedArray& packed, const SurfacePoints& surface, const PackedMatrix& right,
+                WorkerPool& pool, F&& f) {
+  const std::size_t points = surface.p_D.size(), blocks = (points + kBlock - 1) / kBlock;
+  std::vector<Scratch> scratch(static_cast<std::size_t>(pool.threads()),
+                               Scratch(packed, right.cols()));
+  std::atomic<std::size_t> next{0};
+  pool.run(pool.threads(), [&](int thread) {
+    Scratch& mine = scratch[static_cast<std::size_t>(thread)];
+    for (std::size_t block = next++; block < blocks; block = next++) {
+      const std::size_t first = block * kBlock, count = std::min(kBlock, points - first);
+      propagation_rows(packed, std::span(surface.p_D).subspan(first, count),
+                       std::span(surface.normal).subspan(first, count), mine.g_re.data(),
+                       mine.g_im.data());
+      complex_product({mine.g_re.data(), mine.g_im.data(), count, packed.stride()}, right, 0,
+                      mine.z_re.data(), mine.z_im.data());
+      f(first, count, mine, static_cast<std::size_t>(thread));
+    }
+  });
+}
+
+void check(const PackedArray& packed, const LoopDrives& drives, const SurfacePoints& surface) {
+  validate(surface, packed.array);
+  if (static_cast<std::size_t>(drives.rows()) != packed.transducers()) {
+    refuse("the loop has drives for " + std::to_string(drives.rows()) +
+           " transducers; it must have them for the array's " +
+           std::to_string(packed.transducers()));
+  }
+}
+
+/// v of (A20) for one set of drives, or p of (A1) without normals.
+Eigen::VectorXcf field_of(const PackedArray& packed, std::span<const Vec3> points,
+                          std::span<const Vec3> normals, const Eigen::VectorXcf& drives) {
+  const PackedMatrix right = packed_from(drives, packed.stride());
+  std::vector<float> re(packed.stride()), im(re.size()), z_re(right.cols()), z_im(z_re.size());
+  Eigen::VectorXcf out(static_cast<Eigen::Index>(points.size()));
+  for (std::size_t m = 0; m < points.size(); ++m) {
+    propagation_rows(packed, points.subspan(m, 1),
+                     normals.empty() ? normals : normals.subspan(m, 1), re.data(), im.data());
+    complex_product({re.data(), im.data(), 1, packed.stride()}, right, 0, z_re.data(), z_im.data());
+    out[static_cast<Eigen::Index>(m)] = {z_re[0], z_im[0]};
+  }
+  return out;
+}
+
+}  // namespace
+
+void validate(const SurfacePoints& surface, const TransducerArray& array) {
+  if (surface.p_D.empty()) refuse("a surface has no point; it must have one at least");
+  if (surface.normal.size() != surface.p_D.size()) {
+    refuse("a surface has " + std::to_string(surface.normal.size()) +
+           " normals; it must have one for each of its " + std::to_string(surface.p_D.size()) +
+           " points");
+  }
+  const auto finite = [](const Vec3& v) {
+    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+  };
+  for (std::size_t m = 0; m < surface.p_D.size(); ++m) {
+    const std::string which = "point " + std::to_string(m) + " (from 0) of a surface ";
+    if (!finite(surface.p_D[m]) || !finite(surface.normal[m])) {
+      refuse(which + "must have a finite place and normal");
+    }
+    if (std::abs(surface.normal[m].squaredNorm() - 1.0) > 2e-6) {
+      refuse(which + "must have a normal of length 1");
+    }
+    for (std::size_t n = 0; n < array.position.size(); ++n) {
+      if ((surface.p_D[m] - array.position[n]).squaredNorm() >= kNearestPoint * kNearestPoint) {
+        continue;
+      }
+      refuse(which + "is on transducer " + std::to_string(n) +
+             " (from 0); it must be at least 10 mm from every transducer");
+    }
+  }
+}
+
+Eigen::VectorXcf acoustic_pressure(const PackedArray& packed, std::span<const Vec3> points,
+                                   const Eigen::VectorXcf& drives) {
+  return field_of(packed, points, {}, drives);
+}
+
+std::vector<float> radiation_pressure(const PackedArray& packed, const Medium& medium,
+                                      const SurfacePoints& surface,
+                                      const Eigen::VectorXcf& drives) {
+  const Eigen::VectorXcf v = field_of(packed, surface.p_D, surface.normal, drives);
+  const float unit = static_cast<float>(radiation_pressure(1.0, medium));
+  std::vector<float> out;
+  for (const std::complex<float>& value : v) out.push_back(unit * std::norm(value));
+  return out;
+}
+
+std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medium& medium,
+                                           const LoopDrives& drives, const SurfacePoints& surface,
+                                           WorkerPool& pool) {
+  check(packed, drives, surface);
+  const PackedMatrix right =
+      packed_from(covariance_factor(drives, pool, kTolerance), packed.stride());
+  const float unit = static_cast<float>(radiation_pressure(1.0, medium));
+  std::vector<float> mean(surface.p_D.size());
+  for_blocks(packed, surface, right, pool,
+             [&](std::size_t first, std::size_t count, const Scratch& s, std::size_t) {
+               for (std::size_t m = 0; m < count; ++m) {
+                 const std::size_t at = m * right.cols();
+                 mean[first + m] =
+                     unit * sum_of_squares(s.z_re.data() + at, s.z_im.data() + at, right.cols());
+               }
+             });
+  return mean;
+}
+
+LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium,
+                           const LoopDrives& drives, const SurfacePoints& surface, int frames,
+                           WorkerPool& pool) {
+  check(packed, drives, surface);
+  const auto samples = static_cast<std::size_t>(drives.cols());
+  if (frames < 0 || (frames > 0 && samples % static_cast<std::size_t>(frames) != 0)) {
+    refuse("frames = " + std::to_string(frames) + " must be 0 or a divisor of the loop's " +
+           std::to_string(samples) + " samples");
+  }
+  const Eigen::MatrixXcf q = orthonormal(covariance_factor(drives, pool, kTolerance));
+  const PackedMatrix factor = packed_from(q, packed.stride());
+  const PackedMatrix course = packed_from(q.adjoint() * drives, factor.cols());
+  const float unit = static_cast<float>(radiation_pressure(1.0, medium));
+  const std::size_t points = surface.p_D.size(), parts = static_cast<std::size_t>(frames);
+  LoopPressure out;
+  out.mean.resize(points);
+  out.envelope.resize(points);
+  out.frames = frames;
+  out.frame.resize(points * parts);
+  std::vector<Course> courses(static_cast<std::size_t>(pool.threads()), Course(course.cols()));
+  for_blocks(packed, surface, factor, pool,
+             [&](std::size_t first, std::size_t count, const Scratch& s, std::size_t thread) {
+               // what the fields of the basis at these points make of each sample
+               Course& c = courses[thread];
+               complex_product({s.z_re.data(), s.z_im.data(), count, factor.cols()}, course, 0,
+                               c.re.data(), c.im.data());
+               for (std::size_t m = 0; m < count; ++m) {
+                 const std::size_t at = m * course.cols(), point = first + m;
+                 squares(c.re.data() + at, c.im.data() + at, course.cols(), unit,
+                         c.pressure.data());
+                 const std::span<const float> all(c.pressure.data(), samples);
+                 out.mean[point] = mean_of(all);
+                 out.envelope[point] = *std::max_element(all.begin(), all.end());
+                 for (std::size_t part = 0; part < parts; ++part) {
+                   out.frame[point * parts + part] =
+                       mean_of(all.subspan(part * (samples / parts), samples / parts));
+                 }
+               }
+             });
+  return out;
+}
+
+}  // namespace prostm

@@ -1,0 +1,140 @@
+#include "prostm/am/am_planner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/container/static_vector.hpp>
+
+#include "prostm/am/am_pressures.hpp"
+#include "prostm/core/require.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/plan/clustering.hpp"
+#include "prostm/plan/patches.hpp"
+#include "prostm/target/pressure_share.hpp"
+
+namespace prostm {
+
+using namespace planning;
+
+namespace {
+
+// of the highest pressure; less is none, so that no mean is taken of numbers near the least double
+constexpr double kLeastShare = 1e-12;
+
+using Places = boost::container::static_vector<Vec2, kMaxPaths>;
+
+/// (B1): the cells of highest pressure that lie farther than `apart` from each other, one after the
+/// other; of equals the first in the raster. Fewer than `count` where no more fit.
+/// @param maximum the target's largest pressure.
+Places greedy_start(const TargetField& target, int count, double apart, double maximum) {
+  Places places;
+  while (static_cast<int>(places.size()) < count) {
+    double highest = kLeastShare;
+    std::size_t best = target.size();
+    for (std::size_t i = 0; i < target.size(); ++i) {
+      const double share = pressure_share(target.pressure[i], maximum);
+      if (target.skin[i] == 0 || !(share > highest)) continue;
+      const Vec2 x = target.position(i);
+      const bool free = std::all_of(places.begin(), places.end(), [&](const Vec2& place) {
+        return (x - place).squaredNorm() > apart * apart;
+      });
+      if (!free) continue;
+      highest = share;
+      best = i;
+    }
+    if (best == target.size()) break;
+    places.push_back(target.position(best));
+  }
+  return places;
+}
+
+}  // namespace
+
+void AmSettings::visit(SettingsVisitor& v) {
+  v.field("foci", foci);
+  v.field("sigma", sigma);
+  v.field("lloyd_iterations", lloyd_iterations);
+}
+
+struct AmPlanner::Scratch {
+  Scratch(const AmSettings& s, std::size_t cells) : settings(s), max_cells(cells), kmeans(cells) {}
+
+  void plan_patch(const TargetField& target, int patch, int foci, double maximum, Plan& plan,
+                  PlanStats& stats);
+
+  AmSettings settings;
+  std::size_t max_cells;
+  WeightedKMeans kmeans;
+  Clusters clusters;
+};
+
+/// Appends at most `foci` foci for one patch. @pre maximum, the target's largest pressure, is > 0.
+void AmPlanner::Scratch::plan_patch(const TargetField& target, int patch, int foci, double maximum,
+                                    Plan& plan, PlanStats& stats) {
+  StageTimer timer;
+  kmeans.clear();
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    const double weight = target.skin[i] != 0 ? pressure_share(target.pressure[i], maximum) : 0.0;
+    if (weight > kLeastShare) kmeans.add(target.position(i), weight);
+  }
+  const Places start = greedy_start(target, foci, settings.sigma, maximum);
+  stats.init += timer.lap();
+
+  stats.lloyd_iterations +=
+      kmeans.run_from({start.data(), start.size()}, settings.lloyd_iterations, clusters);
+  stats.clusters += static_cast<int>(clusters.centre.size());
+  stats.kmeans += timer.lap();
+
+  FocalPoints own;
+  for (const Vec2& x : clusters.centre) own.push_back({patch, x, 0.0});
+  set_pressures(target, settings.sigma, own);
+  for (const FocalPoint& focus : own) plan.foci.push_back(focus);
+  stats.refine += timer.lap();
+}
+
+AmPlanner::AmPlanner(const AmSettings& settings, std::size_t max_cells) {
+  require_between("foci", settings.foci, 1, kMaxPaths);
+  require_between("sigma", settings.sigma, 1e-3, 0.1, "m");
+  require_between("lloyd_iterations", settings.lloyd_iterations, 1, 1'000'000);
+  scratch_ = std::make_unique<Scratch>(settings, max_cells);
+}
+AmPlanner::~AmPlanner() = default;
+AmPlanner::AmPlanner(AmPlanner&&) noexcept = default;
+AmPlanner& AmPlanner::operator=(AmPlanner&&) noexcept = default;
+
+const AmSettings& AmPlanner::settings() const {
+  return scratch_->settings;
+}
+
+PlanStatus AmPlanner::plan(const TargetField& target, Plan& plan, PlanStats& stats) noexcept {
+  StageTimer timer;
+  plan.clear();
+  stats = {};
+  const double maximum = highest_pressure(target, scratch_->max_cells);
+  if (maximum < 0.0) return PlanStatus::InvalidTarget;
+  if (maximum > 0.0) {
+    scratch_->plan_patch(target, 0, scratch_->settings.foci, maximum, plan, stats);
+  }
+  stats.total = timer.seconds();
+  return plan.empty() ? PlanStatus::EmptyTarget : PlanStatus::Planned;
+}
+
+PlanStatus AmPlanner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept {
+  StageTimer timer;
+  plan.clear();
+  stats = {};
+  PatchPressures maximum{}, pressure{};
+  for (std::size_t i = 0; i < frame.patches.size(); ++i) {
+    maximum[i] = highest_pressure(frame.patches[i], scratch_->max_cells);
+    if (maximum[i] < 0.0) return PlanStatus::InvalidTarget;
+    pressure[i] = total_pressure(frame.patches[i]);
+  }
+  const std::array<int, kMaxPatches> share = share_out(pressure, scratch_->settings.foci);
+  for (std::size_t i = 0; i < frame.patches.size(); ++i) {
+    if (share[i] == 0) continue;
+    scratch_->plan_patch(frame.patches[i], static_cast<int>(i), share[i], maximum[i], plan, stats);
+  }
+  stats.total = timer.seconds();
+  return plan.empty() ? PlanStatus::EmptyTarget : PlanStatus::Planned;
+}
+
+}  // namespace prostm

@@ -1,0 +1,100 @@
+#pragma once
+/// From what presses on the hands to target fields (the paper's section IV-A, docs/design.md
+/// section C).
+
+#include <array>
+#include <boost/container/static_vector.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "prostm/contact/detail/skin_owner.hpp"
+#include "prostm/contact/detail/skin_rays.hpp"
+#include "prostm/contact/pressure_source.hpp"
+#include "prostm/core/settings.hpp"
+#include "prostm/hand/hand_raster.hpp"
+#include "prostm/target/target_field.hpp"
+
+namespace prostm {
+
+struct ContactSettings {
+  // how much an error counts on each part of the hand, where all three are not the same
+  double touch_palm = 1.0;    ///< on the palm and the ball of the thumb
+  double touch_finger = 1.0;  ///< on the phalanges but the last
+  double touch_tip = 1.0;     ///< on the last phalanges
+
+  void visit(SettingsVisitor& v);
+  bool operator==(const ContactSettings&) const = default;
+};
+
+struct ContactStats {
+  int skin_cells = 0;      ///< raster cells with skin, over all patches
+  double skin_area = 0.0;  ///< of these, each counted as it has faded [m²]
+  int steep_cells = 0;     ///< cells whose skin is too steep for the array, and no part of a target
+  int joints_outside =
+      0;  ///< joints that lie outside the fluid's box: no pressure is known on the skin there
+};
+
+/// Builds one target patch per hand.
+///
+/// The skin that is visible from the array is found by marching each column of the grid from the
+/// array's side to the first crossing of the hand's signed distance. A plane is fitted to these
+/// points by least squares without regard to pressure, steep skin counting little (C1), with its
+/// axes and origin fixed so that they neither flip nor wander (C2). Each raster cell then marches
+/// along the plane's normal to the skin nearest to the array (C3), keeps its height, and takes the
+/// pressure that a source says is there, clamped at 0 (C4). It fades to nothing where the skin is
+/// too steep for the array to press on, and skin beyond that has no target (C6); nor has skin
+/// outside the box. All of it is continuous in the hand's pose and remembers nothing of earlier
+/// ones. Where the settings touch_* differ the patches have weights (C5).
+class SkinContact {
+ public:
+  /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
+  SkinContact(const ContactSettings& settings, const GridShape& grid);
+
+  /// Largest raster that extract() makes, cells.
+  std::size_t max_cells() const {
+    return static_cast<std::size_t>(max_side_) * static_cast<std::size_t>(max_side_);
+  }
+
+  /// @param raster the hands of `hands` on the grid.  @param hands in frame D, of which frame.time
+  /// is written.
+  ContactStats extract(const PressureSource& source, const HandRaster& raster,
+                       const HandFrame& hands, TargetFrame& out) noexcept;
+
+ private:
+  struct SeenSkin {
+    Vec3 p_D;
+    double weight = 0.0;  // in (C1)
+  };
+  struct Pressed {
+    std::size_t cell;
+    double fade;  // of (C6)
+  };
+  struct Cells {
+    int skin = 0, steep = 0;
+    double area = 0.0;
+  };
+  void find_visible();
+  std::pair<Vec3, Vec3> fit_plane(std::span<const SeenSkin> visible, const Hand& hand) const;
+  bool place_patch(std::span<const SeenSkin> visible, const Hand& hand, TargetField& patch) const;
+  void find_skin(int hand, TargetField& patch);
+  Cells press(const PressureSource& source, const HandShape& shape, TargetField& patch);
+  double fade_at(const Vec3& p_D, const TargetField& patch) const;
+  double touch_at(const HandShape& shape, const Vec3& p_D) const;
+
+  ContactSettings settings_;
+  bool has_weights_;  // whether patches get weights
+  GridShape grid_;
+  int max_side_;
+  boost::container::static_vector<HandShape, 2> shapes_;
+  SkinRays rays_;
+  SkinOwner owner_;
+  std::array<std::vector<SeenSkin>, 2> visible_;  // skin of each hand seen from the array
+  std::vector<std::uint32_t> queue_;              // of fill_heights
+  // cells that something may press on, and where they are
+  std::vector<Pressed> pressed_;
+  std::vector<Vec3> points_;
+  std::vector<double> pressures_;
+};
+
+}  // namespace prostm

@@ -1,0 +1,71 @@
+#pragma once
+/// JSON read with sentences: what every JSON file and message of this project shares.
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "prostm/core/geometry.hpp"
+
+namespace prostm {
+
+/// More than any field needs: 10⁶ cells with pressure and height at full precision.
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
+
+/// @throws InputError with line and column: not JSON, cut off, nested deeper than 32, a number
+/// beyond a double's range.
+nlohmann::json parse_json(std::string_view text, const std::string& file);
+
+/// A value of a document that knows where it stands, so that what is wrong with it can be said.
+/// Refers to the document and the file's name: both must outlive it. Everything throws InputError.
+class JsonNode {
+ public:
+  JsonNode(const nlohmann::json& value, const std::string& file, std::string where = {});
+
+  const nlohmann::json& value() const { return *value_; }
+  const std::string& file() const { return *file_; }
+  bool has(const char* key) const;  ///< is an object with a member that is not null
+  /// @param meaning completes "it must be …" when the member is absent.
+  JsonNode at(const char* key, const char* meaning) const;
+  JsonNode at(std::size_t i) const;
+  /// Refuses members of an object that are none of these: a mistyped optional one would have no
+  /// effect, without a word.
+  void allow_only(const std::vector<std::string>& known) const;
+  std::size_t array_size() const;
+  double number(double low, double high) const;
+  int integer(int low, int high) const;
+  std::string text() const;
+  Vec2 vec2(double low, double high) const;
+  Vec3 vec3(double low, double high) const;
+
+  /// Throws "<file>: <where> <problem>".
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  const nlohmann::json* value_;
+  const std::string* file_;
+  std::string where_;
+};
+
+/// @throws InputError unless the document is an object with "format": `format`.
+void require_format(const JsonNode& root, const char* format);
+
+/// The document as text: members on lines of their own, arrays of numbers on one line, a matrix row
+/// by row. Numbers are the shortest that read back the same; those that are not finite are null.
+std::string to_text(const nlohmann::ordered_json& document);
+
+/// Thousandths for files (m to mm, s to ms), with the fewest digits that read back as the same
+/// value wherever a double in thousandths can.
+double to_milli(double x);
+inline double from_milli(double thousandths) {
+  return thousandths / 1000.0;
+}
+inline Vec3 from_milli(const Vec3& thousandths) {
+  return thousandths / 1000.0;
+}
+nlohmann::ordered_json milli_json(const Vec2& x);
+nlohmann::ordered_json milli_json(const Vec3& x);
+
+}  // namespace prostm

@@ -1,0 +1,36 @@
+#pragma once
+/// A segment as an endless stream.
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "prostm/emit/focus_sample.hpp"
+
+namespace prostm {
+
+/// One sentence on what is wrong with a segment; empty when nothing is.
+std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci);
+
+/// Repeats a segment. A new one takes over when the one that plays has come to its end, so that
+/// laps stay whole.
+class SegmentPlayer final : public SampleSource {
+ public:
+  /// Forgets what was loaded; the next segment has `foci` focal points a sample. @pre nothing
+  /// pulls.
+  void reset(int foci);
+  /// Loads samples, sample-major, from the next end on. Any thread. @pre not empty, whole samples.
+  void load(std::span<const FocusSample> samples);
+
+  int foci() const override { return foci_; }
+  void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
+
+ private:
+  int foci_ = 1;
+  std::mutex mutex_;  // guards what follows
+  std::vector<FocusSample> playing_, next_;
+  bool has_next_ = false;
+  std::size_t at_ = 0;  // in playing_
+};
+
+}  // namespace prostm

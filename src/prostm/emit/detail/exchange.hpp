@@ -1,0 +1,68 @@
+#pragma once
+/// What passes between the planner's thread and the device's. Private to emit.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+
+#include "prostm/core/latest.hpp"
+#include "prostm/emit/detail/take_over_log.hpp"
+#include "prostm/emit/emitter.hpp"
+
+namespace prostm {
+
+/// What is handed to the device's thread.
+struct Message {
+  LiftedPlan plan;
+  bool lost = false;
+  bool refused = false;
+};
+
+/// The longest way between two samples of a focal point that sounds: max_focus_step.
+class LongestStep {
+ public:
+  void look(const FocusSample& before, const FocusSample& now) {
+    constexpr float kSounding = 0.01F;  // intensity above which a focal point must not jump
+    if (std::max(now.intensity, before.intensity) <= kSounding) return;
+    const double squared = (now.p_D.cast<double>() - before.p_D.cast<double>()).squaredNorm();
+    squared_ = std::max(squared_, squared);
+  }
+  double length() const { return std::sqrt(squared_); }  ///< [m]
+
+ private:
+  double squared_ = 0.0;
+};
+
+/// What an emitter is told at the beginning of a block.
+enum class News : std::uint8_t { None, Plan, Lost };
+
+struct Emitter::Exchange {
+  Exchange(const EmitSettings& s, Method m) : settings(s), method(m) {}
+  const EmitSettings settings;
+  const Method method;
+  Latest<Message> inbox;
+  Latest<EmitStats> published;
+  TakeOverLog log;
+  std::shared_ptr<const Mute> mute;  // may be none
+
+  /// Takes the newest message, if one came; counts refused plans. Device's thread.
+  News receive(EmitStats& stats) {
+    const bool fresh = inbox.refresh();
+    const Message& message = inbox.value();
+    stats.refused_plans += fresh && message.refused ? 1 : 0;
+    if (mute && mute->on()) return News::Lost;
+    if (!fresh) return News::None;
+    return message.lost ? News::Lost : News::Plan;
+  }
+
+  /// Counts `samples` more of all focal points and makes the counters readable. Device's thread.
+  void publish(EmitStats& stats, std::size_t samples, const LongestStep& longest) {
+    stats.samples += static_cast<std::int64_t>(samples);
+    stats.max_focus_step = longest.length();
+    published.draft() = stats;
+    published.publish();
+  }
+};
+
+}  // namespace prostm

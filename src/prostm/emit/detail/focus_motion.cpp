@@ -1,0 +1,131 @@
+#include "prostm/emit/detail/focus_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prostm {
+namespace {
+
+constexpr double kSlowest = 1e-6;  // below this speed a focal point is at rest [m/s]
+constexpr double kRounding =
+    1e-6;  // of a sample: a lap this much longer than n samples still takes n
+constexpr double kNothing = 1e-9;  // an offset that counts as zero [m]
+
+}  // namespace
+
+void FocusMotion::configure(double sample_rate, double max_step) {
+  sample_rate_ = sample_rate;
+  max_step_ = max_step;
+}
+
+double FocusMotion::step_of(const LiftedPath& path) const {
+  return std::min(path.speed / sample_rate_, max_step_);
+}
+
+std::int64_t FocusMotion::lap_samples(const LiftedPath& path) const {
+  if (path.speed <= kSlowest) return 1;
+  return std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(std::ceil(path.length / step_of(path) - kRounding)));
+}
+
+bool FocusMotion::reaches(const LiftedPath& path, const PathPlace& place) const {
+  // (E3) shrinks the offset by at least the spare step
+  const double spare = max_step_ - step_of(path);
+  return place.distance <= std::min(kMaxOffset, spare * kMaxTransit * sample_rate_);
+}
+
+void FocusMotion::start(const LiftedPath& path, const PathPlace& place) {
+  path_ = path;
+  arc_start_ = place.s;
+  lap_end_ = base_ = place.p_D;
+  direction_ = last_step_.dot(place.tangent) < 0.0 ? -1.0 : 1.0;
+  edge_ = 0;
+  sample_ = 0;
+  lap_ = lap_samples(path);
+  if (path.speed <= kSlowest) {
+    path_.length = 0.0;
+    path_.p_D[0] = place.p_D;
+    path_.pressure[0] = point_at(path, place.s).pressure;
+  }
+}
+
+void FocusMotion::join(const LiftedPath& path, const PathPlace& place) {
+  start(path, place);
+  offset_ = p_D_ - base_;
+  moving_over_ = true;
+}
+
+void FocusMotion::jump(const LiftedPath& path, const PathPlace& place) {
+  last_step_.setZero();
+  start(path, place);
+  offset_.setZero();
+  moving_over_ = false;
+  p_D_ = base_;
+}
+
+Vec3 FocusMotion::ahead(std::int64_t samples) const {
+  const double share = static_cast<double>((sample_ + samples) % lap_) / static_cast<double>(lap_);
+  return point_at(path_, arc_start_ + direction_ * path_.length * share).p_D;
+}
+
+double FocusMotion::advance() {
+  // integer count to arc length
+  if (sample_ == lap_) sample_ = 0;
+  ++sample_;
+  const double share = static_cast<double>(sample_) / static_cast<double>(lap_);
+  double s = arc_start_ + direction_ * path_.length * share;
+  if (s < 0.0) s += path_.length;
+  if (s >= path_.length) s -= path_.length;  // also where the line above rounds up to it
+
+  // position: on the path, plus what is left of the offset
+  const PathPoint point = sample_at(s);
+  if (moving_over_) shrink_offset(point.p_D - base_);
+  base_ = point.p_D;
+  const Vec3 p_D = base_ + offset_;
+  last_step_ = p_D - p_D_;
+  p_D_ = p_D;
+  return point.pressure;
+}
+
+// The step is path_step − d·u with u the offset's direction and d what it shrinks by. Its norm is
+// the largest step when d² − 2 d (path_step·u) + |path_step|² − max² = 0, whose larger root is at
+// least max − |path_step| >= 0. Half of the largest step bounds d, so that a focal point which runs
+// ahead of its path slows down and does not turn back.
+void FocusMotion::shrink_offset(const Vec3& path_step) {
+  const double distance = offset_.norm();
+  if (distance < kNothing) {
+    offset_.setZero();
+    moving_over_ = false;
+    return;
+  }
+  const double along = path_step.dot(offset_) / distance;
+  const double spare = std::max(0.0, max_step_ * max_step_ - path_step.squaredNorm());
+  const double shrink = std::min(along + std::sqrt(along * along + spare), 0.5 * max_step_);
+  if (shrink >= distance) {
+    offset_.setZero();
+    moving_over_ = false;
+  } else {
+    offset_ *= 1.0 - std::max(shrink, 0.0) / distance;
+  }
+}
+
+// The same as point_at(), but the edge is found from the last one.
+PathPoint FocusMotion::sample_at(double s) {
+  if (path_.length <= 0.0) return {path_.p_D[0], path_.pressure[0]};
+  const std::size_t n = path_.s.size();
+  const auto end_of = [&](std::size_t i) { return i + 1 < n ? path_.s[i + 1] : path_.length; };
+  for (std::size_t tried = 0; tried < n && !(path_.s[edge_] <= s && s < end_of(edge_)); ++tried) {
+    if (direction_ > 0.0) {
+      edge_ = edge_ + 1 < n ? edge_ + 1 : 0;
+    } else {
+      edge_ = edge_ > 0 ? edge_ - 1 : n - 1;
+    }
+  }
+  const std::size_t next = edge_ + 1 < n ? edge_ + 1 : 0;
+  const double e = end_of(edge_) - path_.s[edge_];
+  const double t = e > 0.0 ? std::clamp((s - path_.s[edge_]) / e, 0.0, 1.0) : 0.0;
+  return {path_.p_D[edge_] + t * (path_.p_D[next] - path_.p_D[edge_]),
+          path_.pressure[edge_] + t * (path_.pressure[next] - path_.pressure[edge_])};
+}
+
+}  // namespace prostm

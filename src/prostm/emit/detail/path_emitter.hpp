@@ -1,0 +1,35 @@
+#pragma once
+/// Paths as focal points over time: sampling, transitions, fade-out.
+
+#include <memory>
+
+#include "prostm/emit/emitter.hpp"
+
+namespace prostm {
+
+/// Turns plans of paths into samples.
+///
+/// Guarantees, for any sequence of plans: while its intensity is above 1 % a focal point moves at
+/// most 8 m/s (0.2 mm between samples at 40 kHz), its intensity changes by at most 1/40 per sample,
+/// intensities lie in [0, 1], Σ intensity² is within the limit, and every number is finite.
+///
+/// A new plan's paths are matched to the focal points, (E5). Each focal point goes over at the end
+/// of its lap (at the next block with switch_at = "now", or when a lap takes over 1 s): by moving,
+/// when the new path is near, (E3), else by fading down, jumping while silent, and fading up. Those
+/// that all start from silence begin at their paths' first points, one that joins others which run
+/// where it keeps away from them, (E6). A focal point that no path needs fades down and rests where
+/// it is. docs/design.md, section 7.
+class PathEmitter final : public Emitter {
+ public:
+  /// @param sample_rate of the device [Hz]. @throws as validate() does.
+  PathEmitter(const EmitSettings& settings, double sample_rate);
+  ~PathEmitter() override;
+
+  void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace prostm

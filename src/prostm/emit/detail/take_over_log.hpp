@@ -1,0 +1,54 @@
+#pragma once
+/// Which plans are being drawn, and how much of each has been.
+
+#include <array>
+#include <cstdint>
+
+#include "prostm/core/spsc_ring.hpp"
+#include "prostm/emit/emitter.hpp"
+
+namespace prostm {
+
+/// Follows each plan from the first focal point that takes it over to when 90 % of its path length
+/// has been drawn, or until nothing follows it any more, and then reports it. Device's thread,
+/// except for next().
+class TakeOverLog {
+ public:
+  using Entry = int;  ///< index of an open plan
+  static constexpr Entry kNone = -1;
+
+  TakeOverLog();
+  /// A plan arrived before this sample, whose paths have this length in all [m]; earlier ones can
+  /// no longer be taken over.
+  void arrive(std::int64_t plan, double total_length, std::int64_t sample) noexcept;
+  /// A focal point takes the newest plan over at this sample.
+  Entry follow(std::int64_t sample) noexcept;
+  /// A focal point has drawn this length of the plan [m], none of it twice.
+  void draw(Entry entry, double length, std::int64_t sample) noexcept;
+  /// A focal point stops following.
+  void leave(Entry entry) noexcept;
+
+  /// The oldest report that was not read. Reader's thread.
+  bool next(TakeOver& out) { return reports_.pop(out); }
+
+ private:
+  struct Plan {
+    TakeOver report;
+    std::int64_t serial = 0;
+    double length = 0.0, drawn = 0.0;  // [m]
+    int followers = 0;
+    bool reported = false;
+  };
+  static constexpr double kRedrawn =
+      0.9;  // share of the path length, as in the run summary's redraw_ms
+  static constexpr std::size_t kReports = 1024;
+
+  void report(Plan& plan, std::int64_t redrawn_sample) noexcept;
+
+  std::array<Plan, kMaxPaths + 1> plans_{};  // each focal point follows one, and one can be new
+  std::int64_t serial_ = 0, plan_ = 0, arrival_ = 0;
+  double total_length_ = 0.0;
+  SpscRing<TakeOver> reports_;
+};
+
+}  // namespace prostm

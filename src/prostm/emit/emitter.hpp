@@ -1,0 +1,115 @@
+#pragma once
+/// Plans as focal points over time: what emitters of paths and of foci share.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "prostm/core/settings.hpp"
+#include "prostm/emit/focus_sample.hpp"
+#include "prostm/emit/mute.hpp"
+#include "prostm/plan/lifted_plan.hpp"
+#include "prostm/plan/method.hpp"
+
+namespace prostm {
+
+/// Of a focal point that sounds [m/s]; where a path asks for more its laps take longer.
+inline constexpr double kMaxFocusSpeed = 8.0;
+
+struct EmitSettings {
+  int foci = 4;                      ///< focal points, 1..8
+  double full_scale_pressure = 0.0;  ///< that maps to intensity 1 [unit of the target]; > 0
+  double silent_below = 0.01;        ///< share of full scale under which a sample is silent
+  double power_limit = 4.0;          ///< largest Σ intensity² over simultaneous focal points, > 0
+  double tilt_bound = 1.0;  ///< largest factor of pressure that makes up for tilted skin, (E8),
+                            ///< 1 to 4; 1: none
+  std::string switch_at = "lap";  ///< take-over at each path's lap end, or "now": at the next block
+  double fade_time = 1e-3;    ///< of a fade down or up over the full range [s], at least 40 samples
+  double stall_time = 0.100;  ///< without a new plan for this long, the output fades [s]
+  double stall_fade_time = 0.010;  ///< that fade, and the one after lose() [s], at most 40 ms
+  // of foci, which need no fades: their modulation falls silent by itself
+  double am_frequency = 200.0;  ///< of the modulation [Hz], 25 to a 126th of the sample rate
+  std::string am_waveform = "sine-magnitude";  ///< of the intensity, see Waveform
+
+  void visit(SettingsVisitor& v);
+  bool operator==(const EmitSettings&) const = default;
+};
+
+/// @throws std::invalid_argument with a sentence that names the setting, its value and its bound;
+/// the sample rate [Hz] must be 1 kHz to 1 MHz.
+void validate(const EmitSettings& settings, double sample_rate);
+
+/// The drive law, (E4): intensity = sqrt(pressure / full scale), since radiation pressure goes with
+/// the square of acoustic pressure; clipped to 1, 0 below the silent share and for negative
+/// pressure. `saturated` is set when it was clipped. @pre full_scale > 0, both finite.
+double drive_intensity(double pressure, double full_scale, double silent_below, bool& saturated);
+
+/// The largest intensity², or share of full scale's radiation pressure, that `paths` focal points
+/// may have at the same time when they want the same, (E4a): min(1, power_limit / paths).
+/// @pre paths ≥ 1, power_limit > 0.
+double even_share(int paths, double power_limit);
+
+/// Something that the pipeline wants to know of the emission, in sample counts.
+struct TakeOver {
+  std::int64_t plan = 0;             ///< id of the plan
+  std::int64_t arrival_sample = 0;   ///< first sample that was made after it had arrived
+  std::int64_t first_sample = 0;     ///< first sample that follows it
+  std::int64_t redrawn_sample = -1;  ///< when 90 % of its path length was drawn; −1: never
+};
+
+struct EmitStats {
+  std::int64_t samples = 0;    ///< emitted, per focal point summed
+  std::int64_t saturated = 0;  ///< clipped at full scale
+  std::int64_t limited = 0;    ///< scaled down by the power limit
+  std::int64_t faded = 0;      ///< in a fade of a transition
+  std::int64_t laps_started = 0, laps_cut = 0;
+  std::int64_t stalls = 0;         ///< fade-outs because no plan came
+  std::int64_t refused_plans = 0;  ///< with a number that is not finite or out of bounds
+  std::int64_t dropped_paths = 0;  ///< paths beyond the number of focal points, not drawn
+  double max_focus_step = 0.0;     ///< between samples while intensity > 1 % [m]
+};
+
+/// Turns plans into samples. submit() and lose() belong to one thread, fill() to another; neither
+/// waits.
+class Emitter : public SampleSource {
+ public:
+  ~Emitter() override;
+
+  /// The slot for the next plan; fill it, then submit(). What is in it before is of no meaning.
+  /// Planner's thread.
+  LiftedPlan& draft();
+  /// Hands the draft over; a plan that the device had not fetched yet is replaced. Arc lengths are
+  /// computed anew. A plan of the other method, with a number that is not finite, a coordinate
+  /// beyond 10 m, or pressures that do not match its points is counted as refused and treated as
+  /// lose(). Planner's thread.
+  void submit() noexcept;
+  /// The hand is gone, or a number was not finite: fade out within 50 ms, until the next plan.
+  /// Planner's thread.
+  void lose() noexcept;
+  /// Obeys a mute from the next block on: while it is on, output fades as after lose(), and plans
+  /// that come are lost; the first plan after it sounds. @pre before the first fill().
+  void obey(std::shared_ptr<const Mute> mute) noexcept;
+
+  int foci() const final;
+
+  /// The oldest report that was not read, once 90 % of a plan has been drawn or nothing follows it
+  /// any more; false when there is none. Keeps 1024, later ones are lost. Planner's thread.
+  bool next_take_over(TakeOver& out);
+  /// A copy of the counters as of the last block. Any one thread.
+  EmitStats stats() const;
+
+ protected:
+  struct Exchange;
+  /// @param method of the plans that it takes. @throws as validate() does.
+  Emitter(const EmitSettings& settings, double sample_rate, Method method);
+  Exchange& exchange() { return *exchange_; }
+
+ private:
+  std::unique_ptr<Exchange> exchange_;
+};
+
+/// An emitter for the plans of a method. @throws as its constructor does.
+std::unique_ptr<Emitter> make_emitter(Method method, const EmitSettings& settings,
+                                      double sample_rate);
+
+}  // namespace prostm

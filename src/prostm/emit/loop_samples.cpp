@@ -1,0 +1,142 @@
+#include "prostm/emit/loop_samples.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "prostm/emit/detail/focus_emitter.hpp"
+#include "prostm/emit/drive.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kSmallStretch = 0.01;
+constexpr int kLongestLaps = 8;      // of the longest lap, that a loop may have
+constexpr double kLongestLap = 1.0;  // [s]
+constexpr double kSlowest = 1e-6;    // below this speed a focal point is at rest [m/s]
+
+/// Samples of a lap as the plan says; 0 for a focal point at rest.
+double lap_of(const LiftedPath& path, double sample_rate) {
+  if (path.p_D.empty() || path.length <= 0.0 || path.speed <= kSlowest) return 0.0;
+  return path.length / std::min(path.speed, kMaxFocusSpeed) * sample_rate;
+}
+
+int laps_in(int samples, double lap) {
+  return lap > 0.0 ? std::max(1, static_cast<int>(std::lround(samples / lap))) : 0;
+}
+
+double stretch_in(int samples, double lap) {
+  return lap > 0.0 ? samples / (laps_in(samples, lap) * lap) - 1.0 : 0.0;
+}
+
+int loop_length(const std::vector<double>& laps) {
+  const double longest = *std::max_element(laps.begin(), laps.end());
+  const int least =
+      std::max(1, static_cast<int>(std::ceil(longest / kLoopUnit - 1e-6))) * kLoopUnit;
+  int best = least;
+  double least_stretch = 1.0;
+  for (int samples = least; samples <= kLongestLaps * least; samples += kLoopUnit) {
+    double worst = 0.0;
+    for (const double lap : laps) worst = std::max(worst, std::abs(stretch_in(samples, lap)));
+    if (worst < least_stretch) {
+      best = samples;
+      least_stretch = worst;
+    }
+    if (worst <= kSmallStretch) break;
+  }
+  return best;
+}
+
+void check(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
+  validate(settings, sample_rate);
+  const std::size_t count = plan.paths.size() + plan.foci.size();
+  if (count < 1 || count > static_cast<std::size_t>(settings.foci)) {
+    throw std::invalid_argument("a plan has " + std::to_string(count) +
+                                (plan.foci.empty() ? " paths" : " foci") + "; a loop is of 1 to " +
+                                std::to_string(settings.foci) + ", the number of focal points");
+  }
+  for (const LiftedPath& path : plan.paths) {
+    if (lap_of(path, sample_rate) <= kLongestLap * sample_rate) continue;
+    throw std::invalid_argument(
+        "a path takes more than 1 s; for a loop it must be shorter or its focal point faster");
+  }
+}
+
+/// Whole periods of the modulation.
+LoopSamples loop_of_foci(const LiftedPlan& plan, EmitSettings settings, double sample_rate) {
+  settings.foci = static_cast<int>(plan.foci.size());
+  settings.stall_time = 1.0;  // longer than any loop
+  FocusEmitter emitter(settings, sample_rate);
+  emitter.draft() = plan;
+  emitter.submit();
+  LoopSamples loop;
+  loop.foci = settings.foci;
+  loop.samples = std::lcm(emitter.period(), kLoopUnit);
+  loop.sample_rate = sample_rate;
+  loop.sample.resize(plan.foci.size() * static_cast<std::size_t>(loop.samples));
+  loop.laps.assign(plan.foci.size(), 0);
+  loop.stretch.assign(plan.foci.size(), 0.0);
+  emitter.fill(0, loop.sample);
+  return loop;
+}
+
+/// One sample of every focal point: where it is, and what its path wants.
+void advance(const LiftedPlan& plan, const EmitSettings& settings, LoopSamples& loop, int k,
+             std::span<Drive> drives) {
+  bool saturated = false;
+  for (std::size_t f = 0; f < drives.size(); ++f) {
+    const LiftedPath& path = plan.paths[f];
+    FocusSample& out = loop.sample[static_cast<std::size_t>(k) * drives.size() + f];
+    if (path.p_D.empty()) continue;
+    const double share = static_cast<double>(k) * loop.laps[f] / loop.samples;
+    const PathPoint point = point_at(path, path.length * (share - std::floor(share)));
+    out.p_D = point.p_D.cast<float>();
+    drives[f].wanted = drive_intensity(point.pressure, settings.full_scale_pressure,
+                                       settings.silent_below, saturated);
+  }
+}
+
+}  // namespace
+
+double LoopSamples::largest_stretch() const {
+  double largest = 0.0;
+  for (const double s : stretch) largest = std::max(largest, std::abs(s));
+  return largest;
+}
+
+LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
+  check(plan, settings, sample_rate);
+  if (!plan.foci.empty()) return loop_of_foci(plan, settings, sample_rate);
+  std::vector<double> laps;
+  for (const LiftedPath& path : plan.paths) laps.push_back(lap_of(path, sample_rate));
+  LoopSamples loop;
+  loop.foci = static_cast<int>(laps.size());
+  loop.samples = loop_length(laps);
+  loop.sample_rate = sample_rate;
+  loop.sample.resize(laps.size() * static_cast<std::size_t>(loop.samples));
+  for (const double lap : laps) {
+    loop.laps.push_back(laps_in(loop.samples, lap));
+    loop.stretch.push_back(stretch_in(loop.samples, lap));
+  }
+
+  // twice round, so that the second time starts with the intensities that it ends with
+  const double slew = largest_slew(settings.fade_time, sample_rate);
+  std::array<Drive, kMaxPaths> drive{};
+  const std::span<Drive> drives(drive.data(), laps.size());
+  for (Drive& d : drives) d.max_fall = slew;
+  for (int k = 0; k < 2 * loop.samples; ++k) {
+    const int sample = k % loop.samples;
+    advance(plan, settings, loop, sample, drives);
+    limit_drives(drives, slew, settings.power_limit);
+    for (std::size_t f = 0; f < drives.size(); ++f) {
+      loop.sample[static_cast<std::size_t>(sample) * drives.size() + f].intensity =
+          static_cast<float>(drives[f].intensity);
+    }
+  }
+  return loop;
+}
+
+}  // namespace prostm

@@ -1,0 +1,40 @@
+#pragma once
+/// A plan as it sounds once it is running: samples of one loop that all paths share.
+
+#include <vector>
+
+#include "prostm/emit/emitter.hpp"
+#include "prostm/emit/focus_sample.hpp"
+#include "prostm/plan/lifted_plan.hpp"
+
+namespace prostm {
+
+/// Samples after which all focal points of a plan are where they were.
+struct LoopSamples {
+  int foci = 0;     ///< one for each path or focus
+  int samples = 0;  ///< of the loop
+  double sample_rate = 0.0;
+  std::vector<FocusSample> sample;  ///< sample-major: [k·foci + f]
+  std::vector<int> laps;            ///< that each focal point plays in the loop; 0 at rest
+  /// How much longer each lap is than the plan says, as a share of it: below 0, shorter.
+  std::vector<double> stretch;
+
+  double largest_stretch() const;  ///< of their magnitudes; 0 without foci
+};
+
+/// What PathEmitter gives for a plan that goes on, each path from its first point, with periods
+/// adjusted so that all play whole laps in one loop, (E7): the shortest loop of a multiple of
+/// kLoopUnit samples, from one to eight of the longest laps, in which no lap changes by more than
+/// 1 %, or where there is none the one with the least change.
+/// A plan of foci gives what FocusEmitter does: the fewest whole periods of the modulation, (B4),
+/// that are a multiple of kLoopUnit samples.
+/// @param plan its paths are measured, with finite numbers; one of no length or no speed is a
+/// focal point at rest, one of no points a silent one.
+/// @throws as validate(settings, sample_rate) does, and std::invalid_argument for a plan without
+/// paths or foci, with more than settings.foci, or with a lap that takes more than a second.
+LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate);
+
+/// Loops can be cut in parts of this many samples, 0.2 ms at 40 kHz.
+inline constexpr int kLoopUnit = 8;
+
+}  // namespace prostm

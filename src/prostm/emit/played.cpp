@@ -1,0 +1,164 @@
+#include "prostm/emit/played.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "prostm/emit/compensation.hpp"
+#include "prostm/emit/detail/focus_motion.hpp"
+#include "prostm/emit/drive.hpp"
+#include "prostm/emit/loop_samples.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kLongestLap = 1.0;  // [s]
+constexpr int kLimitedLaps = 8;      // of the longest, to take the mean of under the power limit
+
+/// One focal point on its way round.
+struct Lap {
+  std::vector<double> wanted;  // intensity at each sample, sample 0 at the path's first point
+  std::vector<double> power;   // Σ intensity² that was emitted there …
+  std::vector<int> times;      // … in so many laps
+};
+
+/// What the path wants, sample by sample.
+Lap lap_of(const LiftedPath& path, const EmitSettings& settings, double sample_rate) {
+  FocusMotion motion;
+  motion.configure(sample_rate, kMaxFocusSpeed / sample_rate);
+  const auto most = static_cast<std::int64_t>(std::ceil(kLongestLap * sample_rate));
+  const auto samples = static_cast<std::size_t>(std::min(motion.lap_samples(path), most));
+  Lap lap{std::vector<double>(samples), std::vector<double>(samples), std::vector<int>(samples)};
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(samples);
+    bool saturated = false;
+    lap.wanted[k] = drive_intensity(point_at(path, path.length * share).pressure,
+                                    settings.full_scale_pressure, settings.silent_below, saturated);
+  }
+  return lap;
+}
+
+/// Goes round all paths at once and keeps what is emitted after the longest lap.
+void play(const EmitSettings& settings, double sample_rate, std::span<Lap> laps) {
+  std::size_t longest = 0;
+  double power = 0.0;  // at most, if all were strongest at once
+  for (const Lap& lap : laps) {
+    longest = std::max(longest, lap.wanted.size());
+    const double most = *std::max_element(lap.wanted.begin(), lap.wanted.end());
+    power += most * most;
+  }
+  const std::size_t end = longest * (power > settings.power_limit ? 1 + kLimitedLaps : 2);
+  const double slew = largest_slew(settings.fade_time, sample_rate);
+  std::array<Drive, kMaxPaths> drive{};
+  const std::span<Drive> drives(drive.data(), laps.size());
+  for (Drive& d : drives) d.max_fall = slew;
+  std::array<std::size_t, kMaxPaths> at{};
+  for (std::size_t k = 0; k < end; ++k) {
+    for (std::size_t f = 0; f < laps.size(); ++f) {
+      at[f] = at[f] + 1 < laps[f].wanted.size() ? at[f] + 1 : 0;
+      drives[f].wanted = laps[f].wanted[at[f]];
+    }
+    limit_drives(drives, slew, settings.power_limit);
+    if (k < longest) continue;
+    for (std::size_t f = 0; f < laps.size(); ++f) {
+      laps[f].power[at[f]] += drives[f].intensity * drives[f].intensity;
+      ++laps[f].times[at[f]];
+    }
+  }
+}
+
+/// What (E8) multiplies the pressure of each path and focus by, in their place.
+LiftedPlan tilt_factors(LiftedPlan plan, const TargetFrame& frame, double bound) {
+  for (LiftedPath& path : plan.paths) std::fill(path.pressure.begin(), path.pressure.end(), 1.0);
+  for (LiftedFocus& focus : plan.foci) focus.pressure = 1.0;
+  compensate_tilt(plan, frame, bound);
+  return plan;
+}
+
+/// Emitted intensity² at arc length s, linear between the samples of the lap.
+double power_at(const Lap& lap, const LiftedPath& path, double s) {
+  const std::size_t n = lap.power.size();
+  const double place = path.length > 0.0 ? s / path.length * static_cast<double>(n) : 0.0;
+  const auto low = static_cast<std::size_t>(place);
+  const double share = place - static_cast<double>(low);
+  const auto of = [&](std::size_t k) { return lap.power[k % n] / lap.times[k % n]; };
+  return (1.0 - share) * of(low) + share * of(low + 1);
+}
+
+/// Appends the segments of one path: as many pressures as there are samples on each.
+void append(const Lap& lap, const LiftedPath& path, const LiftedPath& factor, std::size_t segments,
+            double full_scale, SegmentPressures& out) {
+  const std::size_t points = path.p_D.size(), pieces = points / segments;
+  for (std::size_t segment = 0; segment < segments; ++segment) {
+    // arc length at so many pieces of the segment
+    const auto s_at = [&](double piece) {
+      const std::size_t i = segment * pieces + static_cast<std::size_t>(piece);
+      if (i >= points || pieces == 0) return path.length;
+      const double next = i + 1 < points ? path.s[i + 1] : path.length;
+      return path.s[i] + (piece - std::floor(piece)) * (next - path.s[i]);
+    };
+    const double length = s_at(static_cast<double>(pieces)) - s_at(0.0);
+    const double samples =
+        path.length > 0.0 ? length / path.length * static_cast<double>(lap.power.size()) : 0.0;
+    const auto steps = static_cast<std::size_t>(std::ceil(samples)) + 1;
+    for (std::size_t k = 0; k <= steps; ++k) {
+      const double s = s_at(static_cast<double>(pieces * k) / static_cast<double>(steps));
+      out.pressure.push_back(full_scale * power_at(lap, path, s) / point_at(factor, s).pressure);
+    }
+    out.end.push_back(out.pressure.size());
+  }
+}
+
+void append_foci(const LiftedPlan& lifted, const LiftedPlan& factors, EmitSettings settings,
+                 double sample_rate, SegmentPressures& out) {
+  if (lifted.foci.empty()) return;
+  settings.foci = static_cast<int>(lifted.foci.size());
+  const LoopSamples loop = loop_samples(lifted, settings, sample_rate);
+  for (std::size_t f = 0; f < lifted.foci.size(); ++f) {
+    double peak = 0.0;
+    for (std::size_t i = f; i < loop.sample.size(); i += lifted.foci.size()) {
+      peak = std::max(peak, static_cast<double>(loop.sample[i].intensity));
+    }
+    out.pressure.push_back(settings.full_scale_pressure * peak * peak / factors.foci[f].pressure);
+    out.end.push_back(out.pressure.size());
+  }
+}
+
+}  // namespace
+
+double own_full_scale(double gain, double largest) {
+  return std::clamp(gain * largest, 1e-300, 1e300);
+}
+
+SegmentPressures played_pressures(const Plan& plan, const TargetFrame& frame, EmitSettings settings,
+                                  double sample_rate) {
+  validate(settings, sample_rate);
+  LiftedPlan lifted;
+  lift(plan, frame, lifted);
+  const LiftedPlan factors = tilt_factors(lifted, frame, settings.tilt_bound);
+  compensate_tilt(lifted, frame, settings.tilt_bound);
+  std::vector<Lap> laps;
+  for (const LiftedPath& path : lifted.paths) laps.push_back(lap_of(path, settings, sample_rate));
+  if (!laps.empty()) play(settings, sample_rate, laps);
+
+  SegmentPressures out;
+  std::size_t k = 0;  // of the lifted paths, which leave out those without points
+  for (const FocalPath& path : plan.paths) {
+    if (path.points.empty()) continue;
+    append(laps[k], lifted.paths[k], factors.paths[k], path.points.size(),
+           settings.full_scale_pressure, out);
+    ++k;
+  }
+  append_foci(lifted, factors, settings, sample_rate, out);
+  return out;
+}
+
+SegmentPressures played_pressures(const Plan& plan, const TargetField& field, EmitSettings settings,
+                                  double sample_rate) {
+  TargetFrame frame;
+  frame.patches.push_back(field);
+  return played_pressures(plan, frame, std::move(settings), sample_rate);
+}
+
+}  // namespace prostm

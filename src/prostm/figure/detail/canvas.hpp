@@ -1,0 +1,59 @@
+#pragma once
+/// A page to draw on, PNG or SVG. Private to figure. Coordinates are points, y down.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "prostm/core/geometry.hpp"
+#include "prostm/figure/detail/colours.hpp"
+
+namespace prostm::figure {
+
+enum class Align : std::uint8_t { Left, Centre, Right };
+
+struct TextStyle {
+  double size = 12.0;
+  Colour colour = kInk;
+  Align align = Align::Left;
+  bool bold = false;
+  bool upwards = false;  ///< turned by 90°, read from below
+};
+
+struct Box {
+  double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
+};
+
+class Canvas {
+ public:
+  /// @throws InputError unless `path` ends in .png or .svg. PNG pages have two pixels a point.
+  Canvas(const std::string& path, double width, double height);
+  ~Canvas();
+
+  void fill(const Box& box, const Colour& colour);
+  void frame(const Box& box, const Colour& colour, double line_width);
+  void line(std::span<const Vec2> points, bool closed, const Colour& colour, double line_width);
+  void disc(const Vec2& centre, double radius, const Colour& colour);
+  void triangle(const Vec2& a, const Vec2& b, const Vec2& c, const Colour& colour);
+  /// `at` is the base line's start, middle or end.
+  void text(const Vec2& at, const std::string& text, const TextStyle& style);
+  double text_width(const std::string& text, const TextStyle& style);
+  /// Stretches a picture of cols × rows cells over the box, row 0 at the bottom; sharp cells, of
+  /// any number.
+  void cells(const Box& box, int rows, int cols,
+             const std::function<Colour(int row, int col)>& colour);
+  /// Everything drawn until unclip() is cut at the box.
+  void clip(const Box& box);
+  void unclip();
+
+  /// Writes the file: whole, or not at all. @throws InputError when it cannot be written.
+  void save();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace prostm::figure

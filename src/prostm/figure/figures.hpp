@@ -1,0 +1,137 @@
+#pragma once
+/// Labelled pictures of fields, plans and the scene; PNG or SVG by the ending of the name.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/physical.hpp"
+#include "prostm/score/score.hpp"
+#include "prostm/target/target_field.hpp"
+
+namespace prostm {
+
+/// Tries whether a picture could be written, before the work that it is to show. @throws
+/// InputError: the name ends in neither .png nor .svg, or the file cannot be written.
+void check_figure(const std::string& path);
+
+/// What the panels of the paper's Fig. 2 show.
+struct PlanFigure {
+  const TargetField* target = nullptr;
+  const Plan* plan = nullptr;
+  const PlanTrace* trace = nullptr;
+  std::vector<double> reconstruction;  ///< Eq. (1), rows·cols
+  Metrics metrics;
+  std::vector<Control> controls;  ///< drawn as a table under the panels
+  std::string title;
+};
+/// (a) target, (b) clusters, (c) initial tour, (d) split tours, (e) refined paths, (f)
+/// reconstruction; where the trace is empty, since the preset has no such steps, only target, paths
+/// and reconstruction; foci take the place of paths. With axes in mm, one colour bar for the
+/// fields, a length for each path, and the table. The panels of `beside`, a plan for the same
+/// target, stand under them and its metrics in the table. @throws InputError when the file cannot
+/// be written.
+void draw_plan(const PlanFigure& figure, const std::string& path,
+               const PlanFigure* beside = nullptr);
+
+/// What one planner makes of a target.
+struct GalleryPlan {
+  std::string name;
+  Plan plan;
+  std::vector<double> rendered;  ///< Eq. (1), rows·cols of the target
+  Metrics metrics;
+};
+/// A target, and what each planner makes of it.
+struct GalleryField {
+  std::string name;
+  TargetField target;
+  std::vector<GalleryPlan> plans;  ///< the same planners in the same order for every field
+};
+/// What stands beside the RMSE under each plan.
+enum class GalleryCaption : std::uint8_t { Skill, Correlation };
+struct GalleryPage {
+  std::string title;
+  std::string note = {};  ///< a line under the one that explains the picture
+  GalleryCaption caption = GalleryCaption::Skill;
+  std::size_t fields_in_row = 3;  ///< ≥ 1
+};
+/// For each field its target and beside it every plan's field with the paths or foci, all coloured
+/// by pressure over the target's maximum; RMSE and S_8.5 under each plan, those of the better RMSE
+/// in bold, or RMSE and correlation, none in bold. @throws std::invalid_argument: no field, plans
+/// that differ in number, or sizes that disagree. @throws InputError when the file cannot be
+/// written.
+void draw_gallery(const GalleryPage& page, const std::vector<GalleryField>& fields,
+                  const std::string& path);
+
+/// What an array puts on the skin, and what it should.
+struct PhysicalFigure {
+  const TargetField* raster = nullptr;  ///< the skin; the target where there is one
+  const Plan* plan = nullptr;
+  const PhysicalField* field = nullptr;
+  const Metrics* metrics = nullptr;  ///< of the envelope; without them there is no target to show
+  std::string title;
+};
+/// Panels beside each other: the target, the envelope and the mean, each over its own largest
+/// value, and the envelope, scaled as it is scored, minus the target, over the target's largest;
+/// without a target only the two in the middle. With axes in mm and the paths. @throws InputError
+/// when the file cannot be written.
+void draw_physical(const PhysicalFigure& figure, const std::string& path);
+
+/// One line of a chart; x ascends.
+struct ChartSeries {
+  std::string name;
+  std::vector<double> x, y;              ///< as many of each; > 0 on a logarithmic axis
+  std::vector<std::string> labels = {};  ///< of the points: none, or one for each; what
+                                         ///< would touch the one before is left out
+};
+struct Chart {
+  std::string title, x_label, y_label;
+  bool logarithmic_x = true;  ///< else linear
+  std::vector<ChartSeries> series;
+  bool logarithmic_y = true;  ///< else linear
+};
+/// Charts side by side, with a faint line of slope 1 where both axes are logarithmic.
+/// @throws std::invalid_argument: no chart, or a chart without points or with values that are not
+/// finite or have no logarithm where one is taken, or labels for only some points. @throws
+/// InputError when the file cannot be written.
+void draw_charts(const std::vector<Chart>& charts, const std::string& path);
+
+/// A map over a raster of a plane.
+struct FieldMap {
+  std::string title, note;  ///< above and below it
+  int rows = 0, cols = 0;
+  double cell = 0.0;               ///< [m]
+  std::vector<double> values;      ///< rows·cols, >= 0; the largest is at the end of the colours
+  std::vector<Vec2> outline = {};  ///< a closed line over it, or none [m] from its middle
+};
+struct MapFigure {
+  std::string title, scale;  ///< of the whole, and what stands beside the colour bar
+  int columns = 1;
+  std::vector<FieldMap> maps;
+};
+/// Maps in rows, with one colour bar. @throws std::invalid_argument: no map or column, or a map
+/// whose values are not one for each cell. @throws InputError when the file cannot be written.
+void draw_maps(const MapFigure& maps, const std::string& path);
+
+/// One instant of the whole pipeline.
+struct SceneFigure {
+  // the scene from the side: the x–z plane through the hand's middle, frame D
+  int nx = 0, nz = 0;              ///< cells of the slice
+  double cell = 0;                 ///< [m]
+  Vec2 origin = Vec2::Zero();      ///< centre of the slice's cell (0, 0), (x, z) [m]
+  std::vector<float> smoke;        ///< nx·nz, 0..1, x fastest: largest along y
+  std::vector<std::uint8_t> hand;  ///< nx·nz, 1 where a hand is in front or behind
+  std::vector<Vec3> foci;          ///< the focal points of the last lap in D [m]
+  std::vector<Vec2> array;         ///< transducers (x, z) [m]
+  // the field on the skin
+  std::vector<TargetField> targets;  ///< a patch per hand
+  std::vector<std::vector<double>> reconstructions;
+  Plan plan;
+  std::string title;
+};
+/// The scene from the side with array, smoke, hand and focal points; beside it target and
+/// reconstruction with the paths.
+void draw_scene(const SceneFigure& figure, const std::string& path);
+
+}  // namespace prostm

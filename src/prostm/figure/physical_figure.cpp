@@ -1,0 +1,134 @@
+/// What an array puts on the skin, beside what it should.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "prostm/figure/detail/panel.hpp"
+#include "prostm/figure/figures.hpp"
+
+namespace prostm {
+namespace {
+
+using figure::Box;
+using figure::Canvas;
+using figure::Colour;
+using figure::Panel;
+
+// the page in points
+constexpr double kPanel = 270.0, kGap = 62.0, kLeft = 66.0, kTop = 96.0, kBelow = 62.0, kBar = 76.0;
+
+/// From blue, too little, through white to red, too much.
+Colour difference_colour(double t) {
+  constexpr Colour kLess{0.13, 0.30, 0.62}, kMore{0.70, 0.12, 0.14};
+  const double size = std::min(std::abs(t), 1.0);
+  return figure::mix(figure::kPaper, t < 0.0 ? kLess : kMore, size);
+}
+
+void difference_bar(Canvas& canvas, const Box& box) {
+  constexpr int kSteps = 256;
+  canvas.cells(box, kSteps, 1,
+               [](int row, int) { return difference_colour(2.0 * (row + 0.5) / kSteps - 1.0); });
+  canvas.frame(box, figure::kInk, 0.8);
+  for (int i = -1; i <= 1; ++i) {
+    canvas.text(Vec2(box.x + box.width + 7.0, box.y + box.height * 0.5 * (1.0 - i) + 4.0),
+                figure::number_text(i, 0), {.size = 11.0});
+  }
+  canvas.text(
+      Vec2(box.x + box.width + 34.0, box.y + 0.5 * box.height), "difference / max p*",
+      {.size = 11.0, .colour = figure::kFaintInk, .align = figure::Align::Centre, .upwards = true});
+}
+
+/// The envelope as it is scored, minus the target, over the target's largest.
+std::vector<double> differences(const TargetField& target, const std::vector<double>& envelope) {
+  double with_target = 0.0, with_itself = 0.0;
+  for (std::size_t c = 0; c < target.size(); ++c) {
+    with_target += target.pressure[c] * envelope[c];
+    with_itself += envelope[c] * envelope[c];
+  }
+  const double gain = with_itself > 0.0 ? with_target / with_itself : 0.0;
+  const double full = std::max(max_pressure(target), 1e-300);
+  std::vector<double> out(target.size());
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    out[c] = (gain * envelope[c] - target.pressure[c]) / full;
+  }
+  return out;
+}
+
+class Page {
+ public:
+  Page(const PhysicalFigure& given, const std::string& path)
+      : given_(given),
+        panels_(given.metrics != nullptr ? 4 : 2),
+        extent_(figure::extent_of(*given.raster)),
+        height_(figure::fitted({0.0, 0.0, kPanel, kPanel}, extent_).height),
+        canvas_(path, kLeft + panels_ * (kPanel + kGap) + kBar * (panels_ > 2 ? 2 : 1),
+                kTop + height_ + kBelow) {}
+
+  void draw() {
+    canvas_.text(Vec2(kLeft, 36.0), given_.title, {.size = 18.0, .bold = true});
+    if (given_.metrics != nullptr) {
+      const Metrics& m = *given_.metrics;
+      canvas_.text(
+          Vec2(kLeft, 58.0),
+          fmt::format("envelope: RMSE {} · correlation {} · S₈.₅ {} · overlap {} · spill {}",
+                      figure::number_text(m.rmse, 3), figure::number_text(m.correlation, 3),
+                      figure::number_text(m.skill_8, 3), figure::number_text(m.overlap, 3),
+                      figure::number_text(m.spill, 3)),
+          {.size = 12.0, .colour = figure::kFaintInk});
+      heat("target p*", given_.raster->pressure, max_pressure(*given_.raster));
+    }
+    const PhysicalField& field = *given_.field;
+    heat(fmt::format("envelope, up to {} Pa", figure::number_text(field.largest, 1)),
+         field.envelope, field.largest);
+    heat(fmt::format("mean, up to {} Pa", figure::number_text(field.largest_mean, 2)), field.mean,
+         field.largest_mean);
+    figure::colour_bar(canvas_, {next_ - kGap + 14.0, kTop, 12.0, height_}, "p / largest");
+    if (given_.metrics != nullptr) difference();
+    canvas_.save();
+  }
+
+ private:
+  Panel panel() { return {canvas_, {next_, kTop, kPanel, kPanel}, extent_}; }
+
+  void finish(Panel& panel, const std::string& title) {
+    panel.plan_on_field(*given_.plan, 0);
+    panel.axes({.title = title});
+    next_ += kPanel + kGap;
+  }
+
+  void heat(const std::string& title, const std::vector<double>& values, double full) {
+    Panel p = panel();
+    p.heat_map(*given_.raster, values, std::max(full, 1e-300));
+    finish(p, title);
+  }
+
+  void difference() {
+    next_ += kBar;
+    const TargetField& target = *given_.raster;
+    const std::vector<double> values = differences(target, given_.field->envelope);
+    Panel p = panel();
+    p.cells(target.rows, target.cols, [&](int row, int col) {
+      const std::size_t c = target.index(row, col);
+      return target.skin[c] != 0 ? difference_colour(values[c]) : figure::kNoSkin;
+    });
+    finish(p, "envelope, scaled, − target");
+    difference_bar(canvas_, {next_ - kGap + 14.0, kTop, 12.0, height_});
+  }
+
+  const PhysicalFigure& given_;
+  int panels_;
+  figure::Extent extent_;
+  double height_;
+  Canvas canvas_;
+  double next_ = kLeft;
+};
+
+}  // namespace
+
+void draw_physical(const PhysicalFigure& given, const std::string& path) {
+  Page(given, path).draw();
+}
+
+}  // namespace prostm

@@ -1,0 +1,46 @@
+#pragma once
+/// Semi-Lagrangian advection: one backtrace per cell, shared by all fields; kernels written plain
+/// and with vectors.
+
+#include "prostm/fluid/detail/padded_grid.hpp"
+
+namespace prostm::fluid {
+
+/// Where a field's values sit, in the indices of its own array: `count` of them per axis, and the
+/// range that a backtraced position is clamped to.
+struct Placement {
+  int axis = -1;  ///< of the face-centred component; −1 for cell centres
+  int count[3] = {0, 0, 0};
+  float lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
+};
+
+Placement face_placement(int n, int axis);
+/// Cell centres whose halo holds the values outside: smoke.
+Placement centre_placement(int n);
+
+/// Velocities and displacements here are in cells per step; planes [k0, k1) are written.
+struct AdvectionKernels {
+  /// Displacement of the particle that arrives at each cell centre, by the midpoint rule (F2): the
+  /// velocity half a step back along its own, trilinear between the cell-centred velocities. Fills
+  /// the halo of its own rows in x and y.
+  void (*trace)(const PaddedGrid& grid, const float* const velocity[3],
+                float* const displacement[3], int k0, int k1);
+  /// out(x) = in(x − d), trilinear (F3); d at a face is the mean of the two cells beside it.
+  void (*sample)(const PaddedGrid& grid, const Placement& place, const float* const displacement[3],
+                 const float* in, float* out, int k0, int k1);
+};
+
+const AdvectionKernels& scalar_advection_kernels();
+/// The vector kernels for this processor; the plain ones where Highway knows only its one-lane
+/// fallback.
+const AdvectionKernels& fast_advection_kernels();
+
+/// Trilinear value at (x, y, z), in the indices of the array. @pre lower ≤ position ≤ upper of the
+/// field's placement.
+float trilinear(const PaddedGrid& grid, const float* field, float x, float y, float z);
+
+/// Copies the first and last value of each row, and the first and last row of planes [k0, k1), into
+/// the halo.
+void extend_plane(const PaddedGrid& grid, float* field, int k0, int k1);
+
+}  // namespace prostm::fluid

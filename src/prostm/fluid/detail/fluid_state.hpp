@@ -1,0 +1,80 @@
+#pragma once
+/// What a Fluid keeps between steps, and the parts of a step.
+
+#include <span>
+#include <vector>
+
+#include "prostm/fluid/detail/advection.hpp"
+#include "prostm/fluid/detail/obstacle.hpp"
+#include "prostm/fluid/detail/pressure_solver.hpp"
+#include "prostm/fluid/detail/projection.hpp"
+#include "prostm/fluid/detail/surroundings.hpp"
+#include "prostm/fluid/fluid.hpp"
+
+namespace prostm {
+
+struct Fluid::State {
+  State(const FluidSettings& settings, const Scene& scene, WorkerPool& pool);
+
+  /// Everything at rest, without smoke.
+  void reset();
+
+  // a step, see Fluid
+  void prepare(double step_dt);
+  void meet(const HandRaster& raster);
+  FluidStats settle();
+
+  // parts of a step, in order
+  void advect();
+  void add_forces();
+  void place_hands(const HandRaster& raster);
+  void solve();
+  bool publish();
+  void project();
+  bool check();
+  void measure();
+
+  void confine_vorticity();
+  void push_swept(const HandRaster& raster);
+  void mark_fluid_cells(const HandRaster& raster);
+  double pressure_per_velocity() const;
+  std::int32_t largest_over_planes() const;
+  /// Runs f(k0, k1) over all planes.
+  template <class F>
+  void over_planes(F&& f);
+
+  FluidSettings settings;
+  WorkerPool& pool;
+  GridShape grid;
+  fluid::PaddedGrid padded;
+  fluid::Surroundings surroundings;
+
+  // state
+  fluid::Field velocity[3];  // at faces [m/s]
+  fluid::Field smoke;        // at cells, 0..1; the halo holds what would flow in
+  fluid::Obstacle obstacle;
+  fluid::PressureSolver solver;
+
+  // of the step that is being made
+  double dt = 0.0;                 // [s]
+  bool usable = false;             // nothing came up that resets
+  double divergence_before = 0.0;  // Σ of squares, before the projection
+  FluidStats stats;
+
+  // scratch
+  fluid::Field next_velocity[3], next_smoke;
+  fluid::Field centre[3], trace[3];  // cell-centred velocity and displacement [cells per step]
+  fluid::PaddedField<std::uint8_t> layer[3];
+  struct PlaneSums {
+    fluid::DivergenceSum divergence;
+    std::int32_t largest = 0;  // the bits of the largest |pressure|, then of the largest |velocity|
+  };
+  std::vector<PlaneSums> sums;  // one per plane, so that totals do not depend on threads
+  CellBox marked;               // where fluid_cells may be 0
+
+  // what others read, without padding
+  std::vector<float> pressure_out, smoke_out;
+  std::vector<std::uint8_t> fluid_cells;
+};
+
+}  // namespace prostm

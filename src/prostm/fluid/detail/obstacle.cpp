@@ -1,0 +1,211 @@
+#include "prostm/fluid/detail/obstacle.hpp"
+
+#include <cmath>
+
+namespace prostm::fluid {
+namespace {
+
+/// Fraction of a triangle where a linear function with these corner values is positive.
+float open_fraction(float a, float b, float c) {
+  const int positive = (a > 0.0F) + (b > 0.0F) + (c > 0.0F);
+  if (positive == 3) return 1.0F;
+  if (positive == 0) return 0.0F;
+  // the corner of the lone sign comes first: its own small triangle has the area a²/((a − b)(a −
+  // c))
+  const bool lone_positive = positive == 1;
+  if ((b > 0.0F) == lone_positive) {
+    std::swap(a, b);
+  } else if ((c > 0.0F) == lone_positive) {
+    std::swap(a, c);
+  }
+  const float lone = (a / (a - b)) * (a / (a - c));
+  return lone_positive ? lone : 1.0F - lone;
+}
+
+}  // namespace
+
+float open_fraction(float a, float b, float c, float d) {
+  const int positive = (a > 0.0F) + (b > 0.0F) + (c > 0.0F) + (d > 0.0F);
+  if (positive == 4) return 1.0F;
+  if (positive == 0) return 0.0F;
+  const float centre = 0.25F * ((a + b) + (c + d));
+  const float fraction = 0.25F * ((open_fraction(a, b, centre) + open_fraction(b, c, centre)) +
+                                  (open_fraction(c, d, centre) + open_fraction(d, a, centre)));
+  return fraction < Obstacle::kMinFraction ? 0.0F : fraction;
+}
+
+bool is_finite(const HandRaster& raster) {
+  const GridShape& g = raster.grid;
+  const CellBox& box = raster.box;
+  for (int k = box.lower[2]; k <= box.upper[2] && !box.empty(); ++k) {
+    for (int j = box.lower[1]; j <= box.upper[1]; ++j) {
+      for (int i = box.lower[0]; i <= box.upper[0]; ++i) {
+        if (!std::isfinite(raster.node_distance[g.node_index(i, j, k)])) return false;
+        if (i == box.upper[0] || j == box.upper[1] || k == box.upper[2]) continue;
+        for (const auto& v : raster.velocity) {
+          if (!std::isfinite(v[g.cell_index(i, j, k)])) return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+Obstacle::Obstacle(int n, WorkerPool& pool)
+    : grid_{n},
+      pool_(pool),
+      wall_{Field(grid_), Field(grid_), Field(grid_)},
+      state_(grid_, kReached),
+      stack_(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) *
+             static_cast<std::size_t>(n)) {}
+
+void Obstacle::forget() {
+  for (int k = box_.lower[2]; k < box_.upper[2]; ++k) {
+    for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
+      const Index row = grid_.index(0, j, k);
+      std::fill(state_.data() + row + box_.lower[0], state_.data() + row + box_.upper[0], kReached);
+    }
+  }
+  closed_cells_ = 0;
+}
+
+void Obstacle::update(const HandRaster& raster, PressureLevel& level) {
+  forget();
+  level.open_all();
+  box_ = raster.box;
+  if (box_.empty()) return;
+  level.box = box_;
+  const int planes = box_.upper[2] - box_.lower[2];
+  pool_.run(planes + 1, [&](int task) { cut_faces(raster, level, box_.lower[2] + task); });
+  pool_.run(planes, [&](int task) {
+    level.find_spans(box_.lower[2] + task);
+    classify(level, box_.lower[2] + task);
+  });
+  close_narrow(level);
+  close_pockets(level);
+  pool_.run(planes, [&](int task) { level.fill_diagonal(box_.lower[2] + task); });
+}
+
+void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) {
+  const GridShape& g = raster.grid;
+  const auto row = static_cast<Index>(g.nx + 1), plane = row * (g.ny + 1);
+  const Index node_stride[3] = {1, row, plane};
+  const Index cell_stride[3] = {1, g.nx, static_cast<Index>(g.nx) * g.ny};
+  const int n = grid_.n;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (k == box_.upper[2] && axis != 2) continue;
+    if (k == 0 && axis == 2) continue;  // the floor
+    const Index s = node_stride[(axis + 1) % 3], t = node_stride[(axis + 2) % 3];
+    for (int j = box_.lower[1]; j < box_.upper[1] + (axis == 1); ++j) {
+      float* open = level.open[axis].data() + grid_.index(0, j, k);
+      float* wall = wall_[axis].data() + grid_.index(0, j, k);
+      const float* phi = raster.node_distance.data() + g.node_index(0, j, k);
+      for (int i = box_.lower[0]; i < box_.upper[0] + (axis == 0); ++i) {
+        open[i] = open_fraction(phi[i], phi[i + s], phi[i + s + t], phi[i + t]);
+        if (open[i] == 1.0F) continue;
+        // the wall moves with the mean of the two cells beside it, one where the other is outside
+        const int position = axis == 0 ? i : axis == 1 ? j : k;
+        const float* v =
+            raster.velocity[axis].data() + (static_cast<Index>(k) * g.ny + j) * g.nx + i;
+        const float above = position < n ? v[0] : v[-cell_stride[axis]];
+        const float below = position > 0 ? v[-cell_stride[axis]] : above;
+        wall[i] = 0.5F * (below + above);
+      }
+    }
+  }
+}
+
+void Obstacle::classify(const PressureLevel& level, int k) {
+  const Index row = grid_.row(), plane = grid_.plane();
+  for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
+    const RowSpan span = level.span(j, k);
+    // a row without a cut face runs to the box's sides, which the outside reaches
+    if (span.empty()) continue;
+    for (int i = box_.lower[0]; i < box_.upper[0]; ++i) {
+      const Index c = grid_.index(i, j, k);
+      const Field* a = level.open;
+      const float sum = a[0][c] + a[0][c + 1] + a[1][c] + a[1][c + row] + a[2][c] + a[2][c + plane];
+      state_[c] = sum < kMinOpening ? kClosed : kOpen;
+    }
+  }
+}
+
+template <class F>
+void Obstacle::for_cut_cells(const PressureLevel& level, F&& f) {
+  for (int k = box_.lower[2]; k < box_.upper[2]; ++k) {
+    for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
+      if (level.span(j, k).empty()) continue;
+      for (int i = box_.lower[0]; i < box_.upper[0]; ++i) f(grid_.index(i, j, k));
+    }
+  }
+}
+
+void Obstacle::close(PressureLevel& level, Index c) {
+  for (int axis = 0; axis < 3; ++axis) {
+    level.open[axis][c] = 0.0F;
+    level.open[axis][c + grid_.stride(axis)] = 0.0F;
+  }
+  state_[c] = kClosed;
+  ++closed_cells_;
+}
+
+void Obstacle::close_narrow(PressureLevel& level) {
+  const Index row = grid_.row(), plane = grid_.plane();
+  const auto opening = [&](Index c) {
+    const Field* a = level.open;
+    return a[0][c] + a[0][c + 1] + a[1][c] + a[1][c + row] + a[2][c] + a[2][c + plane];
+  };
+  std::size_t top = 0;
+  for_cut_cells(level, [&](Index c) {
+    if (state_[c] != kClosed) return;
+    close(level, c);
+    stack_[top++] = c;
+  });
+  // closing a cell shuts faces of its neighbours, which may become too narrow in turn
+  while (top > 0) {
+    const Index c = stack_[--top];
+    for (const Index o : {Index{-1}, Index{1}, -row, row, -plane, plane}) {
+      if (state_[c + o] != kOpen || opening(c + o) >= kMinOpening) continue;
+      close(level, c + o);
+      stack_[top++] = c + o;
+    }
+  }
+}
+
+void Obstacle::flood(const PressureLevel& level, Index seed) {
+  std::size_t top = 0;
+  const auto reach = [&](Index c) {
+    if (state_[c] != kOpen) return;
+    state_[c] = kReached;
+    stack_[top++] = c;
+  };
+  reach(seed);
+  while (top > 0) {
+    const Index c = stack_[--top];
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index s = grid_.stride(axis);
+      if (level.open[axis][c] > 0.0F) reach(c - s);
+      if (level.open[axis][c + s] > 0.0F) reach(c + s);
+    }
+  }
+}
+
+void Obstacle::close_pockets(PressureLevel& level) {
+  // everything outside the box counts as reached, the halo beyond the open sides too; the floor's
+  // faces are shut
+  for_cut_cells(level, [&](Index c) {
+    if (state_[c] != kOpen) return;
+    bool touches = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index s = grid_.stride(axis);
+      touches = touches || (level.open[axis][c] > 0.0F && state_[c - s] == kReached) ||
+                (level.open[axis][c + s] > 0.0F && state_[c + s] == kReached);
+    }
+    if (touches) flood(level, c);
+  });
+  for_cut_cells(level, [&](Index c) {
+    if (state_[c] == kOpen) close(level, c);
+  });
+}
+
+}  // namespace prostm::fluid

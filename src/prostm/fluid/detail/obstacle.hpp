@@ -1,0 +1,66 @@
+#pragma once
+/// Hands in the fluid: open fractions of faces, closed cells, and the velocity of the walls.
+
+#include <cstdint>
+#include <vector>
+
+#include "prostm/core/worker_pool.hpp"
+#include "prostm/fluid/detail/padded_grid.hpp"
+#include "prostm/fluid/detail/pressure_level.hpp"
+#include "prostm/hand/hand_raster.hpp"
+
+namespace prostm::fluid {
+
+/// Fraction 0..1 of a square's area where the signed distance is positive, from its corners in
+/// order around it (F4): the square is cut into four triangles at its centre (the corners' mean),
+/// and each is cut along a straight line.
+float open_fraction(float a, float b, float c, float d);
+
+/// Keeps the hands' part of the problem between steps. Faces whose distance at all four nodes is
+/// positive are open; a cell with less than `kMinOpening` of open face in all is closed, and so is
+/// a pocket that no open face joins to the outside: its equations would have no solution.
+class Obstacle {
+ public:
+  Obstacle(int n, WorkerPool& pool);
+
+  /// Sets `level`'s fractions, spans and diagonals, and the walls' velocities. @pre the raster is
+  /// of this grid and finite.
+  void update(const HandRaster& raster, PressureLevel& level);
+
+  /// Velocity of the wall normal to the faces of an axis [m/s], valid where a face is not open.
+  const Field& wall_velocity(int axis) const { return wall_[axis]; }
+  /// The same, to set the floor's jets once: faces k = 0 of axis 2.
+  Field& wall_velocity(int axis) { return wall_[axis]; }
+
+  bool closed(Index c) const { return state_[c] == kClosed; }
+  int closed_cells() const { return closed_cells_; }
+
+  static constexpr float kMinOpening = 0.6F;    // sum of a cell's six fractions
+  static constexpr float kMinFraction = 0.02F;  // a smaller gap is shut
+
+ private:
+  enum CellState : std::uint8_t { kReached, kOpen, kClosed };
+
+  void forget();
+  void cut_faces(const HandRaster& raster, PressureLevel& level, int k);
+  void classify(const PressureLevel& level, int k);
+  void close(PressureLevel& level, Index c);
+  void close_narrow(PressureLevel& level);
+  void close_pockets(PressureLevel& level);
+  void flood(const PressureLevel& level, Index seed);
+  template <class F>
+  void for_cut_cells(const PressureLevel& level, F&& f);
+
+  PaddedGrid grid_;
+  WorkerPool& pool_;
+  Field wall_[3];
+  PaddedField<std::uint8_t> state_;  // kReached outside the box
+  std::vector<Index> stack_;         // sized once for every cell
+  CellBox box_;
+  int closed_cells_ = 0;
+};
+
+/// True if every distance and velocity in the raster's box is a finite number.
+bool is_finite(const HandRaster& raster);
+
+}  // namespace prostm::fluid

@@ -1,0 +1,124 @@
+#include "prostm/fluid/detail/pressure_level.hpp"
+
+namespace prostm::fluid {
+namespace {
+
+constexpr int kSmallLevel = 8;  // below this, tables are not worth their branches
+
+}  // namespace
+
+PressureLevel::PressureLevel(int n)
+    : grid{n},
+      open{Field(grid, 1.0F), Field(grid, 1.0F), Field(grid, 1.0F)},
+      diagonal(grid),
+      inverse(grid),
+      spans(static_cast<std::size_t>(n) * static_cast<std::size_t>(n)),
+      always_full(n <= kSmallLevel) {
+  for (int j = 0; j < n; ++j) std::fill_n(open[2].data() + grid.index(0, j, 0), n, 0.0F);
+  for (int t = 0; t < 4; ++t) {
+    auto& d = diagonal_tables[t];
+    auto& inv = inverse_tables[t];
+    d.assign(static_cast<std::size_t>(grid.width()), static_cast<float>(5 + t));
+    d[0] += 1.0F;
+    d[static_cast<std::size_t>(n - 1)] += 1.0F;
+    inv.assign(d.size(), 0.0F);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) inv[i] = 1.0F / d[i];
+  }
+  open_all();
+}
+
+void PressureLevel::open_all() {
+  // the fractions of the old box, its upper faces included
+  for (int k = box.lower[2]; k <= box.upper[2] && !box.empty(); ++k) {
+    for (int j = box.lower[1]; j <= box.upper[1]; ++j) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float value = axis == 2 && k == 0 ? 0.0F : 1.0F;
+        std::fill(open[axis].data() + grid.index(box.lower[0], j, k),
+                  open[axis].data() + grid.index(box.upper[0], j, k) + 1, value);
+      }
+    }
+  }
+  box = CellBox{};
+  const auto full = static_cast<std::int16_t>(always_full ? grid.width() : 0);
+  std::fill(spans.begin(), spans.end(), RowSpan{0, full});
+  if (always_full) {
+    for (int k = 0; k < grid.n; ++k) fill_diagonal(k);
+  }
+}
+
+void PressureLevel::coarsen_from(const PressureLevel& fine) {
+  open_all();
+  if (fine.box.empty()) return;
+  for (int a = 0; a < 3; ++a) {
+    box.lower[a] = fine.box.lower[a] / 2;
+    box.upper[a] = (fine.box.upper[a] + 1) / 2;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const Index s = fine.grid.stride((axis + 1) % 3), t = fine.grid.stride((axis + 2) % 3);
+    const float* from = fine.open[axis].data();
+    for (int k = box.lower[2]; k < box.upper[2] + (axis == 2); ++k) {
+      for (int j = box.lower[1]; j < box.upper[1] + (axis == 1); ++j) {
+        float* to = open[axis].data() + grid.index(0, j, k);
+        for (int i = box.lower[0]; i < box.upper[0] + (axis == 0); ++i) {
+          const float* f = from + fine.grid.index(2 * i, 2 * j, 2 * k);
+          to[i] = 0.25F * ((f[0] + f[s]) + (f[t] + f[s + t]));
+        }
+      }
+    }
+  }
+  for (int k = always_full ? 0 : box.lower[2]; k < (always_full ? grid.n : box.upper[2]); ++k) {
+    find_spans(k);
+    fill_diagonal(k);
+  }
+}
+
+void PressureLevel::find_spans(int k) {
+  if (always_full || k < box.lower[2] || k >= box.upper[2]) return;
+  const Index row = grid.row(), plane = grid.plane();
+  const float all_open = k == 0 ? 5.0F : 6.0F;
+  for (int j = box.lower[1]; j < box.upper[1]; ++j) {
+    const Index c = grid.index(0, j, k);
+    const float *x = open[0].data() + c, *y = open[1].data() + c, *z = open[2].data() + c;
+    int first = grid.n, last = -1;
+    for (int i = box.lower[0]; i < box.upper[0]; ++i) {
+      const float sum = x[i] + x[i + 1] + y[i] + y[i + row] + z[i] + z[i + plane];
+      if (sum == all_open) continue;
+      first = std::min(first, i);
+      last = i;
+    }
+    const auto lane = static_cast<int>(PaddedGrid::kLane);
+    span(j, k) = last < 0 ? RowSpan{}
+                          : RowSpan{static_cast<std::int16_t>(first / lane * lane),
+                                    static_cast<std::int16_t>((last / lane + 1) * lane)};
+  }
+}
+
+void PressureLevel::fill_diagonal(int k) {
+  const int n = grid.n;
+  const Index row = grid.row(), plane = grid.plane();
+  for (int j = 0; j < n; ++j) {
+    const RowSpan s = span(j, k);
+    const Index c = grid.index(0, j, k);
+    const float *x = open[0].data() + c, *y = open[1].data() + c, *z = open[2].data() + c;
+    for (int i = s.begin; i < s.end; ++i) {
+      float sum = 0.0F;
+      if (i < n) {
+        sum = x[i] * (i == 0 ? 2.0F : 1.0F) + x[i + 1] * (i == n - 1 ? 2.0F : 1.0F) +
+              y[i] * (j == 0 ? 2.0F : 1.0F) + y[i + row] * (j == n - 1 ? 2.0F : 1.0F) + z[i] +
+              z[i + plane] * (k == n - 1 ? 2.0F : 1.0F);
+      }
+      const bool solid = sum < kClosed;
+      diagonal[c + i] = solid ? 0.0F : sum;
+      inverse[c + i] = solid ? 0.0F : 1.0F / sum;
+    }
+  }
+}
+
+float PressureLevel::inverse_at(int i, int j, int k) const {
+  const int n = grid.n;
+  if (i < 0 || j < 0 || k < 0 || i >= n || j >= n || k >= n) return 0.0F;
+  const RowSpan s = span(j, k);
+  return i >= s.begin && i < s.end ? inverse[grid.index(i, j, k)] : table_inverse(j, k)[i];
+}
+
+}  // namespace prostm::fluid

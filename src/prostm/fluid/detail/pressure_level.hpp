@@ -1,0 +1,73 @@
+#pragma once
+/// The discrete Poisson problem on one grid of the hierarchy: open fractions of faces around the
+/// hands, and the diagonal.
+
+#include <cstdint>
+#include <vector>
+
+#include "prostm/core/worker_pool.hpp"
+#include "prostm/fluid/detail/padded_grid.hpp"
+#include "prostm/hand/hand_raster.hpp"
+
+namespace prostm::fluid {
+
+/// Cells [begin, end) of a row, both multiples of 16, that hands touch; elsewhere in the row every
+/// face is open.
+struct RowSpan {
+  std::int16_t begin = 0, end = 0;
+  bool empty() const { return begin >= end; }
+};
+
+/// Σ_f a_f (p − p_f) = b over the six faces of a cell, (F5) and (F6) of docs/design.md: a_f is the
+/// open fraction, doubled on the box's open sides, where p_f = 0 on the face itself, and 0 on the
+/// floor. The neighbour sum needs no special case there because halos of p stay 0: only the
+/// diagonal Σ a_f knows. Far from hands it takes few values, kept in tables; face fractions and
+/// diagonals of their own are read in the rows' spans alone, which saves most of the memory
+/// traffic.
+struct PressureLevel {
+  explicit PressureLevel(int n);
+
+  /// Every cell open: forgets the hands.
+  void open_all();
+  /// Fractions as means of the four faces of `fine` (Weber et al. 2015), spans and diagonals.
+  void coarsen_from(const PressureLevel& fine);
+  /// Spans from the fractions in `box`.
+  void find_spans(int k);
+  /// Diagonals in the spans of plane k. A cell whose diagonal is below `kClosed` is solid: no
+  /// equation, p = 0.
+  void fill_diagonal(int k);
+
+  const RowSpan& span(int j, int k) const {
+    return spans[static_cast<std::size_t>(k) * static_cast<std::size_t>(grid.n) +
+                 static_cast<std::size_t>(j)];
+  }
+  RowSpan& span(int j, int k) {
+    return spans[static_cast<std::size_t>(k) * static_cast<std::size_t>(grid.n) +
+                 static_cast<std::size_t>(j)];
+  }
+  /// Tables along x of the diagonal and its inverse (0 beyond n) for an uncut row: 5..8 and 1 more
+  /// at both ends.
+  const float* table_diagonal(int j, int k) const { return diagonal_tables[table(j, k)].data(); }
+  const float* table_inverse(int j, int k) const { return inverse_tables[table(j, k)].data(); }
+  /// D⁻¹ of a cell, 0 where there is no equation: closed cells and everything outside the grid.
+  float inverse_at(int i, int j, int k) const;
+
+  static constexpr float kClosed = 1e-3F;
+  static constexpr int kMaxCells = 128;  ///< the largest n: rows fit buffers of this size
+
+  PaddedGrid grid;
+  Field open[3];               ///< face fractions 0..1; 1 outside `box`, 0 on the floor
+  Field diagonal, inverse;     ///< valid in spans
+  std::vector<RowSpan> spans;  ///< n², row j of plane k at k·n + j
+  CellBox box;                 ///< cells that may have a face that is not open
+  bool always_full = false;    ///< a small level: spans cover every row
+
+ private:
+  std::size_t table(int j, int k) const {
+    const int sides = (j == 0) + (j == grid.n - 1) + (k == grid.n - 1) - (k == 0);
+    return static_cast<std::size_t>(1 + sides);
+  }
+  std::vector<float> diagonal_tables[4], inverse_tables[4];
+};
+
+}  // namespace prostm::fluid

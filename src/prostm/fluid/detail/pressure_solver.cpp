@@ -1,0 +1,154 @@
+#include "prostm/fluid/detail/pressure_solver.hpp"
+
+#include <utility>
+
+namespace prostm::fluid {
+namespace {
+
+// relaxation factors of two Jacobi sweeps whose product is the Chebyshev polynomial on [0.3, 1.95],
+// the upper part of the spectrum of D⁻¹A: 1/ω = 1.125 ± 0.825 cos(π/4)
+constexpr float kOmega[2] = {0.585411F, 1.846479F};
+constexpr int kBottomSweeps = 8;  // symmetric, on at most 7³ cells
+constexpr int kPlanesPerTask = 4;
+constexpr int kSerialCells = 16;  // below this a region costs more than it saves
+
+/// p and halos 0 where the fine level ended up closed: a cold start, or cells that a hand covers
+/// now.
+void clear_closed(const PressureLevel& level, Field& p, int k) {
+  for (int j = 0; j < level.grid.n; ++j) {
+    const RowSpan s = level.span(j, k);
+    const Index c = level.grid.index(0, j, k);
+    for (int i = s.begin; i < s.end; ++i) {
+      if (level.inverse[c + i] == 0.0F) p[c + i] = 0.0F;
+    }
+  }
+}
+
+/// Gives closed cells the mean of their open neighbours, so that interpolation near a hand reads
+/// fluid only.
+void extend_into_closed(const PressureLevel& level, Field& p) {
+  constexpr int kNeighbours[6][3] = {{-1, 0, 0}, {1, 0, 0},  {0, -1, 0},
+                                     {0, 1, 0},  {0, 0, -1}, {0, 0, 1}};
+  for (int k = level.box.lower[2]; k < level.box.upper[2]; ++k) {
+    for (int j = level.box.lower[1]; j < level.box.upper[1]; ++j) {
+      if (level.span(j, k).empty()) continue;
+      for (int i = level.box.lower[0]; i < level.box.upper[0]; ++i) {
+        const Index c = level.grid.index(i, j, k);
+        const RowSpan s = level.span(j, k);
+        if (i < s.begin || i >= s.end || level.inverse[c] != 0.0F) continue;
+        float sum = 0.0F, count = 0.0F;
+        for (const auto& o : kNeighbours) {
+          if (level.inverse_at(i + o[0], j + o[1], k + o[2]) == 0.0F) continue;
+          sum += p[level.grid.index(i + o[0], j + o[1], k + o[2])];
+          count += 1.0F;
+        }
+        p[c] = count > 0.0F ? sum / count : 0.0F;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+PressureSolver::PressureSolver(int n, WorkerPool& pool, const PressureKernels& kernels)
+    : pool_(pool), kernels_(kernels) {
+  levels_.emplace_back(n);
+  while (n > 4 && n % 2 == 0) levels_.emplace_back(n /= 2);
+}
+
+void PressureSolver::rebuild() {
+  for (std::size_t l = 1; l < levels_.size(); ++l)
+    levels_[l].problem.coarsen_from(levels_[l - 1].problem);
+  const PressureLevel& level = fine();
+  for (int k = level.box.lower[2]; k < level.box.upper[2]; ++k) clear_closed(level, pressure(), k);
+}
+
+template <class F>
+void PressureSolver::over_planes(int n, F&& f) {
+  if (n <= kSerialCells) {
+    f(0, n);
+    return;
+  }
+  pool_.run((n + kPlanesPerTask - 1) / kPlanesPerTask,
+            [&](int task) { f(task * kPlanesPerTask, std::min(n, (task + 1) * kPlanesPerTask)); });
+}
+
+void PressureSolver::smooth_twice(Level& level) {
+  over_planes(level.problem.grid.n, [&](int k0, int k1) {
+    kernels_.smooth(level.problem, level.p.data(), level.b.data(), kOmega[0], level.q.data(), k0,
+                    k1);
+  });
+  over_planes(level.problem.grid.n, [&](int k0, int k1) {
+    kernels_.smooth(level.problem, level.q.data(), level.b.data(), kOmega[1], level.p.data(), k0,
+                    k1);
+  });
+}
+
+void PressureSolver::v_cycle(std::size_t l, bool from_zero) {
+  Level& level = levels_[l];
+  if (l + 1 == levels_.size()) {
+    if (from_zero) level.p.fill(0.0F);
+    solve_bottom(level);
+    return;
+  }
+  // before: two sweeps, the first for free where the correction starts at 0
+  if (from_zero) {
+    over_planes(level.problem.grid.n, [&](int k0, int k1) {
+      kernels_.smooth_zero(level.problem, level.b.data(), kOmega[0], level.q.data(), k0, k1);
+    });
+    over_planes(level.problem.grid.n, [&](int k0, int k1) {
+      kernels_.smooth(level.problem, level.q.data(), level.b.data(), kOmega[1], level.p.data(), k0,
+                      k1);
+    });
+  } else {
+    smooth_twice(level);
+  }
+  // the coarse grid's correction
+  Level& coarse = levels_[l + 1];
+  over_planes(coarse.problem.grid.n, [&](int k0, int k1) {
+    kernels_.restrict_residual(level.problem, level.p.data(), level.b.data(), coarse.problem,
+                               coarse.b.data(), k0, k1);
+  });
+  v_cycle(l + 1, true);
+  extend_into_closed(coarse.problem, coarse.p);
+  over_planes(level.problem.grid.n, [&](int k0, int k1) {
+    kernels_.prolong_add(coarse.problem, coarse.p.data(), level.problem, level.p.data(), k0, k1);
+  });
+  // after: two sweeps
+  smooth_twice(level);
+}
+
+void PressureSolver::solve_bottom(Level& level) {
+  const PressureLevel& problem = level.problem;
+  const int n = problem.grid.n, cells = n * n * n;
+  const Index row = problem.grid.row(), plane = problem.grid.plane();
+  const Field* a = problem.open;
+  for (int sweep = 0; sweep < 2 * kBottomSweeps; ++sweep) {
+    for (int m = 0; m < cells; ++m) {
+      const int cell = sweep % 2 == 0 ? m : cells - 1 - m;
+      const Index c = problem.grid.index(cell % n, cell / n % n, cell / (n * n));
+      const Field& p = level.p;
+      const float sum = a[0][c] * p[c - 1] + a[0][c + 1] * p[c + 1] + a[1][c] * p[c - row] +
+                        a[1][c + row] * p[c + row] + a[2][c] * p[c - plane] +
+                        a[2][c + plane] * p[c + plane];
+      level.p[c] = problem.inverse[c] * (level.b[c] + sum);
+    }
+  }
+}
+
+void PressureSolver::v_cycles(int cycles) {
+  for (int cycle = 0; cycle < cycles; ++cycle) v_cycle(0, false);
+}
+
+void PressureSolver::jacobi(int sweeps, bool warm) {
+  Level& level = levels_.front();
+  if (!warm) level.p.fill(0.0F);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    over_planes(level.problem.grid.n, [&](int k0, int k1) {
+      kernels_.smooth(level.problem, level.p.data(), level.b.data(), 1.0F, level.q.data(), k0, k1);
+    });
+    std::swap(level.p, level.q);
+  }
+}
+
+}  // namespace prostm::fluid

@@ -1,0 +1,50 @@
+#pragma once
+/// Solves the Poisson problem of a step: warm-started V-cycles, or plain Jacobi sweeps as in the
+/// paper.
+
+#include <vector>
+
+#include "prostm/core/worker_pool.hpp"
+#include "prostm/fluid/detail/pressure_kernels.hpp"
+
+namespace prostm::fluid {
+
+/// The hierarchy n, n/2, … down to at most 5 (or to an odd number) of cells, and the solvers on it.
+/// Section 3.4 of docs/design.md. Every result is independent of the number of threads, to the bit.
+class PressureSolver {
+ public:
+  PressureSolver(int n, WorkerPool& pool, const PressureKernels& kernels);
+
+  /// The fine level, whose fractions the caller sets; then rebuild() makes the coarser ones.
+  PressureLevel& fine() { return levels_.front().problem; }
+  const PressureLevel& fine() const { return levels_.front().problem; }
+  void rebuild();
+
+  Field& pressure() { return levels_.front().p; }
+  const Field& pressure() const { return levels_.front().p; }
+  /// b of (F6); 0 in closed cells.
+  Field& right_side() { return levels_.front().b; }
+
+  /// V-cycles from the pressure of the last call (F7)–(F10).
+  void v_cycles(int cycles);
+  /// Jacobi sweeps, from the pressure of the last call or from 0.
+  void jacobi(int sweeps, bool warm);
+
+ private:
+  struct Level {
+    explicit Level(int n) : problem(n), p(problem.grid), q(problem.grid), b(problem.grid) {}
+    PressureLevel problem;
+    Field p, q, b;  // unknown, its next iterate, right side
+  };
+  template <class F>
+  void over_planes(int n, F&& f);
+  void smooth_twice(Level& level);
+  void v_cycle(std::size_t l, bool from_zero);
+  void solve_bottom(Level& level);
+
+  WorkerPool& pool_;
+  const PressureKernels& kernels_;
+  std::vector<Level> levels_;
+};
+
+}  // namespace prostm::fluid

@@ -1,0 +1,37 @@
+#pragma once
+/// What lies around the box: a floor with jets and perhaps a vent, and five open sides.
+
+#include <vector>
+
+#include "prostm/fluid/detail/padded_grid.hpp"
+#include "prostm/fluid/fluid.hpp"
+
+namespace prostm::fluid {
+
+/// Constant once made; what it sets in the fluid's fields holds for one step.
+class Surroundings {
+ public:
+  /// @throws std::invalid_argument for a scene out of bounds.
+  Surroundings(const GridShape& grid, const Scene& scene);
+
+  /// The velocity of the floor's faces.
+  void set_floor(Field& w) const;
+  /// What would flow in with the next step: fresh smoke through a jet, clean air beside it through
+  /// a vented floor; a solid floor repeats the smoke that lies on it. Beyond the open sides is
+  /// clear air, which is what a halo holds from the start.
+  void set_smoke_halo(Field& smoke) const;
+  /// Air that enters through an open side was at rest outside (F3a): the side's cells forget their
+  /// momentum where the flow is inward, and the projection alone drives it. Kept momentum would
+  /// feed itself and turn the whole box.
+  void calm_inflow(Field velocity[3]) const;
+
+ private:
+  std::size_t column(int i, int j) const { return static_cast<std::size_t>(j * grid_.n + i); }
+
+  PaddedGrid grid_;
+  bool vented_;               // clean air comes through the floor
+  std::vector<float> speed_;  // of what the floor's faces let in [m/s], n·n
+  std::vector<float> share_;  // of fresh smoke in it, 0..1
+};
+
+}  // namespace prostm::fluid

@@ -1,0 +1,113 @@
+#pragma once
+/// The smoke: incompressible Euler on a MAC grid with moving hands in it (the paper's section IV-A,
+/// and ref. [4]).
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "prostm/core/geometry.hpp"
+#include "prostm/core/settings.hpp"
+#include "prostm/core/worker_pool.hpp"
+#include "prostm/hand/hand_raster.hpp"
+
+namespace prostm {
+
+/// A round jet in the floor of the box: inflow of smoke with a smooth radial profile.
+struct SmokeJet {
+  Vec2 centre;          ///< in D [m]
+  double radius = 0.0;  ///< of the profile [m]
+  double speed = 0.0;   ///< on the axis [m/s]
+};
+
+/// A named arrangement of jets and the pressure that counts as full output there.
+struct Scene {
+  std::string name;
+  std::vector<SmokeJet> jets;
+  double full_scale_pressure = 0.0;  ///< target pressure that maps to full output [Pa]
+  double vent_speed = 0.0;  ///< of clean air let in through the whole floor, so that jets side by
+                            ///< side need not draw each other in [m/s]
+};
+
+/// "one-plume" (wide), "two-plumes", "three-plumes", "four-plumes" (thin), "still-air".
+/// @throws std::invalid_argument that lists the names for any other.
+Scene scene_from_name(const std::string& name);
+
+struct FluidSettings {
+  int cells = 64;       ///< along each edge of the box; a multiple of 16, 32..128
+  double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred
+  std::string solver =
+      "multigrid";           ///< "multigrid" (warm-started V-cycles), or "jacobi" (the paper's)
+  int cycles = 2;            ///< V-cycles a step
+  int jacobi_sweeps = 40;    ///< sweeps a step of the paper's solver
+  bool jacobi_warm = false;  ///< start from the last pressure
+  double jet_speed = 1.0;    ///< factor on the speed of the scene's jets, 0 to 3
+  double buoyancy = 0.0;     ///< upward acceleration of undiluted smoke [m/s²]
+  double vorticity = 0.0;    ///< ε of vorticity confinement [1/s]; 0 = off
+  double density = 1.2;      ///< of air ρ [kg/m³]
+  double dissipation = 0.0;  ///< decay rate of the smoke's density [1/s]
+
+  void visit(SettingsVisitor& v);
+  bool operator==(const FluidSettings&) const = default;
+};
+
+struct FluidStats {
+  double divergence_rms =
+      0;  ///< relative: rms divergence left over rms divergence before projection
+  double divergence_max =
+      0;  ///< largest |∇·u| left times dt (dimensionless, cells per step per cell)
+  double max_speed = 0;  ///< [cells per step]
+  int solid_cells = 0;
+  bool reset =
+      false;  ///< a non-finite (or absurd, above 10⁶ m/s) value came up: the state was set to rest
+  double advect = 0, hand = 0, solve = 0, total = 0;  ///< [s]
+};
+
+/// One box of smoke. Deterministic: the result depends neither on the number of threads nor on the
+/// machine's load.
+class Fluid {
+ public:
+  /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
+  Fluid(const FluidSettings& settings, const Scene& scene, WorkerPool& pool);
+  ~Fluid();
+
+  const GridShape& grid() const;
+  const FluidSettings& settings() const;
+
+  /// Advances by dt [s] with the hands of `raster` (made for grid()): section 3 of docs/design.md.
+  /// Allocates nothing, throws nothing. A dt that is not a positive number, or a raster that is not
+  /// finite, resets like a non-finite state.
+  FluidStats step(double dt, const HandRaster& raster) noexcept;
+
+  /// The same step in three parts, so that the hands may come late and their pressure is there
+  /// early: to the bit what step() does, which calls them one after the other. prepare() does what
+  /// needs no hand (advection and forces); meet() places the hands and solves for the pressure,
+  /// after which pressure(), fluid_cells() and smoke() are of this step; settle() projects the
+  /// velocity, leaves the state for the next step and measures. @pre called in this order.
+  void prepare(double dt) noexcept;
+  void meet(const HandRaster& raster) noexcept;
+  FluidStats settle() noexcept;
+
+  /// Fluid pressure at cell centres [Pa], 0 in cells without fluid; cell_count() values, index as
+  /// in GridShape.
+  std::span<const float> pressure() const;
+  /// 1 for cells whose centre is in the fluid (not inside a hand).
+  std::span<const std::uint8_t> fluid_cells() const;
+  /// Smoke density 0..1 at cell centres.
+  std::span<const float> smoke() const;
+  /// Velocity at a cell centre [m/s].
+  Vec3 velocity(int i, int j, int k) const;
+
+  /// Takes over velocity, smoke and pressure of another fluid, to compare solvers from the same
+  /// state. @pre both are between steps.
+  /// @throws std::invalid_argument if the grids differ.
+  void copy_state(const Fluid& other);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prostm

@@ -1,0 +1,67 @@
+#include "prostm/fluid/fluid_pressure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "prostm/core/require.hpp"
+
+namespace prostm {
+
+void FluidPressureSettings::visit(SettingsVisitor& v) {
+  v.field("offset_cells", offset_cells);
+  v.field("time_constant", time_constant);
+}
+
+FluidPressure::FluidPressure(const FluidPressureSettings& settings, const GridShape& grid)
+    : settings_(settings), grid_(grid) {
+  require_between("offset_cells", settings.offset_cells, 0.5, 4.0);
+  require_between("time_constant", settings.time_constant, 0.0, 10.0, "s");
+  if (settings.time_constant == 0.0) return;
+  smoothed_.assign(grid.cell_count(), 0.0F);
+  was_fluid_.assign(grid.cell_count(), 0);
+}
+
+void FluidPressure::take(std::span<const float> pressure, std::span<const std::uint8_t> fluid_cells,
+                         double dt) {
+  fluid_ = fluid_cells;
+  pressure_ = pressure;
+  if (smoothed_.empty()) return;
+  const auto share = static_cast<float>(1.0 - std::exp(-dt / settings_.time_constant));
+  const float* now = pressure_.data();
+  const std::uint8_t* known = was_fluid_.data();
+  float* smoothed = smoothed_.data();
+  for (std::size_t c = 0, count = smoothed_.size(); c < count; ++c) {
+    // a cell that has just become fluid has no history
+    const float weight = known[c] != 0 ? share : 1.0F;
+    smoothed[c] += weight * (now[c] - smoothed[c]);
+  }
+  std::copy(fluid_.begin(), fluid_.end(), was_fluid_.begin());
+  pressure_ = smoothed_;
+}
+
+void FluidPressure::sample(std::span<const Vec3> p_D, const Vec3& outside,
+                           std::span<double> out) const noexcept {
+  const Vec3 offset = settings_.offset_cells * grid_.cell * outside;
+  for (std::size_t i = 0; i < p_D.size(); ++i) out[i] = at(p_D[i] + offset);
+}
+
+double FluidPressure::at(const Vec3& p_D) const {
+  // trilinear between cell centres; cells inside a hand are left out and the weights renormalised
+  const Vec3 q = (p_D - grid_.p_DF) / grid_.cell - Vec3::Constant(0.5);
+  const int i = static_cast<int>(std::floor(q.x())), j = static_cast<int>(std::floor(q.y())),
+            k = static_cast<int>(std::floor(q.z()));
+  double sum = 0.0, weights = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int ci = i + (corner & 1), cj = j + (corner >> 1 & 1), ck = k + (corner >> 2);
+    if (ci < 0 || cj < 0 || ck < 0 || ci >= grid_.nx || cj >= grid_.ny || ck >= grid_.nz) continue;
+    const std::size_t c = grid_.cell_index(ci, cj, ck);
+    if (fluid_[c] == 0) continue;
+    const double weight =
+        (1.0 - std::abs(q.x() - ci)) * (1.0 - std::abs(q.y() - cj)) * (1.0 - std::abs(q.z() - ck));
+    sum += weight * static_cast<double>(pressure_[c]);
+    weights += weight;
+  }
+  return weights > 1e-6 ? sum / weights : 0.0;
+}
+
+}  // namespace prostm

@@ -1,0 +1,50 @@
+#pragma once
+/// The fluid's pressure on skin (C4).
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prostm/contact/pressure_source.hpp"
+#include "prostm/core/settings.hpp"
+
+namespace prostm {
+
+struct FluidPressureSettings {
+  double offset_cells =
+      1.0;  ///< the pressure is read this many cells outside the skin, towards the array
+  double time_constant =
+      0.0;  ///< of an exponential smoothing of the fluid's pressure on the skin [s]; 0 = none
+
+  void visit(SettingsVisitor& v);
+  bool operator==(const FluidPressureSettings&) const = default;
+};
+
+/// Reads the pressure of the air `offset_cells` outside the skin, from fluid cells alone, and
+/// smooths it over time where the settings ask for it.
+class FluidPressure final : public PressureSource {
+ public:
+  /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
+  FluidPressure(const FluidPressureSettings& settings, const GridShape& grid);
+
+  /// Takes the air as it is now, as Fluid::pressure() and Fluid::fluid_cells() give it; both are
+  /// referred to until the next call. @pre cell_count() values each. @param dt since the last call,
+  /// for the smoothing [s].
+  void take(std::span<const float> pressure, std::span<const std::uint8_t> fluid_cells, double dt);
+
+  /// 0 where there is no fluid near. @pre take() was called.
+  void sample(std::span<const Vec3> p_D, const Vec3& outside,
+              std::span<double> out) const noexcept override;
+
+ private:
+  double at(const Vec3& p_D) const;
+
+  FluidPressureSettings settings_;
+  GridShape grid_;
+  std::span<const float> pressure_;      // one value a cell, the fluid's or smoothed over time
+  std::span<const std::uint8_t> fluid_;  // cells whose pressure is known
+  std::vector<float> smoothed_;          // empty without smoothing, as is was_fluid_
+  std::vector<std::uint8_t> was_fluid_;  // when the fluid was last looked at
+};
+
+}  // namespace prostm

@@ -1,0 +1,44 @@
+#pragma once
+/// What field and plan files share: the raster, its heights and its plane. Private to io.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "prostm/core/json.hpp"
+#include "prostm/target/target_field.hpp"
+
+namespace prostm {
+
+/// Coordinates in files lie within a kilometre [mm]: far beyond any array, far below any overflow.
+inline constexpr double kMaxCoordinateMm = 1e6;
+/// The largest pressure in a file, any unit: the sum of its square over a raster is still finite.
+inline constexpr double kMaxFilePressure = 1e150;
+/// The largest weight of a cell in a file.
+inline constexpr double kMaxFileWeight = 1e150;
+
+/// @return the edge of a cell [m]. @param what names the value in the message. @throws InputError
+/// unless 0.01 to 1000 mm.
+double checked_cell(double cell_mm, const std::string& file, const std::string& what);
+/// @throws InputError unless the raster has 1 to kMaxFieldCells cells.
+void check_raster_size(double rows, double cols, const std::string& file);
+/// @throws InputError for a pressure that is negative, not finite or above kMaxFilePressure.
+void check_pressure(double pressure, int row, int col, const std::string& file);
+
+/// Reads "cell_mm", "origin_mm", "rows" and "cols" into a cleared field.
+void read_raster(const JsonNode& node, TargetField& field);
+/// @throws InputError unless `node` is an array of field.rows arrays of field.cols numbers or
+/// nulls.
+void check_matrix(const JsonNode& node, const TargetField& field);
+/// Reads a matrix of heights [mm], null off the skin, where the heights of the skin are continued.
+void read_heights(const JsonNode& node, TargetField& field);
+/// Reads a plane's "origin_mm", "x" and "y": unit and orthogonal to within 1e-6, then made exactly
+/// so; x × y must not point towards the array's side, −z.
+Pose read_plane(const JsonNode& node);
+
+/// Adds the members that read_raster reads.
+void write_raster(const TargetField& field, nlohmann::ordered_json& object);
+/// The matrix that read_heights reads.
+nlohmann::ordered_json heights_json(const TargetField& field);
+nlohmann::ordered_json plane_json(const Pose& X_DP);
+
+}  // namespace prostm

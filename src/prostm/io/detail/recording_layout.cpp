@@ -1,0 +1,131 @@
+#include "prostm/io/detail/recording_layout.hpp"
+
+#include "prostm/plan/plan.hpp"
+#include "prostm/track/hand_frame.hpp"
+
+namespace prostm::recording {
+
+std::vector<h5::Column> frame_columns() {
+  return {{"time", H5T_NATIVE_DOUBLE, {}, "s", "time of the hand frame"},
+          {"first_patch", H5T_NATIVE_INT64, {}, "1", "row of the frame's first patch in /target"},
+          {"patches", H5T_NATIVE_INT32, {}, "1", "number of patches, one for each hand"}};
+}
+
+std::vector<h5::Column> target_columns() {
+  return {{"frame", H5T_NATIVE_INT64, {}, "1", "row of the patch's frame in /frame"},
+          {"rows", H5T_NATIVE_INT32, {}, "1", "rows of the raster"},
+          {"cols", H5T_NATIVE_INT32, {}, "1", "columns of the raster"},
+          {"offset",
+           H5T_NATIVE_INT64,
+           {},
+           "1",
+           "index of the raster's first cell in pressure and height"},
+          {"cell", H5T_NATIVE_DOUBLE, {}, "m", "edge of a cell"},
+          {"origin", H5T_NATIVE_DOUBLE, {2}, "m", "centre of the first cell in the plane, (x, y)"},
+          {"pose",
+           H5T_NATIVE_DOUBLE,
+           {4, 4},
+           "1, last column m",
+           "X_DP: plane coordinates to the device's"},
+          {"pressure",
+           H5T_NATIVE_DOUBLE,
+           {},
+           "Pa",
+           "rasters row by row, one after another; NaN = no skin"},
+          {"height",
+           H5T_NATIVE_DOUBLE,
+           {},
+           "m",
+           "of the skin along the plane's normal, like pressure"}};
+}
+
+h5::Column weight_column() {
+  return {"weight",
+          H5T_NATIVE_DOUBLE,
+          {},
+          "1",
+          "how much the error of a cell counts, like pressure; NaN = no skin, or no weights"};
+}
+
+std::vector<h5::Column> hand_columns() {
+  return {
+      {"id",
+       H5T_NATIVE_INT64,
+       {kHands},
+       "1",
+       "stays with a hand while it is tracked; -1 = no hand"},
+      {"side", H5T_NATIVE_INT32, {kHands}, "1", "0 = left, 1 = right, -1 = no hand"},
+      {"confidence", H5T_NATIVE_FLOAT, {kHands}, "1", "of the tracker, 0 to 1; NaN = no hand"},
+      {"inferred",
+       H5T_NATIVE_UINT32,
+       {kHands},
+       "1",
+       "bit 0: metacarpals were rebuilt, bit 1: the wrist"},
+      {"position",
+       H5T_NATIVE_FLOAT,
+       {kHands, kJointCount, 3},
+       "m",
+       "joints in OpenXR's order, frame D"},
+      {"orientation",
+       H5T_NATIVE_FLOAT,
+       {kHands, kJointCount, 4},
+       "1",
+       "unit quaternions x, y, z, w"},
+      {"radius", H5T_NATIVE_FLOAT, {kHands, kJointCount}, "m", "of the flesh around each joint"},
+      {"velocity", H5T_NATIVE_FLOAT, {kHands, kJointCount, 3}, "m/s", "of each joint"}};
+}
+
+std::vector<h5::Column> plan_columns() {
+  const hsize_t paths = kMaxPaths, points = kMaxPathPoints;
+  return {
+      {"paths", H5T_NATIVE_INT32, {}, "1", "number of paths; -1 = no plan was made in this frame"},
+      {"samples", H5T_NATIVE_INT32, {paths}, "1", "points of each path"},
+      {"patch",
+       H5T_NATIVE_INT32,
+       {paths},
+       "1",
+       "the frame's patch that a path lies on; -1 = no path"},
+      {"points",
+       H5T_NATIVE_DOUBLE,
+       {paths, points, 2},
+       "m",
+       "in the patch's plane, padded with NaN"},
+      {"pressure",
+       H5T_NATIVE_DOUBLE,
+       {paths, points},
+       "Pa",
+       "rendered at each point, padded with NaN"},
+      {"length", H5T_NATIVE_DOUBLE, {paths}, "m", "of each closed path"},
+      {"speed", H5T_NATIVE_DOUBLE, {paths}, "m/s", "of the focal point"},
+      {"period", H5T_NATIVE_DOUBLE, {paths}, "s", "of a lap"},
+      {"foci", H5T_NATIVE_INT32, {}, "1", "number of foci of the method am; -1 as of paths"},
+      {"focus_patch",
+       H5T_NATIVE_INT32,
+       {paths},
+       "1",
+       "the frame's patch that a focus lies on; -1 = no focus"},
+      {"focus_position",
+       H5T_NATIVE_DOUBLE,
+       {paths, 2},
+       "m",
+       "in the patch's plane, padded with NaN"},
+      {"focus_pressure",
+       H5T_NATIVE_DOUBLE,
+       {paths},
+       "Pa",
+       "rendered at the peak of the modulation, padded with NaN"},
+      {"stage_time",
+       H5T_NATIVE_DOUBLE,
+       {7},
+       "s",
+       "init, kmeans, tour, split, resample, refine, total"},
+      {"counts",
+       H5T_NATIVE_INT32,
+       {7},
+       "1",
+       "clusters, lloyd_iterations, refine_iterations, cost_evaluations, leaves, long_paths, "
+       "crossings"},
+      {"cost", H5T_NATIVE_DOUBLE, {}, "1", "of Eqs. (2) to (5) after refinement"}};
+}
+
+}  // namespace prostm::recording

@@ -1,0 +1,18 @@
+#pragma once
+/// The datasets of a recording, as docs/recordings.md describes them. Private to io.
+
+#include <vector>
+
+#include "prostm/io/detail/hdf5.hpp"
+
+namespace prostm::recording {
+
+inline constexpr hsize_t kHands = 2;  ///< a row of /hand has room for
+
+std::vector<h5::Column> frame_columns();   ///< of /frame
+std::vector<h5::Column> target_columns();  ///< of /target, a row for each patch
+h5::Column weight_column();                ///< of /target too, once a patch has weights
+std::vector<h5::Column> hand_columns();    ///< of /hand, a row for each frame
+std::vector<h5::Column> plan_columns();    ///< of /plan, a row for each frame
+
+}  // namespace prostm::recording

@@ -1,0 +1,32 @@
+#pragma once
+/// Target fields in files: prostm-field/1 JSON, NPY, PNG, and frames of HDF5 recordings.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "prostm/target/target_field.hpp"
+
+namespace prostm {
+
+struct FieldFileOptions {
+  std::optional<double> cell_mm;  ///< edge of a cell; needed for .npy and .png, an error elsewhere
+  int frame = 0;                  ///< of a recording
+};
+
+/// Reads a field by the ending of its name (.json, .npy, .png, .h5). @throws InputError with a
+/// sentence that names the file.
+TargetField read_field(const std::string& path, const FieldFileOptions& options = {});
+
+/// Parsers of bytes; `name` stands for the file in messages. @throws InputError.
+TargetField field_from_json(std::string_view text, const std::string& name);
+/// float32, float64 or integer, 2-D, C or Fortran order; NaN is no skin. Row 0 is the smallest y.
+TargetField field_from_npy(std::string_view bytes, const std::string& name, double cell_mm);
+/// Grey value (luminance) over full white is the pressure, alpha 0 is no skin; row 0 is the largest
+/// y.
+TargetField field_from_png(std::string_view bytes, const std::string& name, double cell_mm);
+
+/// The same field as prostm-field/1.
+std::string field_to_json(const TargetField& field);
+
+}  // namespace prostm

@@ -1,0 +1,29 @@
+#pragma once
+/// What an array puts on the skin, in files: prostm-physical/1.
+
+#include <string>
+
+#include "prostm/acoustics/array.hpp"
+#include "prostm/score/felt.hpp"
+
+namespace prostm {
+
+/// All that is told of the physical field of a plan.
+struct PhysicalReport {
+  std::string plan, solver;  ///< the plan's file, the solver's name
+  const TransducerArray* array = nullptr;
+  const TargetField* raster = nullptr;
+  const LoopSamples* loop = nullptr;
+  const LoopDriveResult* drives = nullptr;
+  const PhysicalField* field = nullptr;
+  FocusAccuracy focus;
+  const Metrics* envelope_metrics = nullptr;  ///< null without a target
+  const Metrics* mean_metrics = nullptr;
+  const FeltField* felt = nullptr;        ///< null for loops that are not felt
+  const Metrics* felt_metrics = nullptr;  ///< null without a target, too
+  const Ghosts* ghosts = nullptr;         ///< the same
+  std::string settings_json;              ///< of every stage, an object as text
+};
+std::string physical_to_json(const PhysicalReport& report);
+
+}  // namespace prostm

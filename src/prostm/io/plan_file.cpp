@@ -1,0 +1,206 @@
+#include "prostm/io/plan_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/detail/raster_json.hpp"
+
+namespace prostm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json path_json(const FocalPath& path) {
+  Json points = Json::array(), pressure = Json::array();
+  for (const Vec2& x : path.points) points.push_back(milli_json(x));
+  for (const double p : path.pressure) pressure.push_back(p);
+  return {{"patch", path.patch},
+          {"points_mm", std::move(points)},
+          {"pressure", std::move(pressure)},
+          {"length_mm", to_milli(path.length)},
+          {"speed_m_s", path.speed},
+          {"period_ms", to_milli(path.period)}};
+}
+
+Json focus_json(const FocalPoint& focus) {
+  return {{"patch", focus.patch},
+          {"position_mm", milli_json(focus.position)},
+          {"pressure", focus.pressure}};
+}
+
+Json stage_json(const PlanStats& s) {
+  const auto us = [](double seconds) { return 1e6 * seconds; };
+  return {{"init", us(s.init)},   {"kmeans", us(s.kmeans)},     {"tour", us(s.tour)},
+          {"split", us(s.split)}, {"resample", us(s.resample)}, {"refine", us(s.refine)},
+          {"total", us(s.total)}};
+}
+
+Json count_json(const PlanStats& s) {
+  return {{"clusters", s.clusters},
+          {"lloyd_iterations", s.lloyd_iterations},
+          {"refine_iterations", s.refine_iterations},
+          {"cost_evaluations", s.cost_evaluations},
+          {"leaves", s.leaves},
+          {"cost", s.cost}};
+}
+
+Json metrics_json(const Metrics& m) {
+  return {{"rmse", m.rmse},       {"correlation", m.correlation}, {"coverage", m.coverage},
+          {"skill_0", m.skill_0}, {"skill_8", m.skill_8},         {"overlap", m.overlap},
+          {"spill", m.spill}};
+}
+
+void write_quality(const PlanQuality& quality, Json& document) {
+  document["sigma_mm"] = to_milli(quality.sigma);
+  document["full_scale_pressure"] = quality.full_scale_pressure;
+  document["metrics"] = metrics_json(quality.played);
+  document["planned_metrics"] = metrics_json(quality.planned);
+  if (quality.at.empty()) return;
+  Json& list = document["metrics_at"] = Json::array();
+  for (const PlanQuality::At& at : quality.at) {
+    list.push_back({{"sigma_mm", to_milli(at.sigma)}, {"metrics", metrics_json(at.played)}});
+  }
+}
+
+FocalPath read_path(const JsonNode& node) {
+  FocalPath path;
+  if (node.has("patch")) path.patch = node.at("patch", "").integer(0, kMaxPatches - 1);
+  const JsonNode points = node.at("points_mm", "an array of points [x, y]");
+  const JsonNode pressure = node.at("pressure", "an array of pressures");
+  const std::size_t count = points.array_size();
+  if (count < 1 || count > static_cast<std::size_t>(kMaxPathPoints)) {
+    points.fail(fmt::format("has {} points; a path must have from 1 to {}", count, kMaxPathPoints));
+  }
+  if (pressure.array_size() != count) {
+    pressure.fail(fmt::format("has {} numbers; it must have one for each of the {} points",
+                              pressure.array_size(), count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 mm = points.at(i).vec2(-kMaxCoordinateMm, kMaxCoordinateMm);
+    path.points.push_back(Vec2(from_milli(mm.x()), from_milli(mm.y())));
+    path.pressure.push_back(pressure.at(i).number(0.0, kMaxFilePressure));
+  }
+
+  // the length follows from the points
+  const double length = closed_length(path);
+  const JsonNode length_mm = node.at("length_mm", "the length of the closed path");
+  path.length = from_milli(length_mm.number(0.0, kMaxCoordinateMm));
+  constexpr double kLengthTolerance = 1e-4;
+  if (std::abs(path.length - length) > kLengthTolerance) {
+    length_mm.fail(fmt::format("is {}; the closed path through the points is {:.3f} mm long",
+                               to_milli(path.length), to_milli(length)));
+  }
+  constexpr double kMinSpeed = 0.001, kMaxSpeed = 1000.0;
+  path.speed = node.at("speed_m_s", "the speed of the focal point").number(kMinSpeed, kMaxSpeed);
+
+  // a lap takes length / speed, or longer on uneven skin
+  path.period = path.length / path.speed;
+  if (node.has("period_ms")) {
+    const JsonNode period_ms = node.at("period_ms", "the time of a lap");
+    const double period = from_milli(period_ms.number(0.0, kMaxCoordinateMm / kMinSpeed));
+    if (period < (path.length - kLengthTolerance) / path.speed) {
+      period_ms.fail(fmt::format("is {}; a lap of {:.3f} mm at {} m/s takes at least {:.4f} ms",
+                                 to_milli(period), to_milli(path.length), path.speed,
+                                 to_milli(path.period)));
+    }
+    path.period = period;
+  }
+  return path;
+}
+
+FocalPoint read_focus(const JsonNode& node) {
+  FocalPoint focus;
+  if (node.has("patch")) focus.patch = node.at("patch", "").integer(0, kMaxPatches - 1);
+  const Vec2 mm =
+      node.at("position_mm", "a point [x, y]").vec2(-kMaxCoordinateMm, kMaxCoordinateMm);
+  focus.position = Vec2(from_milli(mm.x()), from_milli(mm.y()));
+  focus.pressure = node.at("pressure", "a number").number(0.0, kMaxFilePressure);
+  return focus;
+}
+
+template <class Read, class List>
+void read_list(const JsonNode& node, const char* what, const Read& read, List& out) {
+  if (node.array_size() > out.capacity()) {
+    node.fail(
+        fmt::format("has {} {}; it must have at most {}", node.array_size(), what, out.capacity()));
+  }
+  for (std::size_t i = 0; i < node.array_size(); ++i) out.push_back(read(node.at(i)));
+}
+
+}  // namespace
+
+std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanFileExtras& extras,
+                         const std::string& settings_json) {
+  Json document = {{"format", "prostm-plan/1"}, {"method", to_string(extras.method)}};
+  if (!extras.preset.empty()) document["preset"] = extras.preset;
+  Json& list = document[extras.method == Method::Am ? "foci" : "paths"] = Json::array();
+  for (const FocalPath& path : plan.paths) list.push_back(path_json(path));
+  for (const FocalPoint& focus : plan.foci) list.push_back(focus_json(focus));
+
+  if (extras.power != nullptr) {
+    document["power"] = {{"share_of_array", extras.power->array},
+                         {"share_of_full_scale", extras.power->pressure},
+                         {"limit", extras.power->limit}};
+  }
+
+  // how it came about and how good it is
+  if (extras.stats != nullptr) {
+    document["stage_us"] = stage_json(*extras.stats);
+    document["counts"] = count_json(*extras.stats);
+    document["violations"] = {{"long_paths", extras.stats->long_paths},
+                              {"crossings", extras.stats->crossings}};
+  }
+  if (extras.metrics != nullptr) document["metrics"] = metrics_json(*extras.metrics);
+  if (extras.quality != nullptr) write_quality(*extras.quality, document);
+  if (extras.controls != nullptr) {
+    document["controls"] = Json::array();
+    for (const Control& control : *extras.controls) {
+      document["controls"].push_back(
+          {{"name", control.name}, {"metrics", metrics_json(control.metrics)}});
+    }
+  }
+
+  // where it lies: what lifts the paths back to the skin
+  document["plane"] = plane_json(target.X_DP);
+  Json raster = Json::object();
+  write_raster(target, raster);
+  raster["height_mm"] = heights_json(target);
+  document["raster"] = std::move(raster);
+  if (!settings_json.empty()) document["settings"] = Json::parse(settings_json);
+  return to_text(document);
+}
+
+PlanFile plan_from_json(std::string_view text, const std::string& name) {
+  const nlohmann::json document = parse_json(text, name);
+  const JsonNode root(document, name);
+  require_format(root, "prostm-plan/1");
+  PlanFile file;
+  file.method = root.has("foci") ? Method::Am : Method::ProStm;
+  if (file.method == Method::Am) {
+    if (root.has("paths")) root.fail("has both foci and paths; a plan has one of the two");
+    read_list(root.at("foci", "an array of foci"), "foci", read_focus, file.plan.foci);
+  } else {
+    read_list(root.at("paths", "an array of paths, or foci"), "paths", read_path, file.plan.paths);
+  }
+
+  // the raster's skin is where it has a height
+  const JsonNode raster = root.at("raster", "the raster with the heights of the skin");
+  read_raster(raster, file.raster);
+  const JsonNode heights = raster.at("height_mm", "an array of rows of heights in mm");
+  check_matrix(heights, file.raster);
+  for (int row = 0; row < file.raster.rows; ++row) {
+    const auto& line = heights.value()[static_cast<std::size_t>(row)];
+    for (int col = 0; col < file.raster.cols; ++col) {
+      file.raster.skin[file.raster.index(row, col)] =
+          line[static_cast<std::size_t>(col)].is_null() ? 0 : 1;
+    }
+  }
+  read_heights(heights, file.raster);
+  file.raster.X_DP = read_plane(root.at("plane", "the plane's origin_mm, x and y"));
+  return file;
+}
+
+}  // namespace prostm

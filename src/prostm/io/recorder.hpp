@@ -1,0 +1,57 @@
+#pragma once
+/// HDF5 recordings: target fields, hands, plans and run statistics, for Python, MATLAB and Julia.
+
+#include <memory>
+#include <string>
+
+#include "prostm/plan/planner.hpp"
+#include "prostm/target/target_field.hpp"
+#include "prostm/track/hand_frame.hpp"
+
+namespace prostm {
+
+/// Tries whether a recording could be made there, before the work that fills it. @throws
+/// InputError: as check_writable, and what is no ordinary file.
+void check_recording(const std::string& path);
+
+/// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed
+/// every second of data, so that a killed run leaves a file that opens. Earliest HDF5 file format.
+/// The layout, units and attributes are in docs/recordings.md.
+class Recorder {
+ public:
+  /// @param settings_json kept as an attribute. @throws InputError as check_recording.
+  Recorder(const std::string& path, const std::string& settings_json);
+  ~Recorder();  ///< closes like close(), but keeps quiet about errors
+
+  /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when
+  /// there is one (its points and pressures, padded with NaN to kMaxPathPoints). @throws InputError
+  /// when the disk is full.
+  void append(const TargetFrame& frame, const HandFrame& hands, const Plan* plan,
+              const PlanStats* stats);
+  /// Writes an attribute of the whole recording, e.g. the run's summary.
+  void set_attribute(const std::string& name, const std::string& value);
+  void close();
+  bool open() const;  ///< neither closed nor given up on a full disk
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads the target fields of a recording.
+class RecordingReader {
+ public:
+  /// @throws InputError: not a recording, truncated, of another version.
+  explicit RecordingReader(const std::string& path);
+  ~RecordingReader();
+  int frames() const;
+  std::string scene() const;  ///< of the attribute "scene", empty when absent
+  /// @throws InputError for a frame that is not there.
+  TargetFrame frame(int i) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace prostm

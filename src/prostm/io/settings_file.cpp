@@ -1,0 +1,158 @@
+#include "prostm/io/settings_file.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "prostm/core/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/json.hpp"
+#include "prostm/core/nearest_name.hpp"
+
+namespace prostm {
+namespace {
+
+/// Lists the names of a group's fields.
+class NameCollector : public SettingsVisitor {
+ public:
+  void field(const char* name, double&) override { names.emplace_back(name); }
+  void field(const char* name, int&) override { names.emplace_back(name); }
+  void field(const char* name, bool&) override { names.emplace_back(name); }
+  void field(const char* name, std::string&) override { names.emplace_back(name); }
+  std::vector<std::string> names;
+};
+
+/// Sets the fields that a table gives.
+class TomlReader : public SettingsVisitor {
+ public:
+  TomlReader(const toml::table& table, const std::string& file, const std::string& group)
+      : table_(table), file_(file), group_(group) {}
+
+  void field(const char* name, double& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_number()) fail(name, *node, "must be a number");
+    const double x = *node->value<double>();
+    if (!std::isfinite(x)) fail(name, *node, "must be finite");
+    value = x;
+  }
+  void field(const char* name, int& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_integer()) fail(name, *node, "must be a whole number");
+    const std::int64_t x = node->as_integer()->get();
+    if (x < std::numeric_limits<int>::min() || x > std::numeric_limits<int>::max()) {
+      fail(name, *node, "must lie within 32 bits");
+    }
+    value = static_cast<int>(x);
+  }
+  void field(const char* name, bool& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_boolean()) fail(name, *node, "must be true or false");
+    value = node->as_boolean()->get();
+  }
+  void field(const char* name, std::string& value) override {
+    const toml::node* node = table_.get(name);
+    if (node == nullptr) return;
+    if (!node->is_string()) fail(name, *node, "must be a text in quotes");
+    value = node->as_string()->get();
+  }
+
+ private:
+  [[noreturn]] void fail(const char* name, const toml::node& node, const char* bound) const {
+    throw InputError(
+        fmt::format("{}, line {}: {}.{} {}", file_, node.source().begin.line, group_, name, bound));
+  }
+
+  const toml::table& table_;
+  const std::string& file_;
+  const std::string& group_;
+};
+
+/// Writes the fields of a group.
+class JsonWriter : public SettingsVisitor {
+ public:
+  explicit JsonWriter(nlohmann::ordered_json& object) : object_(object) {}
+  void field(const char* name, double& value) override { object_[name] = value; }
+  void field(const char* name, int& value) override { object_[name] = value; }
+  void field(const char* name, bool& value) override { object_[name] = value; }
+  void field(const char* name, std::string& value) override { object_[name] = value; }
+
+ private:
+  nlohmann::ordered_json& object_;
+};
+
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& e) {
+    throw InputError(fmt::format("{}, line {}, column {}: is not valid TOML ({:.200})", file,
+                                 e.source().begin.line, e.source().begin.column, e.description()));
+  }
+}
+
+void read_group(const toml::table& table, const SettingsGroup& group, const std::string& file,
+                std::vector<std::string>& given) {
+  NameCollector known;
+  group.visit(known);
+  for (const auto& [key, node] : table) {
+    if (std::find(known.names.begin(), known.names.end(), key.str()) == known.names.end()) {
+      throw InputError(fmt::format("{}, line {}: {} has no setting \"{}\"; {}", file,
+                                   key.source().begin.line, group.name, shown_name(key.str()),
+                                   suggestion(key.str(), known.names)));
+    }
+    given.push_back(group.name + "." + std::string(key.str()));
+  }
+  TomlReader reader(table, file, group.name);
+  group.visit(reader);
+}
+
+}  // namespace
+
+std::vector<std::string> read_settings(const std::string& path,
+                                       const std::vector<SettingsGroup>& groups) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+  return settings_from_toml(read_file(path, kMaxBytes), path, groups);
+}
+
+std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
+                                            const std::vector<SettingsGroup>& groups) {
+  std::vector<std::string> given;
+  const toml::table document = parse_toml(text, name);
+  std::vector<std::string> known(groups.size());
+  std::transform(groups.begin(), groups.end(), known.begin(), [](const auto& g) { return g.name; });
+  for (const auto& [key, node] : document) {
+    const std::string_view typed = key.str();
+    const auto group = std::find_if(groups.begin(), groups.end(),
+                                    [typed](const auto& g) { return g.name == typed; });
+    if (group == groups.end()) {
+      throw InputError(fmt::format("{}, line {}: there is no group of settings \"{}\"; {}", name,
+                                   key.source().begin.line, shown_name(key.str()),
+                                   suggestion(key.str(), known)));
+    }
+    const toml::table* table = node.as_table();
+    if (table == nullptr) {
+      throw InputError(fmt::format("{}, line {}: {} must be a group of settings, written [{}]",
+                                   name, key.source().begin.line, group->name, group->name));
+    }
+    read_group(*table, *group, name, given);
+  }
+  return given;
+}
+
+std::string settings_to_json(const std::vector<SettingsGroup>& groups) {
+  auto document = nlohmann::ordered_json::object();
+  for (const SettingsGroup& group : groups) {
+    nlohmann::ordered_json& object = document[group.name] = nlohmann::ordered_json::object();
+    JsonWriter writer(object);
+    group.visit(writer);
+  }
+  return to_text(document);
+}
+
+}  // namespace prostm

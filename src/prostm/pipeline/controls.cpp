@@ -1,0 +1,284 @@
+#include "prostm/pipeline/controls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/units.hpp"
+
+namespace prostm {
+namespace {
+
+// ---- lists of choices ----
+
+constexpr ControlChoice kScenes[] = {{"one-plume", "One wide plume"},
+                                     {"two-plumes", "Two thin plumes"},
+                                     {"three-plumes", "Three thin plumes"},
+                                     {"four-plumes", "Four thin plumes"},
+                                     {"still-air", "Still air"}};
+// the same scenes by their plumes
+constexpr std::string_view kScenesByPlumes[] = {"still-air", "one-plume", "two-plumes",
+                                                "three-plumes", "four-plumes"};
+constexpr ControlChoice kMethods[] = {{"pro-stm", "PRO-STM"}, {"am", "AM"}};
+constexpr ControlChoice kPresets[] = {
+    {"best", "Best"}, {"fast", "Fast"}, {"paper", "Paper"}, {"paper-valid", "Paper, made valid"}};
+constexpr ControlChoice kSwitches[] = {{"lap", "At lap ends"}, {"now", "At once"}};
+constexpr ControlChoice kWaveforms[] = {{"sine-magnitude", "|sin|"},
+                                        {"raised-cosine", "Raised cosine"}};
+constexpr ControlChoice kSources[] = {{"scripted", "Scripted"},
+                                      {"recording", "Recording"},
+                                      {"leap", "Leap tracker"},
+                                      {"openxr", "OpenXR"},
+                                      {"page", "None: only the page's"}};
+
+/// Place of a value in a list of choices; 0 when it is not there.
+template <std::size_t N>
+double place(const ControlChoice (&choices)[N], const std::string& value) {
+  for (std::size_t i = 0; i < N; ++i)
+    if (choices[i].value == value) return static_cast<double>(i);
+  return 0.0;
+}
+
+template <std::size_t N>
+std::string chosen(const ControlChoice (&choices)[N], double value) {
+  return std::string(choices[static_cast<std::size_t>(value)].value);
+}
+
+// ---- when a control does something ----
+
+bool always(const LiveSettings&) {
+  return true;
+}
+bool is_am(const LiveSettings& s) {
+  return s.pipeline.method == "am";
+}
+bool is_pro_stm(const LiveSettings& s) {
+  return !is_am(s);
+}
+bool is_fitted(const LiveSettings& s) {
+  return is_pro_stm(s) && (s.pipeline.plan.preset == "best" || s.pipeline.plan.preset == "fast");
+}
+bool has_jets(const LiveSettings& s) {
+  return s.pipeline.scene != "still-air";
+}
+bool has_source(const LiveSettings& s, std::size_t place) {
+  return std::find(s.sources.begin(), s.sources.end(), kSources[place].value) != s.sources.end();
+}
+
+// ---- what more than one line has to do ----
+
+double plumes(const LiveSettings& s) {
+  const auto* const found =
+      std::find(std::begin(kScenesByPlumes), std::end(kScenesByPlumes), s.pipeline.scene);
+  return found == std::end(kScenesByPlumes) ? 0.0 : static_cast<double>(found - kScenesByPlumes);
+}
+
+/// A clock runs: preset best gets a share of an update, and no other preset takes a budget.
+void set_preset(LiveSettings& s, double value) {
+  PlanSettings& plan = s.pipeline.plan;
+  plan.preset = chosen(kPresets, value);
+  plan.budget = plan.preset == "best" ? kLiveBudget : 0.0;
+}
+
+void set_paths(LiveSettings& s, double value) {
+  s.pipeline.plan.paths = s.pipeline.am.foci = s.pipeline.emit.foci = static_cast<int>(value);
+}
+
+/// One width for all places, whatever the array's is.
+void set_sigma(LiveSettings& s, double millimetres) {
+  s.pipeline.plan.sigma = s.pipeline.am.sigma = 1e-3 * millimetres;
+  s.pipeline.array_width = false;
+}
+
+std::vector<RunControl> make_controls() {
+  using S = LiveSettings;
+  std::vector<RunControl> all;
+  const auto number = [&](std::string_view group, std::string_view id, std::string_view label,
+                          std::string_view unit, double low, double high, double step,
+                          double (*get)(const S&), void (*set)(S&, double),
+                          bool (*enabled)(const S&), std::string_view help) {
+    all.push_back({id,
+                   group,
+                   label,
+                   help,
+                   unit,
+                   ControlKind::Number,
+                   low,
+                   high,
+                   step,
+                   {},
+                   get,
+                   set,
+                   enabled,
+                   nullptr});
+  };
+  const auto choice = [&](std::string_view group, std::string_view id, std::string_view label,
+                          std::span<const ControlChoice> choices, double (*get)(const S&),
+                          void (*set)(S&, double), bool (*enabled)(const S&),
+                          std::string_view help) {
+    all.push_back({id, group, label, help, "", ControlKind::Choice, 0.0,
+                   static_cast<double>(choices.size()) - 1.0, 1.0, choices, get, set, enabled,
+                   nullptr});
+  };
+  const auto toggle = [&](std::string_view group, std::string_view id, std::string_view label,
+                          double (*get)(const S&), void (*set)(S&, double),
+                          bool (*enabled)(const S&), std::string_view help) {
+    all.push_back({id,
+                   group,
+                   label,
+                   help,
+                   "",
+                   ControlKind::Switch,
+                   0.0,
+                   1.0,
+                   1.0,
+                   {},
+                   get,
+                   set,
+                   enabled,
+                   nullptr});
+  };
+
+  choice(
+      "Smoke", "scene", "Scene", kScenes,
+      [](const S& s) { return place(kScenes, s.pipeline.scene); },
+      [](S& s, double v) { s.pipeline.scene = chosen(kScenes, v); }, always,
+      "The smoke that the hand is held into, with the pressure that counts as full output there.");
+  number(
+      "Smoke", "plumes", "Plumes", "", 0, 4, 1, plumes,
+      [](S& s, double v) {
+        s.pipeline.scene = std::string(kScenesByPlumes[static_cast<std::size_t>(v)]);
+      },
+      always, "The scene by its plumes: 0 is still air, 1 a wide plume, more are thin ones.");
+  number(
+      "Smoke", "jet_speed", "Emitter", "×", 0, 2, 0.05,
+      [](const S& s) { return s.pipeline.fluid.jet_speed; },
+      [](S& s, double v) { s.pipeline.fluid.jet_speed = v; }, has_jets,
+      "Speed of the smoke that the emitter blows, over the scene's own. Pressure goes with its "
+      "square.");
+  number(
+      "Smoke", "buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
+      [](const S& s) { return s.pipeline.fluid.buoyancy; },
+      [](S& s, double v) { s.pipeline.fluid.buoyancy = v; }, always,
+      "How strongly undiluted smoke rises.");
+
+  choice(
+      "Plan", "method", "Method", kMethods,
+      [](const S& s) { return place(kMethods, s.pipeline.method); },
+      [](S& s, double v) { s.pipeline.method = chosen(kMethods, v); }, always,
+      "PRO-STM moves focal points along closed paths; AM holds them still and modulates them.");
+  choice(
+      "Plan", "preset", "Preset", kPresets,
+      [](const S& s) { return place(kPresets, s.pipeline.plan.preset); }, set_preset, is_pro_stm,
+      "How paths are planned: the nearest field, a short search, or the paper's own method.");
+  number(
+      "Plan", "paths", "Paths", "", 1, kMaxPaths, 1,
+      [](const S& s) {
+        return static_cast<double>(is_am(s) ? s.pipeline.am.foci : s.pipeline.plan.paths);
+      },
+      set_paths, always, "Focal points at the same time; more share the array's power.");
+  number(
+      "Plan", "speed", "Speed", "m/s", 2, 8, 0.5, [](const S& s) { return s.pipeline.plan.speed; },
+      [](S& s, double v) { s.pipeline.plan.speed = v; }, is_pro_stm,
+      "Of the focal points; the longest path is the speed over the draw rate.");
+  number(
+      "Plan", "gain", "Gain γ", "", 0.5, 3, 0.1, [](const S& s) { return s.pipeline.plan.gain; },
+      [](S& s, double v) { s.pipeline.plan.gain = v; }, is_pro_stm,
+      "Rendered pressure over the pressure that a path is felt as.");
+  toggle(
+      "Plan", "array_width", "Array's own width",
+      [](const S& s) { return s.pipeline.array_width ? 1.0 : 0.0; },
+      [](S& s, double v) { s.pipeline.array_width = v != 0.0; }, is_fitted,
+      "Presets Best and Fast count on the width of the array's focus where the hand is.");
+  number(
+      "Plan", "sigma", "Width σ", "mm", 4, 20, 0.1,
+      [](const S& s) { return std::round(1e4 * s.pipeline.sigma()) * 0.1; }, set_sigma, always,
+      "Fall-off of a focal point that the planner counts on where it is not the array's own.");
+  number(
+      "Plan", "bending", "Smoothness", "", 0, 0.3, 0.01,
+      [](const S& s) { return s.pipeline.plan.fit_bending; },
+      [](S& s, double v) { s.pipeline.plan.fit_bending = v; }, is_fitted,
+      "How much bends in a path cost, of the presets Best and Fast.");
+
+  choice(
+      "Output", "switch", "Take over", kSwitches,
+      [](const S& s) { return place(kSwitches, s.pipeline.emit.switch_at); },
+      [](S& s, double v) { s.pipeline.emit.switch_at = chosen(kSwitches, v); }, is_pro_stm,
+      "Whether a new plan waits for the end of each path's lap, or cuts it short.");
+  number(
+      "Output", "tilt", "Tilt compensation", "×", 1, 4, 0.1,
+      [](const S& s) { return s.pipeline.emit.tilt_bound; },
+      [](S& s, double v) { s.pipeline.emit.tilt_bound = v; }, always,
+      "The most by which pressure makes up for skin that is tilted away; 1 is none.");
+  number(
+      "Output", "am_frequency", "Modulation", "Hz", 50, 300, 10,
+      [](const S& s) { return s.pipeline.emit.am_frequency; },
+      [](S& s, double v) { s.pipeline.emit.am_frequency = v; }, is_am,
+      "Of the intensity of AM's focal points.");
+  choice(
+      "Output", "am_waveform", "Waveform", kWaveforms,
+      [](const S& s) { return place(kWaveforms, s.pipeline.emit.am_waveform); },
+      [](S& s, double v) { s.pipeline.emit.am_waveform = chosen(kWaveforms, v); }, is_am,
+      "Of the modulation.");
+
+  choice(
+      "Hand", "source", "Hands from", kSources,
+      [](const S& s) { return place(kSources, s.source); },
+      [](S& s, double v) { s.source = chosen(kSources, v); }, always,
+      "Where hands come from while the page's own hand lets go.");
+  all.back().available = has_source;
+  toggle(
+      "Hand", "prediction", "Prediction",
+      [](const S& s) { return s.pipeline.track.prediction > 0.0 ? 1.0 : 0.0; },
+      [](S& s, double v) {
+        s.pipeline.track.prediction = v != 0.0 ? TrackSettings{}.prediction : 0.0;
+      },
+      always, "Moves tracked hands on by the time that passes until they are felt.");
+  return all;
+}
+
+}  // namespace
+
+std::span<const RunControl> run_controls() {
+  static const std::vector<RunControl> kControls = make_controls();
+  return kControls;
+}
+
+int control_index(std::string_view id) {
+  const auto all = run_controls();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].id == id) return static_cast<int>(i);
+  return -1;
+}
+
+double control_number(const RunControl& control, const ControlValue& value,
+                      const LiveSettings& settings) {
+  std::ostringstream wrong;
+  wrong << control.id << " must be ";
+  if (control.kind == ControlKind::Switch) {
+    if (const bool* on = std::get_if<bool>(&value)) return *on ? 1.0 : 0.0;
+    wrong << "true or false";
+  } else if (control.kind == ControlKind::Number) {
+    const double* number = std::get_if<double>(&value);
+    const bool whole = control.step == 1.0;
+    if (number != nullptr && *number >= control.low && *number <= control.high &&
+        (!whole || *number == std::floor(*number))) {
+      return *number;
+    }
+    wrong << (whole ? "a whole number" : "a number") << " between " << control.low << " and "
+          << control.high << (control.unit.empty() ? "" : " ") << control.unit;
+  } else {
+    const auto* name = std::get_if<std::string>(&value);
+    const char* before = "";
+    for (std::size_t i = 0; i < control.choices.size(); ++i) {
+      if (control.available != nullptr && !control.available(settings, i)) continue;
+      if (name != nullptr && *name == control.choices[i].value) return static_cast<double>(i);
+      wrong << before << control.choices[i].value;
+      before = " or ";
+    }
+  }
+  throw InputError(wrong.str());
+}
+
+}  // namespace prostm

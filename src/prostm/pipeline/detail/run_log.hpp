@@ -1,0 +1,52 @@
+#pragma once
+/// What the threads of a run count. Private to pipeline.
+
+#include <cstdint>
+
+#include "prostm/pipeline/latency.hpp"
+#include "prostm/pipeline/runner.hpp"
+
+namespace prostm {
+
+/// Counts what the smoke stage did; used by its thread alone until that has ended.
+class SmokeLog {
+ public:
+  /// A step of the smoke that has just met the hands.
+  void meet(const ContactFrame& frame);
+  /// The fluid has settled after it.
+  void settle(const FluidStats& stats);
+  /// Steps that were let go.
+  void skip(std::int64_t steps) { skipped_ += steps; }
+
+  std::int64_t steps() const { return steps_; }
+  void write(RunSummary& out) const;
+
+ private:
+  std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0, joints_outside_ = 0, skin_cells_ = 0,
+               steep_cells_ = 0;
+  double divergence_ = 0.0;
+  Distribution track_, hand_, fluid_, contact_;
+};
+
+/// Counts what the plan stage did, and follows plans to the device; used by its thread alone until
+/// that has ended.
+class PlanLog {
+ public:
+  explicit PlanLog(bool realtime) : latency_(realtime) {}
+
+  /// @param run_start what the device's clock shows at run time 0 [s].
+  void add(const ContactFrame& contact, const PlanFrame& frame, double run_start);
+  /// Reads what the emitter reported since.
+  void follow(Emitter& emitter, const Device& device);
+
+  const LatencyLog& latency() const { return latency_; }
+  void write(RunSummary& out) const;
+
+ private:
+  std::int64_t plans_ = 0, empty_ = 0, long_paths_ = 0, crossings_ = 0;
+  double max_path_length_ = 0.0, max_skin_length_ = 0.0;
+  Distribution plan_, lift_;
+  LatencyLog latency_;
+};
+
+}  // namespace prostm

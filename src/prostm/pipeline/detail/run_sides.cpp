@@ -1,0 +1,224 @@
+#include "prostm/pipeline/detail/run_sides.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "prostm/core/stage_timer.hpp"
+
+namespace prostm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kLatestPrepare = 0.8;  // of a step, after which the next one is prepared anyway
+constexpr std::chrono::microseconds kPoll{200};
+
+void sleep_until(double time) {
+  std::this_thread::sleep_until(Clock::time_point(
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time))));
+}
+
+}  // namespace
+
+RunPace::RunPace(const PipelineSettings& settings, const RunOptions& options)
+    : realtime(options.mode == RunMode::RealTime),
+      prepare_early(options.prepare_early),
+      stay(options.stay),
+      dt(1.0 / settings.fluid_rate),
+      steps(std::llround(options.seconds * settings.fluid_rate)),
+      frame_wait(std::min(settings.frame_wait, 0.5 * dt)) {}
+
+// ---- the fluid ----
+
+void FluidSide::run() noexcept {
+  shared_.end.guard([this] { pace_.realtime ? in_real_time() : without_clock(); });
+  shared_.smoke_ended.store(true, std::memory_order_release);
+  shared_.ready.release();
+}
+
+void FluidSide::count(const ContactFrame& frame) {
+  log_.meet(frame);
+  log_.settle(pipeline_.smoke().fluid_stats());
+}
+
+/// A segment ends with a whole update, so that a run that is paused goes on by whole ones.
+bool FluidSide::goes_on() const {
+  if (shared_.end.over() || (done() && !shared_.endless)) return false;
+  return !(shared_.halt && pipeline_.smoke().targets(log_.steps()));
+}
+
+double FluidSide::run_time() const {
+  return steady_now() - shared_.start;
+}
+
+void FluidSide::set_clock() {
+  shared_.start = steady_now() - time();
+}
+
+/// The newest target wins.
+void FluidSide::in_real_time() {
+  SmokeStage& smoke = pipeline_.smoke();
+  while (goes_on()) {
+    if (pace_.prepare_early) smoke.prepare(pace_.dt);
+    ++slot_;
+    sleep_until(shared_.start + time());
+    // more than a step behind: let steps go rather than run after the clock
+    const auto due = static_cast<std::int64_t>(run_time() / pace_.dt);
+    if (due > slot_) {
+      const std::int64_t last = pace_.stay ? due : std::min(due, pace_.steps);
+      log_.skip(last - slot_);
+      slot_ = last;
+    }
+    const double begins = time();
+    ContactFrame& frame = shared_.newest.draft();
+    take_hands(begins, smoke.targets(log_.steps() + 1) ? pace_.frame_wait : 0.0, frame);
+    if (!pace_.prepare_early) smoke.prepare(pace_.dt);
+    const bool targeted = meet(begins, frame);
+    if (targeted) {
+      shared_.ready.release();
+      // the planner gets the cores while it plans
+      if (pace_.prepare_early) wait_for_plan(log_.steps(), begins + kLatestPrepare * pace_.dt);
+    }
+    smoke.settle();
+    settled(begins);
+  }
+}
+
+/// The hands of `frame`, the draft of the newest, meet the fluid; true when that made a target,
+/// which is published.
+bool FluidSide::meet(double due, ContactFrame& frame) {
+  pipeline_.smoke().meet(log_.steps() + 1, due, pace_.dt, frame);
+  log_.meet(frame);
+  if (shared_.snapshots != nullptr) shared_.snapshots->step(frame, pipeline_.smoke());
+  const bool targeted = frame.targeted;
+  if (targeted) {
+    shared_.newest.publish();
+    ++published_;
+  }
+  return targeted;
+}
+
+void FluidSide::settled(double time) {
+  log_.settle(pipeline_.smoke().fluid_stats());
+  if (shared_.snapshots != nullptr) shared_.snapshots->smoke(pipeline_.smoke().world());
+  shared_.steps.store(log_.steps(), std::memory_order_relaxed);
+  shared_.run_time.store(time, std::memory_order_relaxed);
+}
+
+/// The hands for a step that is due, with a tracker's frame that came in since if one comes within
+/// `wait` [s].
+void FluidSide::take_hands(double due, double wait, ContactFrame& frame) {
+  for (;;) {
+    const double time = run_time();
+    pipeline_.smoke().take(time, frame);
+    if (frame.arrival >= due || time >= due + wait || shared_.end.over() || shared_.halt) return;
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+/// Until the plan of this step was handed over, or until a run time [s].
+void FluidSide::wait_for_plan(std::int64_t step, double latest) const {
+  while (shared_.planned_step.load(std::memory_order_acquire) < step && run_time() < latest)
+    std::this_thread::sleep_for(kPoll);
+}
+
+void FluidSide::run_to_target() {
+  SmokeStage& smoke = pipeline_.smoke();
+  for (bool targeted = false; !targeted;) {
+    smoke.prepare(pace_.dt);
+    ++slot_;
+    set_clock();
+    ContactFrame& frame = shared_.newest.draft();
+    smoke.take(time(), frame);
+    targeted = meet(time(), frame);
+    smoke.settle();
+    settled(time());
+  }
+}
+
+/// Plan k uses fluid step k · steps_per_plan, nothing is dropped.
+void FluidSide::without_clock() {
+  double time = 0.0;
+  for (std::int64_t n = 1; n <= pace_.steps && !shared_.end.over(); ++n) {
+    ContactFrame* frame = nullptr;
+    while ((frame = shared_.targets.back()) == nullptr && !shared_.end.over())
+      std::this_thread::yield();
+    if (frame == nullptr) break;
+    time += pace_.dt;
+    pipeline_.smoke().run(n, time, pace_.dt, *frame);
+    count(*frame);
+    if (frame->targeted) shared_.targets.commit();
+    shared_.run_time.store(time, std::memory_order_relaxed);
+  }
+}
+
+// ---- the planner ----
+
+void PlanSide::run() noexcept {
+  shared_.end.guard([this] { pace_.realtime ? in_real_time() : without_clock(); });
+  shared_.plan_ended.store(true, std::memory_order_release);
+}
+
+void PlanSide::in_real_time() {
+  for (bool ended = false; !ended;) {
+    shared_.ready.acquire();
+    while (shared_.ready.try_acquire()) {  // targets that are overwritten by now
+    }
+    ended = shared_.smoke_ended.load(std::memory_order_acquire);
+    plan_newest();
+  }
+}
+
+void PlanSide::without_clock() {
+  // what was asked for before the run was stopped is still planned
+  while (!shared_.end.failed()) {
+    const bool last = shared_.smoke_ended.load(std::memory_order_acquire);
+    if (ContactFrame* frame = shared_.targets.front()) {
+      play_until(pipeline_.device(), frame->taken);
+      plan(*frame);
+      shared_.targets.pop();
+    } else if (last) {
+      play_until(pipeline_.device(), shared_.run_time.load(std::memory_order_relaxed));
+      break;
+    } else {
+      std::this_thread::yield();
+    }
+  }
+}
+
+void PlanSide::plan_newest() {
+  if (shared_.newest.refresh()) plan(shared_.newest.value());
+}
+
+void PlanSide::plan(const ContactFrame& contact) {
+  Update* update = shared_.updates.back();
+  while (update == nullptr && !pace_.realtime && !shared_.end.over()) {
+    std::this_thread::yield();
+    update = shared_.updates.back();
+  }
+  PlanFrame& frame = update != nullptr ? update->plan : spare_;
+  const double start = pace_.realtime ? steady_now() - shared_.start : contact.taken;
+  pipeline_.plans().run(contact, frame);
+  shared_.planned_step.store(contact.step, std::memory_order_release);
+  frame.start = start;
+  count(contact, frame);
+  if (frame.status == PlanStatus::Planned) shared_.planned_at = steady_now();
+  if (shared_.snapshots != nullptr)
+    shared_.snapshots->plan(contact, frame, log_.latency().last_total());
+  if (update != nullptr) {
+    update->contact = contact;
+    shared_.updates.commit();
+  } else {
+    ++unobserved_;
+  }
+}
+
+void PlanSide::count(const ContactFrame& contact, const PlanFrame& frame) {
+  log_.add(contact, frame, shared_.start);
+  follow();
+  shared_.plans.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace prostm

@@ -1,0 +1,329 @@
+#include "prostm/pipeline/pipeline.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include "prostm/core/require.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/device/device_kinds.hpp"
+#include "prostm/emit/compensation.hpp"
+
+namespace prostm {
+namespace {
+
+const PipelineSettings& checked(const PipelineSettings& settings) {
+  require_between("fluid_rate", settings.fluid_rate, 10.0, 1000.0, "Hz");
+  require_between("fluid_steps_per_plan", settings.fluid_steps_per_plan, 0, 100);
+  require_between("frame_wait", settings.frame_wait, 0.0, 0.1, "s");
+  if (!settings.X_DT.matrix().allFinite() || !settings.X_DT.linear().isUnitary(1e-6) ||
+      settings.X_DT.linear().determinant() < 0.0) {
+    throw std::invalid_argument(
+        "X_DT is no pose; it must be a rotation and a place that is finite");
+  }
+  return settings;
+}
+
+/// Hands as they were so long before [s].
+void put_back(double time, HandFrame& frame) {
+  if (time == 0.0) return;
+  frame.time -= time;
+  for (Hand& hand : frame.hands) {
+    for (std::size_t j = 0; j < kJointCount; ++j) hand.position[j] -= time * hand.velocity[j];
+  }
+}
+
+/// Whether the smoke's stage is built from the same.
+bool same_smoke(const PipelineSettings& a, const PipelineSettings& b) {
+  return a.track == b.track && a.fluid == b.fluid && a.fluid_pressure == b.fluid_pressure &&
+         a.contact == b.contact && a.scene == b.scene;
+}
+
+/// Whether the planner's stage is.
+bool same_plans(const PipelineSettings& a, const PipelineSettings& b) {
+  return a.plan == b.plan && a.am == b.am && a.emit == b.emit && a.scene == b.scene &&
+         a.method == b.method && a.array_width == b.array_width;
+}
+
+void add(const EmitStats& more, EmitStats& sum) {
+  sum.samples += more.samples;
+  sum.saturated += more.saturated;
+  sum.limited += more.limited;
+  sum.faded += more.faded;
+  sum.laps_started += more.laps_started;
+  sum.laps_cut += more.laps_cut;
+  sum.stalls += more.stalls;
+  sum.refused_plans += more.refused_plans;
+  sum.dropped_paths += more.dropped_paths;
+  sum.max_focus_step = std::max(sum.max_focus_step, more.max_focus_step);
+}
+
+/// The device that the settings name, or one of the caller's own.
+std::unique_ptr<Device> device_of(const PipelineSettings& settings, std::unique_ptr<Device> own) {
+  if (own != nullptr) return as_stream(std::move(own));
+  return make_device(settings.device, settings.device_setup());
+}
+
+/// The planner of the method.
+std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
+                                              std::size_t max_cells, double scene_full_scale,
+                                              double emission_rate) {
+  if (method_from_name(settings.method) == Method::Am) return AmPlanner(settings.am, max_cells);
+  PlanSettings plan = plan_settings(settings, emission_rate);
+  if (plan.full_scale_pressure == 0.0)
+    plan.full_scale_pressure = emit_settings(settings, scene_full_scale).full_scale_pressure;
+  return Planner(plan, max_cells);
+}
+
+}  // namespace
+
+SmokeStage::SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+                       std::unique_ptr<World> world)
+    : hands_(std::move(hands)),
+      filter_(checked(settings).track),
+      X_DT_(settings.X_DT),
+      pool_(settings.threads),
+      world_(world ? std::move(world) : make_smoke(settings, pool_)),
+      rasteriser_(world_->grid()),
+      contact_(settings.contact, world_->grid()),
+      steps_per_plan_(settings.steps_per_plan()),
+      side_view_(settings.side_view) {}
+
+void SmokeStage::adopt(SmokeStage& other) {
+  hands_ = std::move(other.hands_);
+  mute_ = other.mute_;
+  X_DT_ = other.X_DT_;
+  world_->go_on_from(*other.world_);
+}
+
+void SmokeStage::run(std::int64_t step, double time, double dt, ContactFrame& out) {
+  prepare(dt);
+  take(time, out);
+  meet(step, time, dt, out);
+  settle();
+}
+
+void SmokeStage::prepare(double dt) {
+  const StageTimer timer;
+  world_->prepare(dt);
+  const double time = timer.seconds();
+  fluid_time_ += time;
+  since_taken_ += time;
+}
+
+void SmokeStage::take(double time, ContactFrame& out) {
+  hands_->sample(time, out.hands);
+  if (mute_) mute_->set(MuteReason::NoHand, out.hands.hands.empty());
+  out.taken = time;
+  out.arrival = time - out.hands.age;
+  since_taken_ = 0.0;
+}
+
+void SmokeStage::meet(std::int64_t step, double due, double dt, ContactFrame& out) {
+  StageTimer timer;
+  out.step = step;
+  out.due = due;
+  put_back(out.taken - due, out.hands);
+  to_device(X_DT_, out.hands);
+  filter_.apply(dt, out.hands);
+  out.track_time = timer.lap();
+
+  rasteriser_.rasterise(out.hands, pool_);
+  out.hand_time = timer.lap();
+
+  world_->meet(rasteriser_.raster());
+  const double meeting = timer.lap();
+  out.meet_time = since_taken_ + meeting;
+  out.fluid_time = fluid_time_ + meeting;
+  fluid_time_ = 0.0;
+
+  out.targeted = targets(step);
+  if (out.targeted) {
+    const PressureSource& pressure = world_->pressure(dt * steps_per_plan_);
+    out.contact = contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target);
+  }
+  out.contact_time = timer.lap();
+  if (out.targeted && side_view_) view_from_side(out.side);
+}
+
+void SmokeStage::settle() {
+  const StageTimer timer;
+  fluid_stats_ = world_->settle();
+  fluid_time_ += timer.seconds();
+}
+
+void SmokeStage::view_from_side(SideView& out) const {
+  const GridShape& g = world_->grid();
+  const std::size_t size = static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.nz);
+  out.smoke.assign(size, 0.0F);
+  out.hand.assign(size, 0);
+  const Fluid* fluid = world_->fluid();
+  if (fluid == nullptr) return;
+  const auto smoke = fluid->smoke();
+  const auto free = fluid->fluid_cells();
+  for (int k = 0; k < g.nz; ++k) {
+    for (int j = 0; j < g.ny; ++j) {
+      for (int i = 0; i < g.nx; ++i) {
+        const std::size_t c = g.cell_index(i, j, k),
+                          pixel = g.cell_index(i, 0, 0) + static_cast<std::size_t>(k * g.nx);
+        out.smoke[pixel] = std::max(out.smoke[pixel], smoke[c]);
+        if (free[c] == 0) out.hand[pixel] = 1;
+      }
+    }
+  }
+}
+
+PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale,
+                     const DeviceInfo& device)
+    : planner_(make_planner(settings, max_cells, full_scale, device.emission_rate())),
+      emit_settings_(emit_settings(settings, full_scale)),
+      emission_rate_(device.emission_rate()),
+      emitter_(make_emitter(method_from_name(settings.method), emit_settings_, emission_rate_)),
+      samples_(make_sample_chain(*emitter_, device, {.power = emit_settings_.power_limit})) {}
+
+void PlanStage::run(const ContactFrame& contact, PlanFrame& out) {
+  StageTimer timer;
+  out.id = ++updates_;
+  out.start = contact.taken;
+  out.max_skin_length = 0.0;
+  out.full_scale_pressure = full_scale_pressure();
+  out.emission_rate = emission_rate_;
+  out.status = std::visit(
+      [&](auto& planner) { return planner.plan(contact.target, out.plan, out.stats); }, planner_);
+  out.plan_time = timer.lap();
+  if (out.status != PlanStatus::Planned) {
+    emitter_->lose();
+  } else {
+    LiftedPlan& lifted = emitter_->draft();
+    lift(out.plan, contact.target, lifted);
+    compensate_tilt(lifted, contact.target, emit_settings_.tilt_bound);
+    lifted.id = out.id;
+    lifted.hand_time = contact.arrival;
+    for (const LiftedPath& path : lifted.paths)
+      out.max_skin_length = std::max(out.max_skin_length, path.length);
+    emitter_->submit();
+  }
+  out.lift_time = timer.lap();
+}
+
+void play_until(Device& device, double time) {
+  const auto due = static_cast<std::int64_t>(std::llround(time * device.info().sample_rate));
+  const std::int64_t blocks = (due - device.samples()) / device.info().block_samples;
+  if (blocks > 0) device.pull(static_cast<int>(blocks));
+}
+
+Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+                   std::shared_ptr<Mute> mute, std::unique_ptr<Device> device,
+                   std::unique_ptr<World> world)
+    : settings_(settings),
+      mute_(std::move(mute)),
+      own_world_(world != nullptr),
+      smoke_(std::make_unique<SmokeStage>(settings, std::move(hands), std::move(world))),
+      device_(device_of(settings, std::move(device))),
+      plans_(std::make_unique<PlanStage>(settings, smoke_->max_cells(),
+                                         smoke_->world().full_scale_pressure(), device_->info())) {
+  if (device_->info().keeps_time) smoke_->tell(mute_);
+  plans_->emitter().obey(mute_);
+  if (device_->start(plans_->samples()) != DeviceStatus::Running)
+    throw std::invalid_argument(device_->problem());
+}
+
+Pipeline::~Pipeline() {
+  device_->stop();
+}
+
+void Pipeline::reconfigure(const PipelineSettings& settings) {
+  std::unique_ptr<SmokeStage> smoke;
+  if (!own_world_ && !same_smoke(settings, settings_))
+    smoke = std::make_unique<SmokeStage>(settings, nullptr);
+  const SmokeStage& next = smoke ? *smoke : *smoke_;
+  std::unique_ptr<PlanStage> plans;
+  if (!same_plans(settings, settings_) || next.max_cells() != smoke_->max_cells()) {
+    plans = std::make_unique<PlanStage>(settings, next.max_cells(),
+                                        next.world().full_scale_pressure(), device_->info());
+    plans->continue_from(*plans_);
+    plans->emitter().obey(mute_);
+    const std::string problem = restart(*plans);
+    if (!problem.empty()) throw std::invalid_argument(problem);
+  }
+  // nothing fails from here on
+  if (smoke) {
+    smoke->adopt(*smoke_);
+    smoke_ = std::move(smoke);
+  }
+  if (plans) plans_ = std::move(plans);
+  smoke_->set_steps_per_plan(settings.steps_per_plan());
+  settings_ = settings;
+}
+
+std::string Pipeline::restart(PlanStage& plans) {
+  silence();
+  device_before_ = device_stats();
+  if (device_->start(plans.samples()) == DeviceStatus::Running) {
+    add(plans_->emitter().stats(), emit_before_);
+    limited_before_ += plans_->samples().limited();
+    return {};
+  }
+  std::string problem = device_->problem();
+  device_->start(plans_->samples());
+  return problem;
+}
+
+void Pipeline::silence() {
+  fade_out();
+  device_->stop();
+}
+
+/// Until a block that follows the fade is played, however late the device's thread is.
+void Pipeline::fade_out() {
+  constexpr double kLongest = 1.0;  // [s], for a device that plays nothing any more
+  const DeviceInfo& device = device_->info();
+  if (!device.keeps_time) return;
+  plans_->emitter().lose();
+  const double fade = method_from_name(settings_.method) == Method::Am
+                          ? 1.0 / settings_.emit.am_frequency
+                          : settings_.emit.stall_fade_time;
+  // the block that is being filled has not heard of it
+  const std::int64_t silent =
+      device_->stats().blocks + 2 +
+      std::llround(std::ceil(fade * device.sample_rate)) / device.block_samples;
+  const double end = steady_now() + kLongest;
+  const auto waiting = [&] {
+    return device_->status() == DeviceStatus::Running && steady_now() < end &&
+           (device_->stats().blocks <= silent ||
+            device_->samples() <= silent * device.block_samples);
+  };
+  while (waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+DeviceStats Pipeline::device_stats() const {
+  DeviceStats sum = device_->stats();
+  sum.blocks += device_before_.blocks;
+  sum.late_blocks += device_before_.late_blocks;
+  sum.missed_blocks += device_before_.missed_blocks;
+  return sum;
+}
+
+EmitStats Pipeline::emit_stats() const {
+  EmitStats sum = emit_before_;
+  add(plans_->emitter().stats(), sum);
+  return sum;
+}
+
+std::int64_t Pipeline::limited_samples() const {
+  return limited_before_ + plans_->samples().limited();
+}
+
+bool Pipeline::step(double dt) {
+  ++steps_;
+  time_ += dt;
+  // what was planned before plays up to the moment that these hands were seen
+  play_until(*device_, time_);
+  smoke_->run(steps_, time_, dt, contact_frame_);
+  if (contact_frame_.targeted) plans_->run(contact_frame_, plan_frame_);
+  return contact_frame_.targeted;
+}
+
+}  // namespace prostm

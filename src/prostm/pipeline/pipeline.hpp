@@ -1,0 +1,216 @@
+#pragma once
+/// The one place that knows all stages: hand → fluid → contact → plan → emit → device.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "prostm/contact/skin_contact.hpp"
+#include "prostm/core/worker_pool.hpp"
+#include "prostm/device/device.hpp"
+#include "prostm/device/sample_chain.hpp"
+#include "prostm/emit/emitter.hpp"
+#include "prostm/hand/hand_raster.hpp"
+#include "prostm/pipeline/settings.hpp"
+#include "prostm/pipeline/world.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/track/hand_source.hpp"
+
+namespace prostm {
+
+/// The box seen along y, for pictures: x fastest, then z.
+struct SideView {
+  std::vector<float> smoke;        ///< nx·nz, the densest along y, 0..1
+  std::vector<std::uint8_t> hand;  ///< nx·nz, 1 where there is a hand
+};
+
+/// What one fluid step left behind: everything that a plan, a recording or a picture needs.
+struct ContactFrame {
+  std::int64_t step = 0;  ///< fluid steps so far, from 1
+  double arrival = 0.0;   ///< of the tracker's frame; run time [s]
+  double due = 0.0;       ///< when the step was to take the hands; run time [s]
+  double taken = 0.0;     ///< when it took them; run time [s]
+  HandFrame hands;        ///< filtered, in D
+  bool targeted = false;  ///< a plan update follows this step: `target` and `contact` are of now
+  TargetFrame target;
+  SideView side;  ///< when settings.side_view
+  ContactStats contact;
+  double track_time = 0, hand_time = 0, meet_time = 0, contact_time = 0;  ///< [s]
+  double fluid_time = 0;  ///< of the whole fluid step; meet_time is what came after the hands [s]
+};
+
+/// Hand, smoke and skin: the stages that run at the fluid's rate.
+class SmokeStage {
+ public:
+  /// @param world that the hands meet; null: the smoke of the settings.
+  /// @throws std::invalid_argument with a sentence.
+  SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+             std::unique_ptr<World> world = nullptr);
+
+  /// Fluid step `step` (from 1) with the hands at run time `time` [s], dt after the last one; makes
+  /// targets on every `steps_per_plan`th. Writes `due` = `taken` = time.
+  void run(std::int64_t step, double time, double dt, ContactFrame& out);
+
+  /// The same in parts, to the bit: what needs no hands; the hands as they are at run time `time`
+  /// [s], which may be taken again while newer ones are hoped for; from the hands to the targets,
+  /// where the hands are put back along their velocities to where they were when the step was due,
+  /// so that the fluid's steps stay even; and what nobody waits for. @pre called in this order, or
+  /// take() before prepare(); dt the same.
+  void prepare(double dt);
+  void take(double time, ContactFrame& out);
+  void meet(std::int64_t step, double due, double dt, ContactFrame& out);
+  void settle();
+
+  /// Whether a step makes targets.
+  bool targets(std::int64_t step) const { return step % steps_per_plan_ == 0; }
+
+  // between steps of a run that is steered
+  /// Goes on with the hands of another stage, and with its smoke where the boxes are alike.
+  void adopt(SmokeStage& other);
+  void set_hands(std::unique_ptr<HandSource> hands) { hands_ = std::move(hands); }
+  void set_tracker_pose(const Pose& X_DT) { X_DT_ = X_DT; }
+  const Pose& tracker_pose() const { return X_DT_; }
+  void set_steps_per_plan(int steps) { steps_per_plan_ = steps; }
+  /// From now on take() says there whether hands are there (MuteReason::NoHand).
+  void tell(std::shared_ptr<Mute> mute) { mute_ = std::move(mute); }
+
+  const FluidStats& fluid_stats() const { return fluid_stats_; }  ///< of the last whole step
+  const World& world() const { return *world_; }
+  std::size_t max_cells() const { return contact_.max_cells(); }
+  HandSource& hands() { return *hands_; }
+  const HandSource& hands() const { return *hands_; }
+
+ private:
+  std::unique_ptr<HandSource> hands_;
+  std::shared_ptr<Mute> mute_;  // none without a clock
+  HandFilter filter_;
+  Pose X_DT_;
+  WorkerPool pool_;
+  std::unique_ptr<World> world_;
+  HandRasteriser rasteriser_;
+  SkinContact contact_;
+  FluidStats fluid_stats_;
+  double fluid_time_ = 0.0;   // of the fluid, since the last meet() [s]
+  double since_taken_ = 0.0;  // of the fluid, since the hands were taken [s]
+  void view_from_side(SideView& out) const;
+  int steps_per_plan_;
+  bool side_view_;
+};
+
+/// What one plan update left behind.
+struct PlanFrame {
+  std::int64_t id = 0;  ///< counts updates from 1
+  PlanStatus status = PlanStatus::EmptyTarget;
+  Plan plan;
+  PlanStats stats;
+  double start = 0.0;                       ///< of the update; run time [s]
+  double plan_time = 0.0, lift_time = 0.0;  ///< [s]
+  double max_skin_length = 0.0;             ///< longest path on the skin [m]
+  double full_scale_pressure = 0.0;         ///< rendered, at intensity 1 [Pa]
+  double emission_rate = 0.0;               ///< samples of the emission [Hz]
+};
+
+/// Paths or foci from targets: the stages that run at the planner's rate.
+class PlanStage {
+ public:
+  /// @param max_cells of a target raster.  @param full_scale of the scene, where the settings give
+  /// none [Pa].  @param device that plays the emission.
+  /// @throws std::invalid_argument with a sentence.
+  PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale,
+            const DeviceInfo& device);
+
+  /// Plans a target and hands the result to the emitter; without a plan the output fades. Writes
+  /// `start` = `taken` of the target.
+  void run(const ContactFrame& contact, PlanFrame& out);
+
+  /// Counts on from the updates of a stage that this one stands in for.
+  void continue_from(const PlanStage& other) { updates_ = other.updates_; }
+
+  Emitter& emitter() { return *emitter_; }
+  /// The emission as the device takes it.
+  SampleChain& samples() { return *samples_; }
+  double full_scale_pressure() const {
+    return emit_settings_.full_scale_pressure;
+  }  ///< rendered, at intensity 1 [Pa]
+
+ private:
+  std::variant<Planner, AmPlanner> planner_;
+  EmitSettings emit_settings_;
+  double emission_rate_;  // [Hz]
+  std::unique_ptr<Emitter> emitter_;
+  std::unique_ptr<SampleChain> samples_;
+  std::int64_t updates_ = 0;
+};
+
+/// The whole line on the caller's thread, without a clock: tests, studies and Python step it. A
+/// runner may instead drive its stages from threads of its own; a pipeline is used in one of the
+/// two ways.
+class Pipeline {
+ public:
+  /// @param mute what else silences the output; not null. In real time it is also on while a step
+  /// finds no hand, so that the output does not wait for the next plan to fade.
+  /// @param device that plays; null: the one that the settings name.
+  /// @param world that the hands meet; null: the smoke of the settings.
+  /// @throws std::invalid_argument with a sentence.
+  Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+           std::shared_ptr<Mute> mute = std::make_shared<Mute>(),
+           std::unique_ptr<Device> device = nullptr, std::unique_ptr<World> world = nullptr);
+
+  /// The device stops at once; silence() before is what spares the skin a click.
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  /// One fluid step of dt [s]: the device plays up to it, then the line runs top to bottom. True
+  /// when a plan update came with it: see plan(). @pre the device keeps no time of its own.
+  bool step(double dt);
+
+  const ContactFrame& contact() const { return contact_frame_; }
+  const PlanFrame& plan() const { return plan_frame_; }
+  double time() const { return time_; }  ///< run time [s]
+
+  /// Takes other settings between two steps, and rebuilds what they concern: hands stay, and so
+  /// does the smoke where the box is the same. Where plans or their emission change the device
+  /// starts anew, so that its samples count from 0. Not taken: another fluid_rate, array or device,
+  /// and nothing of hands, smoke and contact where the world is the caller's own.
+  /// @throws std::invalid_argument with a sentence; then everything is as it was.
+  void reconfigure(const PipelineSettings& settings);
+
+  /// Fades the output out and stops the device. @pre no other thread uses the pipeline.
+  void silence();
+
+  SmokeStage& smoke() { return *smoke_; }
+  PlanStage& plans() { return *plans_; }
+  Device& device() { return *device_; }
+  DeviceStats device_stats() const;      ///< over all starts of the device
+  EmitStats emit_stats() const;          ///< of all emitters that there were
+  std::int64_t limited_samples() const;  ///< that the last limiters changed; 0 unless a stage erred
+
+ private:
+  /// In real time, so that nothing clicks when the device stops, or plays on.
+  void fade_out();
+  /// The device plays another emitter, after the fade of the one before. @return why it cannot, and
+  /// plays the one before; or nothing.
+  std::string restart(PlanStage& plans);
+
+  PipelineSettings settings_;
+  std::shared_ptr<Mute> mute_;
+  const bool own_world_;  // the caller's
+  std::unique_ptr<SmokeStage> smoke_;
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<PlanStage> plans_;
+  DeviceStats device_before_;
+  EmitStats emit_before_;
+  std::int64_t limited_before_ = 0;
+  ContactFrame contact_frame_;
+  PlanFrame plan_frame_;
+  std::int64_t steps_ = 0;
+  double time_ = 0.0;
+};
+
+/// Lets a device that keeps no time play everything that is due at run time `time` [s].
+void play_until(Device& device, double time);
+
+}  // namespace prostm

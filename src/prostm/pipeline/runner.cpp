@@ -1,0 +1,221 @@
+#include "prostm/pipeline/runner.hpp"
+
+#include <chrono>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/pipeline/detail/run_sides.hpp"
+#include "prostm/pipeline/detail/steering.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{2}, kPausePoll{4};
+
+/// A run as the thread that called run() sees it.
+class Run {
+ public:
+  Run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
+      RunObserver& observer)
+      : pipeline_(pipeline),
+        observer_(observer),
+        pace_(settings, options),
+        pause_kept_(options.pause_kept),
+        stall_time_(settings.emit.stall_time),
+        fluid_(pipeline, pace_, shared_),
+        plans_(pipeline, pace_, shared_) {
+    if (pace_.realtime) fluid_.set_clock();
+    if (options.live == nullptr) return;
+    steering_.emplace(*options.live, pipeline);
+    shared_.snapshots = &steering_->snapshots();
+  }
+
+  void stepped() {
+    shared_.end.guard([this] {
+      for (std::int64_t n = 1; n <= pace_.steps && !over(); ++n) {
+        const bool planned = pipeline_.step(pace_.dt);
+        fluid_.count(pipeline_.contact());
+        if (planned) {
+          plans_.count(pipeline_.contact(), pipeline_.plan());
+          observe(pipeline_.contact(), pipeline_.plan());
+        }
+        check_device();
+        progress(pipeline_.time());
+      }
+    });
+  }
+
+  void threaded() {
+    shared_.end.guard([this] {
+      do {
+        segment();
+      } while (goes_on());
+    });
+  }
+
+  /// Of the whole run. Ends the output.
+  RunSummary finish() {
+    shared_.end.guard([this] {
+      if (!summary_) summary_ = summary();
+    });
+    if (!summary_) summary_.emplace();
+    pipeline_.silence();
+    summary_->failure = shared_.end.failure();
+    return *summary_;
+  }
+
+ private:
+  RunSummary summary();
+  void segment();
+  bool goes_on();
+  void stand();
+  void look();
+  void keep_the_pause(bool watched);
+
+  bool over() const { return shared_.end.over(); }
+
+  void drain_updates() {
+    while (Update* update = shared_.updates.front()) {
+      observe(update->contact, update->plan);
+      shared_.updates.pop();
+    }
+    progress(shared_.run_time.load(std::memory_order_relaxed));
+  }
+  void observe(const ContactFrame& contact, const PlanFrame& plan) {
+    if (!observer_.on_plan(contact, plan)) shared_.end.stop();
+  }
+  void progress(double time) {
+    if (!observer_.on_progress(time)) shared_.end.stop();
+  }
+  void check_device() const {
+    const Device& device = pipeline_.device();
+    if (device.status() == DeviceStatus::Vanished) throw std::runtime_error(device.problem());
+  }
+
+  Pipeline& pipeline_;
+  RunObserver& observer_;
+  const RunPace pace_;
+  const double pause_kept_, stall_time_;  // [s]
+  RunShared shared_;
+  FluidSide fluid_;
+  PlanSide plans_;
+  std::optional<Steering> steering_;
+  std::optional<RunSummary> summary_;  // once the run's seconds are over
+  bool summary_waits_ = false, watched_ = false;
+  double alone_since_ = 0.0;  // while paused: when a page was last seen [s of the clock]
+};
+
+/// The threads from one change that an onlooker asks for to the next.
+void Run::segment() {
+  shared_.halt = shared_.smoke_ended = shared_.plan_ended = false;
+  std::jthread fluid, plans;
+  // whatever fails here tells the threads to end before they are waited for
+  shared_.end.guard([&] {
+    fluid = std::jthread([this] { fluid_.run(); });
+    plans = std::jthread([this] { plans_.run(); });
+    while (!shared_.plan_ended.load(std::memory_order_acquire)) {
+      drain_updates();
+      check_device();
+      look();
+      std::this_thread::sleep_for(kLook);
+    }
+  });
+  if (fluid.joinable()) fluid.join();
+  if (plans.joinable()) plans.join();
+  if (!shared_.end.failed()) drain_updates();
+}
+
+/// What is done while no other thread runs. False at the end.
+bool Run::goes_on() {
+  plans_.follow();
+  if (!pace_.realtime || over() || (fluid_.done() && !pace_.stay)) return false;
+  if (fluid_.done() && !summary_) {
+    summary_ = summary();
+    summary_waits_ = shared_.endless = true;
+  }
+  if (steering_) {
+    steering_->attend();
+    stand();
+  }
+  fluid_.set_clock();
+  return !over();
+}
+
+/// While the run is paused.
+void Run::stand() {
+  alone_since_ = steady_now();
+  while (!steering_->playing() && !over()) {
+    if (steering_->next_update()) {
+      fluid_.run_to_target();
+      plans_.plan_newest();
+      drain_updates();
+    } else {
+      std::this_thread::sleep_for(kPausePoll);
+    }
+    check_device();
+    look();
+    progress(shared_.run_time.load(std::memory_order_relaxed));
+    if (steering_->pending()) steering_->attend();
+  }
+}
+
+/// For those who look.
+void Run::look() {
+  if (summary_waits_) observer_.on_summary(*summary_);
+  summary_waits_ = false;
+  if (!steering_) return;
+  const double planned_at = shared_.planned_at.load(std::memory_order_relaxed);
+  steering_->show(shared_.run_time.load(std::memory_order_relaxed),
+                  shared_.steps.load(std::memory_order_relaxed),
+                  shared_.plans.load(std::memory_order_relaxed),
+                  steady_now() - planned_at > stall_time_);
+  if (steering_->pending()) shared_.halt = true;
+  const bool watched = steering_->snapshots().watched();
+  if (!steering_->playing()) keep_the_pause(watched);
+  watched_ = watched;
+}
+
+/// A pause belongs to those who look: somebody who has just come sees the smoke, and when nobody
+/// has been there for a while the run goes on.
+void Run::keep_the_pause(bool watched) {
+  if (watched && !watched_) steering_->snapshots().smoke(pipeline_.smoke().world());
+  const double now = steady_now();
+  if (watched) alone_since_ = now;
+  if (now - alone_since_ < pause_kept_) return;
+  steering_->play();
+  observer_.on_abandoned_pause(fluid_.time());
+}
+
+RunSummary Run::summary() {
+  RunSummary s;
+  plans_.follow();
+  fluid_.log().write(s);
+  plans_.log().write(s);
+  s.device = pipeline_.device_stats();
+  s.emit = pipeline_.emit_stats();
+  s.limited_samples = pipeline_.limited_samples();
+  s.stopped = over();
+  s.seconds =
+      pace_.realtime ? shared_.run_time.load() : static_cast<double>(s.fluid_steps) * pace_.dt;
+  if (pace_.realtime) s.skipped_updates = fluid_.published() - s.plans - s.empty_updates;
+  s.unobserved = plans_.unobserved();
+  s.full_scale_pressure = pipeline_.plans().full_scale_pressure();
+  return s;
+}
+
+}  // namespace
+
+RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
+               RunObserver& observer) {
+  Run run(pipeline, settings, options, observer);
+  if (options.mode == RunMode::Stepped) {
+    run.stepped();
+  } else {
+    run.threaded();
+  }
+  return run.finish();
+}
+
+}  // namespace prostm

@@ -1,0 +1,85 @@
+#pragma once
+/// Runs a pipeline for a while, in steps or on threads, and tells how it went.
+
+#include <array>
+#include <cstdint>
+#include <exception>
+
+#include "prostm/core/distribution.hpp"
+#include "prostm/pipeline/latency.hpp"
+#include "prostm/pipeline/pipeline.hpp"
+
+namespace prostm {
+
+struct LiveLink;
+
+enum class RunMode : std::uint8_t {
+  RealTime,  ///< fluid, planner and device on threads, paced by the clock; what cannot be kept up
+             ///< with is skipped and counted
+  AsFastAsPossible,  ///< fluid and planner on threads without a clock; nothing is dropped
+  Stepped  ///< Pipeline::step on the caller's thread; the same plans as AsFastAsPossible, to the
+           ///< bit
+};
+
+struct RunOptions {
+  double seconds = 60.0;  ///< of run time
+  RunMode mode = RunMode::RealTime;
+  /// In real time, what a fluid step does without the hands is done before they are taken; false:
+  /// after that, as the paper does, to compare.
+  bool prepare_early = true;
+  LiveLink* live = nullptr;  ///< lets onlookers see and steer a run in real time
+  bool stay = false;         ///< goes on after `seconds`, until the observer stops it
+  /// A run that is paused goes on when nobody has looked at it for this long [s].
+  double pause_kept = 3.0;
+};
+
+/// The numbers of a run; times in seconds, lengths in metres.
+struct RunSummary {
+  double seconds = 0;    ///< of run time, shorter than asked when stopped
+  bool stopped = false;  ///< by the observer, or by what failed
+  /// What ended the run, null where nothing failed: what an observer, the hands, a stage or the
+  /// device's end threw. Of several the first.
+  std::exception_ptr failure;
+  std::int64_t fluid_steps = 0, skipped_fluid_steps = 0, plans = 0, empty_updates = 0,
+               skipped_updates = 0;
+  std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
+  std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
+  std::int64_t joints_outside = 0;             ///< joint-updates outside the fluid's box
+  std::int64_t skin_cells = 0, steep_cells = 0;  ///< of ContactStats, of all updates
+  DeviceStats device;
+  EmitStats emit;
+  std::int64_t limited_samples = 0;  ///< that the limiter before the device had to change
+  double max_path_length = 0, max_skin_length = 0;
+  double mean_divergence = 0;  ///< FluidStats::divergence_rms over the steps
+  std::int64_t fluid_resets = 0;
+  double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
+  Summary latency, redraw;
+  std::array<Summary, kLatencyParts> latency_parts;  ///< by LatencyPart; their means add up to the
+                                                     ///< mean latency
+  Summary track, hand, fluid, contact, plan, lift;   ///< of the stages
+};
+
+/// Sees every plan update on the thread that called run(). Slow observers delay nothing in real
+/// time: what they miss is counted in RunSummary::unobserved. What an observer throws ends the run.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  /// @return false to stop the run.
+  virtual bool on_plan(const ContactFrame& contact, const PlanFrame& plan) = 0;
+  /// Now and then, with the run time so far [s]. @return false to stop the run.
+  virtual bool on_progress(double time) = 0;
+  /// The run's seconds are over, and it goes on (RunOptions::stay).
+  virtual void on_summary(const RunSummary& summary) { static_cast<void>(summary); }
+  /// Nobody looks any more at a run that is paused, and it goes on from this run time [s].
+  virtual void on_abandoned_pause(double time) { static_cast<void>(time); }
+};
+
+/// Runs `pipeline` from its beginning. However it ends, whatever fails and on whichever thread, all
+/// threads have ended then, the output has faded out, and the device is stopped. @return the
+/// summary of options.seconds, or of less when it was stopped; what failed is in it. @pre not run
+/// or stepped before; the device keeps time as the mode asks; options.live and
+/// options.stay only in real time.
+RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
+               RunObserver& observer);
+
+}  // namespace prostm

@@ -1,0 +1,42 @@
+#pragma once
+/// What the hands meet: smoke, or anything else that presses on them.
+
+#include <memory>
+
+#include "prostm/contact/pressure_source.hpp"
+#include "prostm/fluid/fluid.hpp"
+#include "prostm/hand/hand_raster.hpp"
+#include "prostm/pipeline/settings.hpp"
+
+namespace prostm {
+
+/// Steps in three parts, so that the hands may come late: prepare, meet, settle, in this order and
+/// on one thread. Nothing of it throws or allocates once it is made.
+class World {
+ public:
+  virtual ~World() = default;
+  /// On which hands are rasterised and their skin is looked for.
+  virtual const GridShape& grid() const = 0;
+  /// Of a target, that maps to full output [Pa].
+  virtual double full_scale_pressure() const = 0;
+
+  /// What needs no hands, of a step of dt [s].
+  virtual void prepare(double dt) noexcept { static_cast<void>(dt); }
+  /// The hands, made for grid(), are there.
+  virtual void meet(const HandRaster& raster) noexcept = 0;
+  /// What presses now. @param dt since the last call [s].
+  virtual const PressureSource& pressure(double dt) noexcept = 0;
+  /// What nobody waits for. @return how a fluid's step went; zeros where there is none.
+  virtual FluidStats settle() noexcept { return {}; }
+
+  /// Goes on from where another world is, as far as the two are alike. @pre between steps.
+  virtual void go_on_from(const World& other) { static_cast<void>(other); }
+  /// The smoke, where there is some.
+  virtual const Fluid* fluid() const { return nullptr; }
+};
+
+/// The smoke of the settings' scene. @param pool outlives it.
+/// @throws std::invalid_argument with a sentence.
+std::unique_ptr<World> make_smoke(const PipelineSettings& settings, WorkerPool& pool);
+
+}  // namespace prostm

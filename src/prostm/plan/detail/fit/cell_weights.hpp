@@ -1,0 +1,38 @@
+#pragma once
+/// How much the error of each cell counts where a plan is fitted to a target: (P17).
+
+#include <cstddef>
+
+#include "prostm/target/target_field.hpp"
+
+namespace prostm::planning {
+
+/// A target's weights over their mean by pressure, Σ w p* / Σ p*: a common factor of the weights
+/// does not matter, and pressure that all lies under one weight is fitted as it is without weights.
+/// Weights below kLeastShare of the largest count as 0. Refers to the target.
+class CellWeights {
+ public:
+  static constexpr double kLeastShare = 1e-6;
+
+  /// @param maximum the target's largest pressure. @pre maximum > 0; the target has weights, at
+  /// least one of them > 0 on skin.
+  CellWeights(const TargetField& target, double maximum);
+
+  /// Weight of cell i over the mean, at most 1/kLeastShare; exactly 1 where all weights are 1.
+  double operator[](std::size_t i) const { return share(i) / mean_; }
+  /// Whether some of the pressure counts: more than kLeastShare of what the largest weight
+  /// everywhere would make count.
+  bool any_pressure() const { return any_pressure_; }
+
+ private:
+  double share(std::size_t i) const {
+    const double of_largest = target_->weight[i] / largest_;
+    return of_largest < kLeastShare ? 0.0 : of_largest;
+  }
+
+  const TargetField* target_;
+  double largest_, mean_ = 1.0;
+  bool any_pressure_ = false;
+};
+
+}  // namespace prostm::planning

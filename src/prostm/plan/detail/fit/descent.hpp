@@ -1,0 +1,74 @@
+#pragma once
+/// Preconditioned L-BFGS on the places of the samples of a few closed paths.
+
+#include <array>
+#include <vector>
+
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/plan/detail/fit/loop_shape.hpp"
+#include "prostm/plan/detail/fit/loops.hpp"
+#include "prostm/plan/detail/fit/reconstruction.hpp"
+
+namespace prostm::planning {
+
+/// What descends: the reconstruction error (P11) and the shape's costs (P13)–(P15).
+struct FitSettings {
+  ReconstructionSettings reconstruction;
+  ShapeSettings shape;
+};
+
+/// A set of paths with what it costs.
+struct Fit {
+  Loops loops;
+  Reconstruction reconstruction;  ///< of `loops`
+  float cost = 0.0F;              ///< error and shape together
+};
+
+/// Sized once; allocates nothing after construction.
+class Descent {
+ public:
+  /// @param max_tiles of the cells that run() will be given. @param samples of each path.
+  Descent(std::size_t max_tiles, int samples, const FitSettings& settings);
+
+  const FitSettings& settings() const { return settings_; }
+  FitSettings& settings() { return settings_; }
+
+  /// The closest points of the cells in the last evaluation.
+  const std::vector<ReconstructionScratch::TileFit>& fits() const { return scratch_.fits; }
+  /// Computes `fit.reconstruction` at `fit.loops`.
+  void solve(const CellTiles& cells, Fit& fit);
+  /// The same, and `fit.cost`, of any paths.
+  void evaluate(const CellTiles& cells, Fit& fit);
+  /// Moves the samples downhill for at most `evaluations` evaluations, the last of which begins
+  /// before the deadline if it is not the first; the cost never rises.
+  /// @return evaluations used; fewer also when no step lowers the cost.
+  int run(const CellTiles& cells, Fit& fit, int evaluations, const Deadline& deadline = {});
+
+ private:
+  static constexpr std::size_t kMemory = 5;
+  struct Plane {
+    alignas(64) NodeArray x, y;
+  };
+  void evaluate_near(const CellTiles& cells, Fit& fit);
+  void find_direction(const Loops& loops, const Reconstruction& at);
+  void precondition(const Loops& loops, Plane& v) const;
+  void remember(const Fit& from, const Fit& to);
+  void forget();
+  static float dot(const Loops& loops, const Plane& a, const Plane& b);
+
+  FitSettings settings_;
+  ReconstructFunction reconstruct_;
+  ReconstructionScratch scratch_;
+  SpacedPairs pairs_;
+  std::array<float, kMaxPathPoints / 2 + 1> taps_{};  // of the circulant preconditioner
+  // the last steps and the changes of the gradient over them, and one to write to
+  std::array<Plane, kMemory + 1> step_, change_;
+  std::array<float, kMemory + 1> inverse_curvature_{};
+  std::array<std::size_t, kMemory> order_{};
+  std::size_t remembered_ = 0, spare_ = 0;
+  float scale_ = 1.0F;
+  Plane direction_;
+  Fit trial_;
+};
+
+}  // namespace prostm::planning

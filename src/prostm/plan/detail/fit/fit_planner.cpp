@@ -1,0 +1,364 @@
+#include "prostm/plan/detail/fit/fit_planner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "prostm/plan/detail/pressure_raster.hpp"
+#include "prostm/plan/detail/validity.hpp"
+#include "prostm/plan/lifted_plan.hpp"
+
+namespace prostm::planning {
+namespace {
+
+constexpr double kSpacingShare = 0.9;   // of σ: what valid paths keep
+constexpr double kAlongShare = 2.0;     // of σ: nearer along the path, spacing is not asked for
+constexpr double kRounding = 1e-4;      // share of a bound that single precision may cost
+constexpr double kFastWidth = 6.0;      // of the cells of preset fast [mm]
+constexpr double kFastFineWidth = 4.0;  // of those that its pressures are solved on [mm]
+constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4, kFastSmallEvaluations = 4;
+constexpr int kFastFinePaths = 1;  // of a target that is small enough to need finer cells
+constexpr int kFastRegionPasses = 3, kFastStopPasses = 2;
+constexpr int kMendRounds = 8;      // at most, on uneven skin
+constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
+constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on any skin
+// Output that is so many times what is wanted bounds nothing, and what is wanted above so many
+// times the output counts as that: single precision resolves what lies between.
+constexpr double kAmple = 1e4;
+constexpr int kPieces = 2;  // of a segment, once preset best has found its paths
+
+SearchSettings search_settings(const PlanSettings& s, Preset preset) {
+  SearchSettings search;
+  search.samples = preset == Preset::Best ? s.fit_samples : s.samples;
+  search.weak = s.weak_pressure;
+  search.seed = static_cast<std::uint64_t>(s.seed);
+  search.hysteresis = s.fit_hysteresis;
+  if (preset == Preset::Fast) {
+    search.starts = 1;
+    search.kicks = search.warm_starts = 0;
+    search.fewer_evaluations = 0;
+    search.start_evaluations = kFastEvaluations;
+    search.small_evaluations = kFastSmallEvaluations;
+    search.warm_evaluations = kFastWarmEvaluations;
+    search.final_evaluations = 0;
+    search.region_passes = kFastRegionPasses;
+    search.stop_passes = kFastStopPasses;
+    search.coarse_width = kFastWidth;
+    search.fine_width = kFastFineWidth;
+    search.fine_paths = kFastFinePaths;
+    search.counts_steepness = false;
+    return search;
+  }
+  search.starts = s.fit_starts;
+  search.kicks = s.fit_kicks;
+  return search;
+}
+
+/// Whether each number has the bits of the one before; much faster than to compare the numbers.
+bool is_constant(const std::vector<double>& values) {
+  return values.size() < 2 ||
+         std::memcmp(values.data(), values.data() + 1, (values.size() - 1) * sizeof(double)) == 0;
+}
+
+/// Of each segment that is searched for: the pressure is linear between samples, and so follows the
+/// field the better the closer they lie.
+int pieces_of(Preset preset, int samples) {
+  return preset == Preset::Best && kPieces * samples <= kMaxPathPoints ? kPieces : 1;
+}
+
+}  // namespace
+
+FitSettings fit_settings(const PlanSettings& s) {
+  FitSettings fit;
+  fit.reconstruction.sigma = static_cast<float>(kMmPerMetre * s.sigma);
+  fit.reconstruction.weight_coverage = static_cast<float>(s.fit_coverage);
+  fit.shape.weight_length = static_cast<float>(s.fit_length);
+  fit.shape.weight_spacing = static_cast<float>(s.fit_spacing);
+  fit.shape.weight_bending = static_cast<float>(s.fit_bending);
+  fit.shape.spacing = static_cast<float>(kMmPerMetre * s.sigma);
+  fit.shape.least_length =
+      static_cast<float>(kMmPerMetre * std::min(s.least_length, s.max_length()));
+  fit.shape.most_length.fill(static_cast<float>(kMmPerMetre * s.max_length()));
+  return fit;
+}
+
+FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells)
+    : settings_(settings),
+      search_(max_cells, fit_settings(settings), search_settings(settings, preset)),
+      pieces_(pieces_of(preset, search_settings(settings, preset).samples)) {}
+
+/// (P18) where a path's rendered pressure is `gain` times what it is felt as.
+PlayBounds FitPlanner::play_bounds(double gain) const {
+  // full output over the target's maximum
+  const double highest = gain * rendered_;
+  const double room = full_scale_ >= kAmple * highest ? kAmple : full_scale_ / highest;
+  const double reach = kMmPerMetre * settings_.speed * settings_.rise_time;  // of a full rise [mm]
+  return PlayBounds::all(static_cast<float>(std::min(1.0, room)),
+                         static_cast<float>(std::sqrt(room) / reach),
+                         static_cast<float>(settings_.silent_below * room));
+}
+
+/// Brings the paths of fit_ to the coordinates of a target with this origin.
+void FitPlanner::move_to(const Vec2& origin) {
+  const Vec2 shift = kMmPerMetre * (origin_ - origin);
+  for (std::size_t i = 0; i < fit_.loops.nodes(); ++i) {
+    fit_.loops.x[i] += static_cast<float>(shift.x());
+    fit_.loops.y[i] += static_cast<float>(shift.y());
+  }
+  phases_.move(shift);
+  origin_ = origin;
+}
+
+/// Length on the skin over length in the plane. @param loop one path, as in fit_.
+double FitPlanner::skin_factor(const TargetField& target, std::span<const Vec2> loop) {
+  if (is_flat_) return 1.0;
+  flat_.points.clear();
+  flat_.pressure.assign(loop.size(), 0.0);
+  for (const Vec2& x : loop) flat_.points.push_back(target.origin + x / kMmPerMetre);
+  const double flat = closed_length(flat_);
+  return flat > 0.0 ? std::max(skin_length(flat_, target) / flat, 1.0) : 1.0;
+}
+
+/// Copies path k of fit_ to place `to` of points_, each segment cut into as many pieces as make
+/// samples_.
+std::span<Vec2> FitPlanner::copy_path(int k, int to) {
+  const std::span<Vec2> loop = path_at(to);
+  const int pieces = samples_ / fit_.loops.samples;
+  for (int i = 0; i < samples_; ++i) {
+    const int first = i / pieces, second = (first + 1) % fit_.loops.samples;
+    const double along = static_cast<double>(i % pieces) / pieces;
+    loop[static_cast<std::size_t>(i)] =
+        (1.0 - along) * fit_.loops.point(first, k) + along * fit_.loops.point(second, k);
+  }
+  return loop;
+}
+
+/// The paths of fit_, those with the most pressure first.
+boost::container::static_vector<int, kMaxPaths> FitPlanner::by_pressure() const {
+  boost::container::static_vector<int, kMaxPaths> order;
+  std::array<float, kMaxPaths> sum{};
+  for (int k = 0; k < fit_.loops.paths; ++k) {
+    float& own = sum[static_cast<std::size_t>(k)];
+    for (int i = 0; i < fit_.loops.samples; ++i) {
+      own += fit_.reconstruction.pressure[fit_.loops.node(i, k)];
+    }
+    const auto place = std::find_if(order.begin(), order.end(), [&](int other) {
+      return own > sum[static_cast<std::size_t>(other)];
+    });
+    order.insert(place, k);
+  }
+  return order;
+}
+
+/// Bounds each path of points_ by the length in the plane at which it is as long on the skin as it
+/// may be, if its slopes stay as they are. @param share of that length to aim at.
+/// @return whether any path is too long.
+bool FitPlanner::bound_lengths(const TargetField& target, int paths, double share,
+                               SpacingRule& rule) {
+  bool any = false;
+  for (int k = 0; k < paths; ++k) {
+    const std::span<const Vec2> loop = path_at(k);
+    const double most = kMmPerMetre * settings_.max_length() / skin_factor(target, loop);
+    const bool is_long = loop_length(loop) > most;
+    any = any || is_long;
+    rule.most_length[static_cast<std::size_t>(k)] = (is_long ? share : 1.0 - kRounding) * most;
+  }
+  return any;
+}
+
+/// Leaves out the paths of points_ that are too long on the skin; where all are, the first becomes
+/// a circle that is not. @return how many are left.
+int FitPlanner::leave_out_long(const TargetField& target, int paths, double least_length) {
+  const auto is_long = [&](std::span<const Vec2> loop) {
+    return loop_length(loop) * skin_factor(target, loop) > kMmPerMetre * settings_.max_length();
+  };
+  int kept = 0;
+  for (int k = 0; k < paths; ++k) {
+    if (is_long(path_at(k))) continue;
+    std::copy_n(path_at(k).begin(), samples_, path_at(kept).begin());
+    ++kept;
+  }
+  if (kept > 0) return kept;
+  const std::span<Vec2> loop = path_at(0);
+  const Vec2 centre = centroid(loop);
+  for (int halving = 0; halving < kMostHalvings; ++halving, least_length *= 0.5) {
+    make_circle(loop, centre, least_length);
+    if (!is_long(loop)) break;
+  }
+  return 1;
+}
+
+/// What valid paths keep. @param between from a sample to the one that will be half way to the next
+/// [mm].
+SpacingRule FitPlanner::spacing_rule(double between) const {
+  const double sigma = kMmPerMetre * settings_.sigma;
+  SpacingRule rule;
+  rule.spacing = std::hypot((1.0 + kRounding) * kSpacingShare * sigma, between);
+  rule.along = (1.0 - kRounding) * kAlongShare * sigma;
+  rule.least_length = kMmPerMetre * std::min(settings_.least_length, settings_.max_length());
+  return rule;
+}
+
+/// Makes the paths of points_ keep their length on the skin and the rule. @return how many are
+/// kept.
+int FitPlanner::space_out(const TargetField& target, int paths, SpacingRule rule) {
+  // a path that is mended lies on other slopes than before, so its bound is another
+  bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
+  for (int round = 1; round == 1 || (any_long && round <= kMendRounds); ++round) {
+    paths = make_spaced(points_of(paths), samples_, rule, spacing_);
+    any_long = bound_lengths(target, paths, 1.0 - round * kMendStep, rule);
+  }
+  return any_long ? leave_out_long(target, paths, rule.least_length) : paths;
+}
+
+/// Copies the paths of points_ to fit_.
+void FitPlanner::take_points(int paths) {
+  const int pieces = samples_ / fit_.loops.samples;
+  fit_.loops.reset(fit_.loops.samples, paths);
+  for (int k = 0; k < paths; ++k) {
+    for (int i = 0; i < fit_.loops.samples; ++i)
+      fit_.loops.set_point(i, k, path_at(k)[static_cast<std::size_t>(i * pieces)]);
+  }
+}
+
+/// Mends length on the skin, spacing and crossings; then pressures are solved as they are played.
+void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
+  // first the samples that were searched for, which are fewer and so more easily moved
+  int paths = 0;
+  samples_ = fit_.loops.samples;
+  for (const int k : by_pressure()) copy_path(k, paths++);
+  const double segment = kMmPerMetre * settings_.max_length() / samples_;
+  paths = space_out(target, paths, spacing_rule(pieces_ > 1 ? 0.5 * segment : 0.0));
+  take_points(paths);
+  if (pieces_ > 1) paths = mend_between(target, paths);
+  solve(target, paths, stats);
+  make_playable(plan_.loops, bounds_, plan_.reconstruction.pressure);
+}
+
+/// Mends the samples of the plan, most of which are where they may be. @return how many paths are
+/// kept.
+int FitPlanner::mend_between(const TargetField& target, int paths) {
+  samples_ *= pieces_;
+  for (int k = 0; k < paths; ++k) copy_path(k, k);
+  const SpacingRule rule = spacing_rule(0.0);
+  if (are_apart(points_of(paths), samples_, rule, spacing_)) return paths;
+  paths = space_out(target, paths, rule);
+  take_points(paths);
+  return paths;
+}
+
+/// Copies the paths of points_ to plan_, with what the emission can play on them.
+void FitPlanner::take_plan(const TargetField& target, int paths) {
+  plan_.loops.reset(samples_, paths);
+  bounds_ = play_bounds(settings_.gain);
+  for (int k = 0; k < paths; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    const std::span<Vec2> loop = path_at(k);
+    for (int i = 0; i < samples_; ++i) {
+      Vec2& x = loop[static_cast<std::size_t>(i)];
+      plan_.loops.set_point(i, k, x);
+      x = plan_.loops.point(i, k);  // as the plan has it
+    }
+    factor_[place] = skin_factor(target, loop);
+    period_[place] = loop_length(loop) / kMmPerMetre * factor_[place] / settings_.speed;
+    const PlayBounds own = play_bounds(settings_.gain_law().of(period_[place]));
+    bounds_.most[place] = own.most[place];
+    bounds_.slope[place] = own.slope[place];
+    bounds_.least[place] = own.least[place];
+  }
+}
+
+/// The pressures of the paths of points_, nearly as they can be played, without paths that are
+/// silent.
+void FitPlanner::solve(const TargetField& target, int& paths, PlanStats& stats) {
+  for (;;) {
+    take_plan(target, paths);
+    ++stats.cost_evaluations;
+    search_.solve(bounds_, plan_);
+    if (!leave_out_silent(paths)) return;
+    take_points(paths);
+  }
+}
+
+/// Leaves out the path of points_ that is most silent, of several: of which nothing is worth a
+/// path, or nothing sounds while another does. @return whether there was one.
+bool FitPlanner::leave_out_silent(int& paths) {
+  std::array<float, kMaxPaths> highest{};
+  for (int k = 0; k < paths; ++k) {
+    float& own = highest[static_cast<std::size_t>(k)];
+    for (int i = 0; i < samples_; ++i)
+      own = std::max(own, plan_.reconstruction.pressure[plan_.loops.node(i, k)]);
+  }
+  const auto [least, most] = std::minmax_element(highest.begin(), highest.begin() + paths);
+  const float sounds = play_bounds(settings_.gain).least[0];
+  const auto weak = static_cast<float>(settings_.weak_pressure);
+  if (paths == 1 || *least >= (*most >= sounds ? std::max(weak, sounds) : weak)) return false;
+  const auto silent = static_cast<int>(least - highest.begin());
+  --paths;
+  std::copy(path_at(silent).end(), path_at(paths).end(), path_at(silent).begin());
+  return true;
+}
+
+void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanStats& stats) {
+  const int n = samples_, paths = plan_.loops.paths;
+  const LapStarts starts = phases_.choose(
+      fit_.loops, std::span<const double>(period_).first(static_cast<std::size_t>(paths)));
+  for (int k = 0; k < paths; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    const LapStart start{pieces_ * starts[place].first, starts[place].reversed};
+    FocalPath path;
+    path.patch = patch;
+    for (int i = 0; i < n; ++i) {
+      path.points.push_back(target.origin + plan_.loops.point(start.sample(i, n), k) / kMmPerMetre);
+    }
+    path.length = closed_length(path);
+    path.speed = settings_.speed;
+    path.period = path.length * factor_[place] / path.speed;
+    const double gain = settings_.gain_law().of(path.period);
+    for (int i = 0; i < n; ++i) {
+      const std::size_t node = plan_.loops.node(start.sample(i, n), k);
+      path.pressure.push_back(gain * rendered_ *
+                              static_cast<double>(plan_.reconstruction.pressure[node]));
+    }
+    plan.paths.push_back(path);
+  }
+  stats.leaves += paths;
+}
+
+void FitPlanner::plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
+                            int paths, double budget, Plan& plan, PlanStats& stats) {
+  StageTimer timer;
+  full_scale_ = full_scale;
+  rendered_ = std::min(maximum, kAmple * (full_scale / settings_.gain));
+  search_.set_bounds(play_bounds(settings_.gain));
+  is_flat_ = is_constant(target.height);
+  if (!settings_.widths.empty()) {
+    settings_.sigma = settings_.widths.on(target);
+    search_.set_sigma(kMmPerMetre * settings_.sigma);
+  }
+  search_.set_target(target, maximum, budget);
+  stats.init += timer.lap();
+
+  move_to(target.origin);
+  const bool continues = has_previous_ && fit_.loops.paths <= paths;
+  if (!continues) phases_.forget();
+  stats.cost_evaluations += search_.run(paths, continues, fit_);
+  samples_ = fit_.loops.samples;
+  std::array<float, kMaxPaths> most{};
+  for (int k = 0; k < fit_.loops.paths; ++k) {
+    most[static_cast<std::size_t>(k)] = static_cast<float>(kMmPerMetre * settings_.max_length() /
+                                                           skin_factor(target, copy_path(k, 0)));
+  }
+  stats.cost_evaluations += search_.finish(most, fit_);
+  stats.cost += static_cast<double>(fit_.cost);
+
+  const double start = timer.seconds();
+  mend(target, stats);
+  append(target, patch, plan, stats);
+  search_.learn_ending(timer.seconds() - start);
+  has_previous_ = true;
+  stats.refine += timer.lap();
+}
+
+}  // namespace prostm::planning

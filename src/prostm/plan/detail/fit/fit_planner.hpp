@@ -1,0 +1,79 @@
+#pragma once
+/// Planning by reconstruction: the presets `fast` and `best` for one patch.
+
+#include <array>
+#include <boost/container/static_vector.hpp>
+#include <span>
+
+#include "prostm/plan/detail/fit/phases.hpp"
+#include "prostm/plan/detail/fit/search.hpp"
+#include "prostm/plan/detail/fit/spacing.hpp"
+#include "prostm/plan/plan_settings.hpp"
+#include "prostm/plan/plan_stats.hpp"
+
+namespace prostm::planning {
+
+/// What the presets `fast` and `best` minimise.
+FitSettings fit_settings(const PlanSettings& settings);
+
+/// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15), and where their focal
+/// points start, (P16). Remembers the last plan, so that the next can start from it. Sized once;
+/// plan() allocates and throws nothing.
+class FitPlanner {
+ public:
+  FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells);
+
+  /// Forgets the last plan.
+  void reset() { has_previous_ = false; }
+  /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
+  /// @param full_scale rendered pressure at full output [unit of the target].
+  /// @param budget time that it may take [s]; 0: the counts of the settings bind.
+  /// @pre maximum > 0, full_scale > 0.
+  void plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
+                  int paths, double budget, Plan& plan, PlanStats& stats);
+
+ private:
+  void move_to(const Vec2& origin);
+  boost::container::static_vector<int, kMaxPaths> by_pressure() const;
+  PlayBounds play_bounds(double gain) const;
+  SpacingRule spacing_rule(double between) const;
+  int space_out(const TargetField& target, int paths, SpacingRule rule);
+  void take_points(int paths);
+  void mend(const TargetField& target, PlanStats& stats);
+  int mend_between(const TargetField& target, int paths);
+  void take_plan(const TargetField& target, int paths);
+  void solve(const TargetField& target, int& paths, PlanStats& stats);
+  bool leave_out_silent(int& paths);
+  bool bound_lengths(const TargetField& target, int paths, double share, SpacingRule& rule);
+  int leave_out_long(const TargetField& target, int paths, double least_length);
+  void append(const TargetField& target, int patch, Plan& plan, PlanStats& stats);
+  double skin_factor(const TargetField& target, std::span<const Vec2> loop);
+  std::span<Vec2> copy_path(int k, int to);
+  std::span<Vec2> points_of(int paths) {
+    return std::span<Vec2>(points_).first(static_cast<std::size_t>(paths * samples_));
+  }
+  std::span<Vec2> path_at(int place) {
+    const auto n = static_cast<std::size_t>(samples_);
+    return std::span<Vec2>(points_).subspan(static_cast<std::size_t>(place) * n, n);
+  }
+
+  PlanSettings settings_;
+  Search search_;
+  Phases phases_;
+  const int pieces_;            // of a segment that is searched for, in a plan
+  Fit fit_;                     // of the last plan until the next
+  Vec2 origin_ = Vec2::Zero();  // of the target that fit_ is for [m]
+  bool has_previous_ = false, is_flat_ = false;
+  double rendered_ = 0.0;    // felt pressure that 1 of fit_ stands for
+  double full_scale_ = 0.0;  // rendered pressure at full output
+  // scratch
+  int samples_ = 0;                                       // of a path of points_
+  Fit plan_;                                              // fit_ with the samples of the plan
+  PlayBounds bounds_ = PlayBounds::all(1.0F, kAnySlope);  // of plan_
+  std::array<double, kMaxPaths> factor_{}, period_{};     // of each path of plan_
+  FocalPath flat_;
+  std::array<Vec2, kMaxLoopNodes> points_;  // one path after the other [mm]
+  SpacingScratch spacing_;
+};
+
+}  // namespace prostm::planning

@@ -1,0 +1,66 @@
+#pragma once
+/// Paths to start from: the plane is shared out among them jointly, and each tours its own region.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "prostm/core/random.hpp"
+#include "prostm/plan/clustering.hpp"
+#include "prostm/plan/detail/fit/cell_tiles.hpp"
+#include "prostm/plan/detail/fit/loops.hpp"
+#include "prostm/plan/detail/fit/reconstruction.hpp"
+#include "prostm/plan/detail/tours.hpp"
+
+namespace prostm::planning {
+
+/// How one start differs from another.
+struct StartSettings {
+  int paths = 4;
+  int stops = 16;                          ///< clusters that each path tours, at most
+  double most_length = 140;                ///< of a tour [mm]
+  int region_passes = 6, stop_passes = 4;  ///< of Lloyd's iteration
+};
+
+/// Weighted k-means twice: the cells with pressure into one region for each path, each region into
+/// stops. A tour of the stops (2-opt) that is too long leaves out those that cost most length for
+/// their mass. Sized once; make() allocates nothing.
+class InitialLoops {
+ public:
+  explicit InitialLoops(std::size_t max_cells);
+
+  /// Takes over the cells with at least `weak` of the highest weighted pressure of any, > 0. @pre
+  /// some cell that counts has pressure.
+  void set(const CellTiles& cells, float weak);
+  /// Of those only the cells whose closest path is in the set `owners` (a bit each).
+  void set(const CellTiles& cells, float weak,
+           const std::vector<ReconstructionScratch::TileFit>& fits, int lanes,
+           std::uint32_t owners);
+  /// Cells with pressure.
+  std::size_t size() const { return size_; }
+
+  /// Fills `loops`: as many paths as asked, or one for each cell if there are fewer.
+  /// @pre size() > 0.
+  void make(const StartSettings& settings, int samples, Random& random, Loops& loops);
+
+ private:
+  struct Group {
+    std::size_t begin, end;
+  };
+  using Centres = std::array<float, kMaxClusters>;
+  using Moments = Eigen::Array4f;  // weight, weight · x, weight · y, 0
+  void weigh();
+  void seed(Group group, std::size_t count, Random& random, Centres& cx, Centres& cy) const;
+  void cluster(Group group, int k, int passes, Random& random);
+  void sort_by_label(int k, std::array<Group, kMaxPaths>& groups);
+  void tour(const StartSettings& settings, std::span<Vec2> samples);
+
+  std::size_t size_ = 0;
+  std::vector<float> x_, y_, pressure_, weight_, sorted_[3];  // pressure_: times the cell's weight
+  std::vector<std::int32_t> label_;
+  std::vector<Moments> moments_;  // of the cells of the group that is clustered
+  Clusters centres_;
+  DistanceTable distance_;
+};
+
+}  // namespace prostm::planning

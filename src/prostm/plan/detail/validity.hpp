@@ -1,0 +1,52 @@
+#pragma once
+/// When closed polygons cross, and how the paths of a plan are made valid. All lengths in mm.
+
+#include <span>
+
+#include "prostm/core/geometry.hpp"
+
+namespace prostm::planning {
+
+/// Segments nearer than this count as crossing: 1 µm, far above rounding and far below anything
+/// that is felt [mm].
+inline constexpr double kClearance = 1e-3;
+
+/// Whether segments (a, b) and (c, d) cross, or come nearer than kClearance.
+bool segments_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+/// Length of the closed polygon.
+double loop_length(std::span<const Vec2> loop);
+
+/// Mean of the samples.
+Vec2 centroid(std::span<const Vec2> loop);
+
+/// Scales a loop that is longer about its centroid to `most_length`.
+void shorten(std::span<Vec2> loop, double most_length);
+
+/// Makes the loop a regular polygon of `length` about `centre`: what remains of a path that cannot
+/// be mended.
+void make_circle(std::span<Vec2> loop, const Vec2& centre, double length);
+
+/// Pairs of non-adjacent segments of one closed polygon that cross.
+int count_self_crossings(std::span<const Vec2> loop);
+
+/// Pairs of segments of two closed polygons that cross.
+int count_crossings(std::span<const Vec2> a, std::span<const Vec2> b);
+
+/// Whether a segment folds back on its neighbour, or their points coincide.
+bool folds_back(std::span<const Vec2> loop);
+
+/// No two non-adjacent segments cross, no segment folds back on its neighbour and no points
+/// coincide.
+bool is_simple(std::span<const Vec2> loop);
+
+/// Makes paths valid, the heaviest first: a path that crosses itself is untangled by reversing the
+/// stretch between two crossing segments (2-opt), one longer than `max_length` is scaled down to it
+/// about its centroid, one that crosses a heavier one is pushed off it or shrunk (not below a
+/// quarter of `max_length`), and left out where that does not help. Every path that remains is
+/// simple, at most `max_length` long and crosses no other; the first always remains.
+/// @param x paths of `samples` points each, by descending mass; the kept ones are moved to the
+/// front. @return how many are kept.
+int make_valid(std::span<Vec2> x, int samples, double max_length);
+
+}  // namespace prostm::planning

@@ -1,0 +1,19 @@
+#include "prostm/plan/plan.hpp"
+
+namespace prostm {
+
+double closed_length(const FocalPath& path) {
+  double length = 0.0;
+  const std::size_t n = path.points.size();
+  for (std::size_t i = 0; i < n; ++i) length += (path.points[(i + 1) % n] - path.points[i]).norm();
+  return length;
+}
+
+void translate(Plan& plan, const Vec2& shift) {
+  for (FocalPath& path : plan.paths) {
+    for (Vec2& x : path.points) x += shift;
+  }
+  for (FocalPoint& focus : plan.foci) focus.position += shift;
+}
+
+}  // namespace prostm

@@ -1,0 +1,56 @@
+#pragma once
+/// A plan: what the focal points are to do until the next plan comes.
+
+#include <boost/container/static_vector.hpp>
+
+#include "prostm/core/geometry.hpp"
+
+namespace prostm {
+
+inline constexpr int kMaxPaths = 8;        ///< focal points that a device can show at once
+inline constexpr int kMaxPathPoints = 64;  ///< samples of one path
+
+/// A closed focal-point path in a target's plane: the last point joins the first. Fixed capacity,
+/// so that a plan is copied and handed between threads without touching the heap.
+struct FocalPath {
+  int patch = 0;  ///< index of the target patch (hand)
+  boost::container::static_vector<Vec2, kMaxPathPoints> points;  ///< in P [m]
+  boost::container::static_vector<double, kMaxPathPoints>
+      pressure;  ///< rendered p_i = γ p*, unit of the target; linear between points
+  double length =
+      0.0;  ///< of the closed polygon in the plane, so that it follows from the points [m]
+  double speed = 0.0;  ///< of the focal point [m/s]
+  /// Of a lap [s]: the length over the speed. Presets `best` and `fast`, which know the skin's
+  /// heights, state the length on the skin over the speed, which is what is played; it is longer
+  /// than length / speed where the skin is uneven.
+  double period = 0.0;
+};
+
+/// A focal point that stands still in a target's plane, its intensity modulated (AM).
+struct FocalPoint {
+  int patch = 0;                 ///< index of the target patch (hand)
+  Vec2 position = Vec2::Zero();  ///< in P [m]
+  double pressure = 0.0;         ///< rendered at the peak of the modulation, unit of the target
+};
+
+using FocalPoints = boost::container::static_vector<FocalPoint, kMaxPaths>;
+
+/// Closed paths, or foci: one of the two is empty.
+struct Plan {
+  boost::container::static_vector<FocalPath, kMaxPaths> paths;
+  FocalPoints foci;
+
+  bool empty() const { return paths.empty() && foci.empty(); }
+  void clear() {
+    paths.clear();
+    foci.clear();
+  }
+};
+
+/// Length of the closed polygon [m].
+double closed_length(const FocalPath& path);
+
+/// Moves every path and focus by `shift` in the plane [m].
+void translate(Plan& plan, const Vec2& shift);
+
+}  // namespace prostm

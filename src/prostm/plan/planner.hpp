@@ -1,0 +1,48 @@
+#pragma once
+/// PRO-STM: from a target pressure field to a few closed focal-point paths (the paper's section IV;
+/// docs/design.md section 5).
+
+#include <cstddef>
+#include <memory>
+
+#include "prostm/plan/plan.hpp"
+#include "prostm/plan/plan_settings.hpp"
+#include "prostm/plan/plan_stats.hpp"
+#include "prostm/target/target_field.hpp"
+
+namespace prostm {
+
+/// Plans the paths of targets. Deterministic: the same settings and targets give the same plans to
+/// the bit, unless a budget is set.
+class Planner {
+ public:
+  /// @param max_cells the largest raster that plan() will be given.
+  /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
+  Planner(const PlanSettings& settings, std::size_t max_cells);
+  ~Planner();
+  Planner(Planner&&) noexcept;
+  Planner& operator=(Planner&&) noexcept;
+
+  const PlanSettings& settings() const;
+
+  /// Paths for one patch; `plan` is overwritten. Allocates and throws nothing (with a trace it does
+  /// allocate). Leaves `plan` valid in every case. The presets best and fast continue from the plan
+  /// before, where there is one: call reset() first for a plan that depends on nothing else.
+  PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats,
+                  PlanTrace* trace = nullptr) noexcept;
+
+  /// Paths for every patch of a frame: settings.paths are shared out in proportion to Σ p*
+  /// (d'Hondt), at least one to each patch that has pressure (with one path in all, to the
+  /// strongest), and no path spans two patches. One invalid patch makes the frame invalid. Stage
+  /// times and counts are summed over patches.
+  PlanStatus plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept;
+
+  /// Forgets the plan before.
+  void reset() noexcept;
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace prostm

@@ -1,0 +1,246 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "prostm/am/am_pressures.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/plan/closest_point.hpp"
+#include "prostm/plan/clustering.hpp"
+#include "prostm/score/detail/scorer.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr int kCircles = 4, kCirclePoints = 20, kDraws = 20, kPlacements = 50, kSweeps = 100;
+constexpr double kWeak =
+    0.01;  // points below this share of the maximum have no say in where the mass is
+
+FocalPath circle(const Vec2& centre, double length, double period, double pressure) {
+  FocalPath path;
+  const double radius = length / (2.0 * kCirclePoints * std::sin(kPi / kCirclePoints));
+  for (int i = 0; i < kCirclePoints; ++i) {
+    const double angle = 2.0 * kPi * i / kCirclePoints;
+    path.points.push_back(centre + radius * Vec2(std::cos(angle), std::sin(angle)));
+    path.pressure.push_back(pressure);
+  }
+  path.length = closed_length(path);
+  path.period = period;
+  path.speed = path.length / period;
+  return path;
+}
+
+/// Visits the skin cells: position, p* over its maximum.
+template <typename Visit>
+void for_skin(const TargetField& target, double maximum, const Visit& visit) {
+  for (int row = 0; row < target.rows; ++row) {
+    for (int col = 0; col < target.cols; ++col) {
+      const std::size_t i = target.index(row, col);
+      if (target.skin[i] != 0) visit(target.position(row, col), target.pressure[i] / maximum);
+    }
+  }
+}
+
+Metrics flat_field(const TargetField& target, double maximum, const Scorer& scorer) {
+  double sum = 0.0, cells = 0.0;
+  for_skin(target, maximum, [&](const Vec2&, double p) {
+    sum += p;
+    cells += 1.0;
+  });
+  return scorer.field(std::vector<double>(target.size(), sum / cells * maximum), 0.0);
+}
+
+/// Up to four circles about random skin cells that do not cross.
+Plan random_circles(const TargetField& target, double maximum, double length, double period,
+                    Random& random) {
+  std::vector<Vec2> skin;
+  for_skin(target, maximum, [&](const Vec2& x, double) { skin.push_back(x); });
+  std::vector<Vec2> centres;
+  const double apart = 1.01 * length / kPi;
+  for (int k = 0; k < kCircles; ++k) {
+    for (int attempt = 0; attempt < kPlacements; ++attempt) {
+      const Vec2& x = skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
+      const bool free = std::all_of(centres.begin(), centres.end(),
+                                    [&](const Vec2& c) { return (c - x).norm() > apart; });
+      if (!free) continue;
+      centres.push_back(x);
+      break;
+    }
+  }
+  Plan plan;
+  for (const Vec2& centre : centres) plan.paths.push_back(circle(centre, length, period, 0.0));
+  return plan;
+}
+
+/// Sets the pressures of circles to the non-negative least-squares solution of p̂ = p* on the skin.
+/// Eq. (1) is linear in the p_i: each cell sees the two samples beside its closest point. Solved by
+/// projected Gauss-Seidel on the normal equations.
+void solve_pressures(const TargetField& target, double maximum, double sigma, const GainLaw& gain,
+                     Plan& plan) {
+  constexpr std::size_t kUnknowns = static_cast<std::size_t>(kCircles) * kCirclePoints;
+  std::vector<std::array<double, kUnknowns>> normal(kUnknowns, std::array<double, kUnknowns>{});
+  std::array<double, kUnknowns> right{}, solution{};
+  PathSegments segments(plan, 0);
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    const ClosestPoint nearest = segments.closest(x);
+    const std::size_t i = nearest.segment;
+    const double phi = std::exp(-0.5 * nearest.distance2 / (sigma * sigma)) /
+                       gain.of(plan.paths[i / kCirclePoints].period);
+    const std::size_t j = (i + 1) % kCirclePoints == 0 ? i + 1 - kCirclePoints : i + 1;
+    const double a = (1.0 - nearest.along) * phi, b = nearest.along * phi;
+    normal[i][i] += a * a;
+    normal[j][j] += b * b;
+    normal[i][j] += a * b;
+    normal[j][i] += a * b;
+    right[i] += a * p;
+    right[j] += b * p;
+  });
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 0; i < segments.count(); ++i) {
+      // samples that hardly touch the skin stay silent
+      if (normal[i][i] < 1e-9) continue;
+      double residual = right[i];
+      for (std::size_t j = 0; j < segments.count(); ++j) residual -= normal[i][j] * solution[j];
+      solution[i] = std::max(solution[i] + residual / normal[i][i], 0.0);
+    }
+  }
+  for (std::size_t i = 0; i < segments.count(); ++i) {
+    plan.paths[i / kCirclePoints].pressure[i % kCirclePoints] = solution[i] * maximum;
+  }
+}
+
+Vec2 centre_of_mass(const TargetField& target, double maximum) {
+  Vec2 sum = Vec2::Zero();
+  double mass = 0.0;
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    sum += p * x;
+    mass += p;
+  });
+  return sum / mass;
+}
+
+/// The plan moved so that its mean sample or focus lies at `centre`, its highest effective pressure
+/// set to `maximum`.
+Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw& gain) {
+  Vec2 mean = Vec2::Zero();
+  double samples = 0.0, highest = 0.0;
+  const auto count = [&](const Vec2& x, double effective) {
+    mean += x;
+    samples += 1.0;
+    highest = std::max(highest, effective);
+  };
+  for (const FocalPath& path : other.paths) {
+    // what pressures of a path come to at the γ of the longest
+    const double weight = gain.gain / gain.of(path.period);
+    for (std::size_t i = 0; i < path.points.size(); ++i)
+      count(path.points[i], path.pressure[i] * weight);
+  }
+  for (const FocalPoint& focus : other.foci) count(focus.position, focus.pressure);
+
+  Plan plan = other;
+  translate(plan, centre - mean / samples);
+  for (FocalPath& path : plan.paths) {
+    path.patch = 0;
+    for (double& p : path.pressure) p = highest > 0.0 ? p / highest * gain.gain * maximum : 0.0;
+  }
+  for (FocalPoint& focus : plan.foci) {
+    focus.patch = 0;
+    focus.pressure = highest > 0.0 ? focus.pressure / highest * maximum : 0.0;
+  }
+  return plan;
+}
+
+/// Foci at random skin cells with the pressures that AM gives them there.
+Plan random_foci(const TargetField& target, std::size_t count, double sigma, double maximum,
+                 Random& random) {
+  std::vector<Vec2> skin;
+  for_skin(target, maximum, [&](const Vec2& x, double) { skin.push_back(x); });
+  Plan plan;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec2& x = skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
+    plan.foci.push_back({0, x, 0.0});
+  }
+  set_pressures(target, sigma, plan.foci);
+  return plan;
+}
+
+/// The median of each metric for itself.
+Metrics median(const std::vector<Metrics>& draws) {
+  const auto of = [&](double Metrics::*member) {
+    std::vector<double> values;
+    for (const Metrics& m : draws) values.push_back(m.*member);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  return {of(&Metrics::rmse),    of(&Metrics::correlation), of(&Metrics::coverage),
+          of(&Metrics::skill_0), of(&Metrics::skill_8),     of(&Metrics::overlap),
+          of(&Metrics::spill)};
+}
+
+}  // namespace
+
+Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
+                             std::uint64_t seed) {
+  Plan plan;
+  const double maximum = max_pressure(target);
+  if (!(maximum > 0.0)) return plan;
+  planning::WeightedKMeans kmeans(target.size());
+  double sum = 0.0, cells = 0.0;
+  for_skin(target, maximum, [&](const Vec2& x, double p) {
+    if (p < kWeak) return;
+    kmeans.add(x, p);
+    sum += p;
+    cells += 1.0;
+  });
+  planning::Clusters clusters;
+  kmeans.run(kCircles, 100, seed, clusters);
+  const double period = 1.0 / gain.draw_rate;
+  for (const Vec2& centre : clusters.centre) {
+    plan.paths.push_back(circle(centre, length, period, gain.of(period) * sum / cells * maximum));
+  }
+  return plan;
+}
+
+std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
+                              double length, const Plan* other, std::uint64_t seed,
+                              const std::function<void(int done, int all)>& progress) {
+  const double maximum = max_pressure(target);
+  if (!(maximum > 0.0)) return {};
+  const Scorer scorer(target);
+  const bool others = other != nullptr && !other->empty();
+  const bool stands_still = others && !other->foci.empty();
+  const int all = 2 + kDraws + (stands_still ? kDraws : 0) + (others ? 1 : 0);
+  int done = 0;
+  const auto score = [&](const Plan& plan) {
+    const Metrics metrics = scorer.plan(plan, 0, sigma, gain);
+    if (progress) progress(++done, all);
+    return metrics;
+  };
+  std::vector<Control> table;
+  table.push_back({"flat field", flat_field(target, maximum, scorer)});
+  ++done;
+  const Plan circles = circles_at_mass_centres(target, gain, length, seed);
+  table.push_back({"four circles at the mass centres", score(circles)});
+
+  Random random(seed);
+  std::vector<Metrics> draws;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Plan plan = random_circles(target, maximum, length, 1.0 / gain.draw_rate, random);
+    solve_pressures(target, maximum, sigma, gain, plan);
+    draws.push_back(score(plan));
+  }
+  table.push_back({"random circles, solved pressures", median(draws)});
+
+  if (!others) return table;
+  if (stands_still) {
+    draws.clear();
+    for (int draw = 0; draw < kDraws; ++draw)
+      draws.push_back(score(random_foci(target, other->foci.size(), sigma, maximum, random)));
+    table.push_back({"random foci, solved pressures", median(draws)});
+  }
+  table.push_back({stands_still ? "foci of another target" : "paths of another target",
+                   score(moved(*other, centre_of_mass(target, maximum), maximum, gain))});
+  return table;
+}
+
+}  // namespace prostm

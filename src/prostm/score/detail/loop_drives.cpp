@@ -1,0 +1,172 @@
+#include "prostm/score/detail/loop_drives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/require.hpp"
+
+namespace prostm {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+constexpr double kAboveAll = 1e9;  // more than any array reaches: then drives go up to 1 [Pa]
+constexpr int kWarmUp = 64;        // samples before the first, for the phases to settle
+constexpr double kFull = 0.99;     // |q| that counts as full drive
+
+/// The focal points of a sample that sound, each with its index; of two within kNearestFoci the
+/// stronger.
+struct Sounding {
+  std::vector<Vec3> p_D;
+  std::vector<double> intensity;
+  std::vector<std::size_t> focus;
+  int merged = 0;
+
+  void add(const FocusSample& sample, std::size_t index) {
+    const Vec3 p = sample.p_D.cast<double>();
+    const double wanted = static_cast<double>(sample.intensity);
+    if (wanted <= 0.0) return;
+    for (std::size_t i = 0; i < p_D.size(); ++i) {
+      if ((p - p_D[i]).norm() >= kNearestFoci) continue;
+      ++merged;
+      if (wanted <= intensity[i]) return;
+      p_D[i] = p;
+      intensity[i] = wanted;
+      focus[i] = index;
+      return;
+    }
+    p_D.push_back(p);
+    intensity.push_back(wanted);
+    focus.push_back(index);
+  }
+};
+
+Sounding sounding(const LoopSamples& loop, int k) {
+  Sounding out;
+  const auto foci = static_cast<std::size_t>(loop.foci);
+  for (std::size_t f = 0; f < foci; ++f) {
+    out.add(loop.sample[static_cast<std::size_t>(k) * foci + f], f);
+  }
+  return out;
+}
+
+/// Solves sample after sample, each from the phases that the focal points had before.
+class Solver {
+ public:
+  Solver(const TransducerArray& array, const Medium& medium, const FocusSettings& settings,
+         int foci)
+      : array_(array), medium_(medium), settings_(settings), phase_(VectorXd::Zero(foci)) {}
+
+  FocusSolution solve(const Sounding& s) {
+    const Index count = static_cast<Index>(s.p_D.size());
+    VectorXd target(count), start(count);
+    for (Index m = 0; m < count; ++m) {
+      const auto i = static_cast<std::size_t>(m);
+      target[m] = kAboveAll * s.intensity[i];
+      start[m] = phase_[static_cast<Index>(s.focus[i])];
+    }
+    FocusSolution solution =
+        solve_foci(propagation_to(array_, medium_, s.p_D), target, settings_, start);
+    for (Index m = 0; m < count; ++m) {
+      phase_[static_cast<Index>(s.focus[static_cast<std::size_t>(m)])] =
+          std::arg(solution.pressure[m]);
+    }
+    errors_ = focus_errors(solution, target);
+    return solution;
+  }
+  const VectorXd& errors() const { return errors_; }
+
+ private:
+  const TransducerArray& array_;
+  const Medium& medium_;
+  const FocusSettings settings_;
+  VectorXd phase_, errors_;
+};
+
+/// Drives at their largest, and the acoustic pressure per intensity that each sample then has [Pa].
+bool solve_all(const TransducerArray& array, const Medium& medium, const LoopSamples& loop,
+               const FocusSettings& settings, const std::function<bool(int, int)>& progress,
+               Eigen::MatrixXcd& drives, std::vector<double>& reached, LoopDriveResult& out) {
+  Solver solver(array, medium, settings, loop.foci);
+  const int all = loop.samples, warm_up = std::min(kWarmUp, all);
+  for (int k = -warm_up; k < all; ++k) {
+    if (!progress(k + warm_up, all + warm_up)) return false;
+    const Sounding s = sounding(loop, (k + all) % all);
+    if (s.p_D.empty()) continue;
+    const FocusSolution solution = solver.solve(s);
+    if (k < 0) continue;
+    drives.col(k) = solution.drive;
+    reached[static_cast<std::size_t>(k)] = solution.level * kAboveAll;
+    out.merged += s.merged;
+    out.worst_focus_error = std::max(out.worst_focus_error, solver.errors().cwiseAbs().maxCoeff());
+  }
+  return true;
+}
+
+/// One common scale: no sample above the full scale.
+void scale(const std::vector<double>& reached, double full_scale, Eigen::MatrixXcd& drives,
+           LoopDriveResult& out) {
+  out.full_scale_pa = full_scale > 0.0 ? full_scale : std::numeric_limits<double>::max();
+  for (const double p : reached) {
+    if (p > 0.0 && full_scale <= 0.0) out.full_scale_pa = std::min(out.full_scale_pa, p);
+  }
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    if (reached[k] <= 0.0) continue;
+    drives.col(static_cast<Index>(k)) *= std::min(1.0, out.full_scale_pa / reached[k]);
+    out.short_samples += reached[k] < out.full_scale_pa * (1.0 - 1e-9) ? 1 : 0;
+  }
+}
+
+void measure_power(const Eigen::MatrixXcd& drives, LoopDriveResult& out) {
+  const Eigen::ArrayXXd size = drives.cwiseAbs().array();
+  out.largest_drive = size.maxCoeff();
+  out.mean_power = size.square().sum() / static_cast<double>(drives.cols());
+  out.full_share = static_cast<double>((size > kFull).count()) / static_cast<double>(drives.size());
+}
+
+/// Twice round, so that the second time starts with what it ends with.
+LoopDrives through_transducers(const Eigen::MatrixXcd& drives, const TransducerSettings& settings) {
+  const auto transducers = static_cast<std::size_t>(drives.rows());
+  TransducerDynamics dynamics(settings, transducers);
+  LoopDrives output(drives.rows(), drives.cols());
+  for (Index k = 0; k < 2 * drives.cols(); ++k) {
+    const Index sample = k % drives.cols();
+    dynamics.step({drives.col(sample).data(), transducers});
+    for (std::size_t n = 0; n < transducers; ++n) {
+      output(static_cast<Index>(n), sample) = std::complex<float>(dynamics.output()[n]);
+    }
+  }
+  return output;
+}
+
+}  // namespace
+
+bool loop_drives(const TransducerArray& array, const Medium& medium, const LoopSamples& loop,
+                 const LoopDriveSettings& settings, const std::function<bool(int, int)>& progress,
+                 LoopDriveResult& out) {
+  require_between("full_scale_pa", settings.full_scale_pa, 0.0, 1e6, "Pa");
+  out = LoopDriveResult();
+  Eigen::MatrixXcd drives =
+      Eigen::MatrixXcd::Zero(static_cast<Index>(array.position.size()), loop.samples);
+  std::vector<double> reached(static_cast<std::size_t>(loop.samples), 0.0);
+  if (!solve_all(array, medium, loop, settings.focus, progress, drives, reached, out)) return false;
+  if (drives.isZero(0.0)) {
+    throw std::invalid_argument("the loop is silent throughout: its plan has no pressure on it");
+  }
+  scale(reached, settings.full_scale_pa, drives, out);
+  measure_power(drives, out);
+  TransducerSettings transducer = settings.transducer;
+  transducer.frequency = array.frequency;
+  transducer.sample_rate = loop.sample_rate;
+  out.output = through_transducers(drives, transducer);
+  return true;
+}
+
+}  // namespace prostm

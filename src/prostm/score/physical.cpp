@@ -1,0 +1,266 @@
+#include "prostm/score/physical.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "prostm/target/skin_normal.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr int kSamplesLookedAt = 64;
+constexpr double kLoudEnough = 0.1;  // intensity of a focal point that is looked at
+constexpr int kSide = 13;            // points along each edge of the grid around a focal point
+constexpr double kStep = 0.75e-3;    // between them [m]
+
+/// Acoustic pressure squared on the grid around a focal point, row by row along y.
+std::array<double, static_cast<std::size_t>(kSide* kSide)> around(const PackedArray& packed,
+                                                                  const Vec3& focus,
+                                                                  const Pose& X_DP,
+                                                                  const Eigen::VectorXcf& output) {
+  std::vector<Vec3> points;
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      const double half = 0.5 * (kSide - 1);
+      points.push_back(focus + X_DP.linear() * Vec3(kStep * (i - half), kStep * (j - half), 0.0));
+    }
+  }
+  const Eigen::VectorXcf p = acoustic_pressure(packed, points, output);
+  std::array<double, static_cast<std::size_t>(kSide * kSide)> out{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = static_cast<double>(std::norm(p[static_cast<Eigen::Index>(i)]));
+  }
+  return out;
+}
+
+/// Where a parabola through three values a step apart is highest, from the middle, in steps.
+double peak(double before, double here, double after) {
+  const double bend = before - 2.0 * here + after;
+  return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+}
+
+/// How far the highest place is from the grid's middle [m].
+double offset_of(const std::array<double, static_cast<std::size_t>(kSide* kSide)>& square) {
+  const auto at = static_cast<int>(std::max_element(square.begin(), square.end()) - square.begin());
+  const int col = at % kSide, row = at / kSide;
+  const auto value = [&](int j, int i) { return square[static_cast<std::size_t>(j * kSide + i)]; };
+  double x = col, y = row;
+  if (col > 0 && col + 1 < kSide) {
+    x += peak(value(row, col - 1), value(row, col), value(row, col + 1));
+  }
+  if (row > 0 && row + 1 < kSide) {
+    y += peak(value(row - 1, col), value(row, col), value(row + 1, col));
+  }
+  const double half = 0.5 * (kSide - 1);
+  return kStep * std::hypot(x - half, y - half);
+}
+
+/// Where a loop's focal points that sound are, every 0.7 mm of a path.
+std::vector<Eigen::Vector3f> places_of(const LoopSamples& loop) {
+  constexpr std::size_t kEvery = 4;  // samples
+  std::vector<Eigen::Vector3f> places;
+  for (std::size_t i = 0; i < loop.sample.size(); ++i) {
+    const std::size_t sample = i / static_cast<std::size_t>(loop.foci);
+    if (sample % kEvery == 0 && loop.sample[i].intensity > 0.0F) {
+      places.push_back(loop.sample[i].p_D);
+    }
+  }
+  return places;
+}
+
+/// Computes a PhysicalField. Cells may be wider than a lobe, so its largest values are looked for
+/// on points 2 mm apart or less, and then on points 0.5 mm apart around the highest of these.
+class Looking {
+ public:
+  Looking(const PackedArray& packed, const Medium& medium, const TargetField& raster,
+          const SkinSurface& skin, const LoopSamples& loop, const LoopDriveResult& drives,
+          WorkerPool& pool)
+      : packed_(packed),
+        medium_(medium),
+        raster_(raster),
+        skin_(skin),
+        places_(places_of(loop)),
+        drives_(drives),
+        pool_(pool) {
+    field.mean.assign(raster.size(), 0.0);
+    field.envelope.assign(raster.size(), 0.0);
+    // an odd number along each edge, so that one is in the middle
+    const int parts =
+        1 + 2 * std::max(0, static_cast<int>(std::ceil(raster.cell / kLook / 2 - 0.5)));
+    std::vector<Place> all, near;
+    for (std::size_t m = 0; m < skin.cell.size(); ++m) {
+      divide({m, raster.position(skin.cell[m])}, raster.cell, parts, all);
+    }
+    const LoopPressure found = look(all);
+    const auto of_a_cell = static_cast<std::size_t>(parts) * static_cast<std::size_t>(parts);
+    for (std::size_t m = 0; m < skin.cell.size(); ++m) {
+      field.mean[skin.cell[m]] = static_cast<double>(found.mean[m * of_a_cell + of_a_cell / 2]);
+      field.envelope[skin.cell[m]] =
+          static_cast<double>(found.envelope[m * of_a_cell + of_a_cell / 2]);
+    }
+    // a place stands for its surroundings too: some of them are beside the paths where it is not
+    for (const Place& place : std::exchange(highest_, {})) {
+      divide(place, 2.0 * kLook, 2 * kFiner, near);
+    }
+    std::erase_if(near, [&](const Place& place) { return !on_skin(place.x); });
+    look(near);
+    if (field.largest > 0.0) field.side_lobe = beside_ / field.largest;
+  }
+
+  PhysicalField field;
+
+ private:
+  struct Place {
+    std::size_t of;  // the cell whose normal it has: index in skin.cell
+    Vec2 x;          // in P
+  };
+  static constexpr double kLook = 2e-3;  // [m]
+  static constexpr int kFiner = 4;
+  static constexpr std::size_t kHighest = 32;  // places of each kind that are looked at again
+  static constexpr double kApart = kLook;      // between them [m]
+
+  static void divide(const Place& middle, double edge, int parts, std::vector<Place>& out) {
+    for (int j = 0; j < parts; ++j) {
+      for (int i = 0; i < parts; ++i) {
+        const Vec2 share((i + 0.5) / parts - 0.5, (j + 0.5) / parts - 0.5);
+        out.push_back({middle.of, middle.x + edge * share});
+      }
+    }
+  }
+
+  bool on_skin(const Vec2& x) const {
+    const Vec2 q = (x - raster_.origin) / raster_.cell;
+    const long row = std::lround(q.y()), col = std::lround(q.x());
+    return row >= 0 && col >= 0 && row < raster_.rows && col < raster_.cols &&
+           raster_.skin[raster_.index(static_cast<int>(row), static_cast<int>(col))] != 0;
+  }
+
+  bool beside_paths(const Vec3& p_D) const {
+    constexpr float kSquare = static_cast<float>(kBesidePaths * kBesidePaths);
+    const Eigen::Vector3f p = p_D.cast<float>();
+    return std::none_of(places_.begin(), places_.end(), [&](const Eigen::Vector3f& place) {
+      return (p - place).squaredNorm() < kSquare;
+    });
+  }
+
+  /// Takes the largest values of places, and adds the highest places of each kind to `highest_`.
+  LoopPressure look(const std::vector<Place>& at) {
+    SurfacePoints points;
+    for (const Place& place : at) {
+      const double height = height_at(raster_, place.x);
+      points.p_D.push_back(raster_.X_DP * Vec3(place.x.x(), place.x.y(), height));
+      points.normal.push_back(skin_.points.normal[place.of]);
+    }
+    LoopPressure found = loop_pressure(packed_, medium_, drives_.output, points, 0, pool_);
+    const auto take = [&](const std::vector<float>& value, auto&& counts, double& largest) {
+      std::vector<std::size_t> order(at.size());
+      std::iota(order.begin(), order.end(), std::size_t{0});
+      std::sort(order.begin(), order.end(),
+                [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
+      // apart from each other, so that they are of different lobes
+      const std::size_t before = highest_.size();
+      for (std::size_t i = 0; i < order.size() && highest_.size() < before + kHighest; ++i) {
+        const Place& place = at[order[i]];
+        if (!counts(order[i])) continue;
+        largest = std::max(largest, static_cast<double>(value[order[i]]));
+        const bool apart =
+            std::none_of(highest_.begin() + static_cast<std::ptrdiff_t>(before), highest_.end(),
+                         [&](const Place& other) { return (other.x - place.x).norm() < kApart; });
+        if (apart) highest_.push_back(place);
+      }
+    };
+    const auto anywhere = [](std::size_t) { return true; };
+    take(found.envelope, anywhere, field.largest);
+    take(found.mean, anywhere, field.largest_mean);
+    take(
+        found.envelope, [&](std::size_t i) { return beside_paths(points.p_D[i]); }, beside_);
+    return found;
+  }
+
+  const PackedArray& packed_;
+  const Medium& medium_;
+  const TargetField& raster_;
+  const SkinSurface& skin_;
+  std::vector<Eigen::Vector3f> places_;
+  const LoopDriveResult& drives_;
+  WorkerPool& pool_;
+  std::vector<Place> highest_;
+  double beside_ = 0.0;  // the largest of the envelope beside the paths
+};
+
+}  // namespace
+
+SkinSurface skin_surface(const TargetField& raster) {
+  SkinSurface skin;
+  for (int row = 0; row < raster.rows; ++row) {
+    for (int col = 0; col < raster.cols; ++col) {
+      const std::size_t cell = raster.index(row, col);
+      if (raster.skin[cell] == 0) continue;
+      const Vec2 x = raster.position(row, col);
+      skin.cell.push_back(cell);
+      skin.points.p_D.push_back(raster.X_DP * Vec3(x.x(), x.y(), raster.height[cell]));
+      skin.points.normal.push_back(raster.X_DP.linear() * skin_normal(raster, row, col));
+    }
+  }
+  return skin;
+}
+
+FocusAccuracy focus_accuracy(const PackedArray& packed, const LoopSamples& loop,
+                             const LoopDriveResult& drives, const Pose& X_DP) {
+  FocusAccuracy out;
+  out.least_level = std::numeric_limits<double>::max();
+  const int every = std::max(1, loop.samples / kSamplesLookedAt);
+  for (int k = 0; k < loop.samples; k += every) {
+    const Eigen::VectorXcf output = drives.output.col(k);
+    for (int f = 0; f < loop.foci; ++f) {
+      const FocusSample& focus = loop.sample[static_cast<std::size_t>(k * loop.foci + f)];
+      const double intensity = static_cast<double>(focus.intensity);
+      if (intensity <= kLoudEnough) continue;
+      const auto square = around(packed, focus.p_D.cast<double>(), X_DP, output);
+      const double offset = offset_of(square);
+      const double level =
+          std::sqrt(square[square.size() / 2]) / (intensity * drives.full_scale_pa);
+      ++out.looked_at;
+      out.mean_offset += offset;
+      out.worst_offset = std::max(out.worst_offset, offset);
+      out.mean_level += level;
+      out.least_level = std::min(out.least_level, level);
+      out.most_level = std::max(out.most_level, level);
+    }
+  }
+  if (out.looked_at == 0) return {};
+  out.mean_offset /= out.looked_at;
+  out.mean_level /= out.looked_at;
+  return out;
+}
+
+PhysicalField physical_field(const PackedArray& packed, const Medium& medium,
+                             const TargetField& raster, const LoopSamples& loop,
+                             const LoopDriveResult& drives, WorkerPool& pool) {
+  const SkinSurface skin = skin_surface(raster);
+  if (skin.cell.empty()) {
+    throw std::invalid_argument("the raster has no skin; there must be a cell with a height");
+  }
+  return Looking(packed, medium, raster, skin, loop, drives, pool).field;
+}
+
+Metrics score_physical(const TargetField& target, const std::vector<double>& field,
+                       double coverage) {
+  double with_target = 0.0, with_itself = 0.0;
+  for (std::size_t c = 0; c < target.size(); ++c) {
+    if (target.skin[c] == 0) continue;
+    with_target += target.pressure[c] * field[c];
+    with_itself += field[c] * field[c];
+  }
+  if (with_itself <= 0.0) return {};
+  std::vector<double> scaled(field);
+  for (double& p : scaled) p *= with_target / with_itself;
+  return score_field(target, scaled, coverage);
+}
+
+}  // namespace prostm

@@ -1,0 +1,86 @@
+#pragma once
+/// What is to be felt: a pressure on the skin, projected on a plane and sampled on a raster.
+
+#include <boost/container/static_vector.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "prostm/core/geometry.hpp"
+
+namespace prostm {
+
+/// The largest raster that is read or planned: 10⁶ cells, a 5 m palm at 5 mm.
+inline constexpr std::size_t kMaxFieldCells = 1'000'000;
+
+/// The target pressure field T = {(x_i, p*(x_i))} of the paper's section IV-A on a regular raster
+/// of the plane P.
+///
+/// Row-major: the centre of cell (row, col) lies at origin + cell·(col, row) in P. `pressure` is
+/// any non-negative quantity (a plan scales with it); `height` is the skin's distance from the
+/// plane along its normal, positive away from the array, so that a point x of the plane is lifted
+/// to X_DP · (x, height); `weight` is how much the error of a cell counts where a plan is fitted to
+/// the field (presets `best` and `fast`): only the weights' ratios matter.
+struct TargetField {
+  int rows = 0, cols = 0;
+  double cell = 0.0;               ///< edge of a cell [m]
+  Vec2 origin = Vec2::Zero();      ///< centre of cell (0, 0) in P [m]
+  std::vector<double> pressure;    ///< rows·cols, >= 0, 0 where there is no skin
+  std::vector<std::uint8_t> skin;  ///< rows·cols, 1 where there is skin
+  std::vector<double> height;      ///< rows·cols [m], finite everywhere (see fill_heights)
+  std::vector<double> weight;      ///< empty: 1 everywhere; else rows·cols, >= 0, dimensionless
+  Pose X_DP = default_plane();     ///< the plane in frame D: normal is P's z axis
+
+  std::size_t size() const { return pressure.size(); }
+  std::size_t index(int row, int col) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) +
+           static_cast<std::size_t>(col);
+  }
+  Vec2 position(int row, int col) const { return origin + cell * Vec2(col, row); }
+  /// Of a cell by its index. @pre index < size().
+  Vec2 position(std::size_t index) const {
+    const auto width = static_cast<std::size_t>(cols);
+    return position(static_cast<int>(index / width), static_cast<int>(index % width));
+  }
+
+  /// Sets the shape and clears every cell to no skin, pressure 0, height 0, without weights.
+  /// Allocates only when it grows.
+  void resize(int new_rows, int new_cols);
+
+  /// Parallel to the array, 200 mm above its centre.
+  static Pose default_plane();
+};
+
+/// @throws std::invalid_argument with a sentence that names the value and the bound: sizes that
+/// disagree, an empty or too large raster, a cell size that is not positive and finite, a pressure
+/// that is negative or not finite, pressure where there is no skin, a height or plane that is not
+/// finite, a plane whose axes are not orthonormal, a weight that is negative or not finite, weights
+/// that are 0 on all skin.
+void validate(const TargetField& field);
+
+/// Largest pressure; 0 for a field without skin.
+double max_pressure(const TargetField& field);
+
+/// Largest weight on skin; 0 for a field without skin. @pre the field has weights.
+double max_weight(const TargetField& field);
+
+/// Continues the heights of the skin to the cells without skin (each takes the height of the
+/// nearest skin cell, by breadth-first spreading), so that a path that bridges a gap between
+/// fingers stays near the skin. 0 when no skin.
+void fill_heights(TargetField& field);
+/// The same for a loop: `queue` is scratch that is kept between calls; nothing is allocated once it
+/// holds rows·cols.
+void fill_heights(TargetField& field, std::vector<std::uint32_t>& queue);
+
+/// Height at a point of the plane [m]: bilinear between cell centres, clamped to the raster's
+/// border.
+double height_at(const TargetField& field, const Vec2& x);
+
+/// One frame of targets: a patch per hand, each with its own plane.
+inline constexpr int kMaxPatches = 2;
+struct TargetFrame {
+  double time = 0.0;  ///< [s] of the hand frame that it was computed from
+  boost::container::static_vector<TargetField, kMaxPatches> patches;
+};
+
+}  // namespace prostm

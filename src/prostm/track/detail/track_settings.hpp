@@ -1,0 +1,22 @@
+#pragma once
+/// Validation of the settings and recordings of hand sources. Private to track.
+
+#include "prostm/track/hand_source.hpp"
+
+namespace prostm {
+
+/// @throws std::invalid_argument with a sentence that names the setting, its value and its bounds.
+void validate(const TrackSettings& settings);
+void validate(const ScriptedHandSettings& settings);
+/// @throws std::invalid_argument for no frames, times that do not increase from 0, or two hands of
+/// one id and side in a frame.
+void validate_recording(const HandRecording& recording);
+/// Takes out hands below `least_confidence`. @throws std::invalid_argument with a sentence when
+/// there were hands and none is left.
+void leave_out_unsure(const TrackSettings& settings, HandRecording& recording);
+void validate_step(double step);  ///< between samples [s]
+
+/// Hands of a recording before and after a seek are not the same: their ids differ by this.
+inline constexpr std::int64_t kIdsPerSeek = 1'000'000;
+
+}  // namespace prostm

@@ -1,0 +1,76 @@
+#pragma once
+/// What a hand tracker tells: up to two hands of 26 joints.
+
+#include <array>
+#include <boost/container/static_vector.hpp>
+#include <cstdint>
+#include <string_view>
+
+#include "prostm/core/geometry.hpp"
+
+namespace prostm {
+
+/// The joints and their order are OpenXR's XrHandJointEXT.
+enum Joint : int {
+  kPalm,
+  kWrist,
+  kThumbMetacarpal,
+  kThumbProximal,
+  kThumbDistal,
+  kThumbTip,
+  kIndexMetacarpal,
+  kIndexProximal,
+  kIndexIntermediate,
+  kIndexDistal,
+  kIndexTip,
+  kMiddleMetacarpal,
+  kMiddleProximal,
+  kMiddleIntermediate,
+  kMiddleDistal,
+  kMiddleTip,
+  kRingMetacarpal,
+  kRingProximal,
+  kRingIntermediate,
+  kRingDistal,
+  kRingTip,
+  kLittleMetacarpal,
+  kLittleProximal,
+  kLittleIntermediate,
+  kLittleDistal,
+  kLittleTip,
+  kJointCount
+};
+
+std::string_view joint_name(int joint);  ///< "palm", "wrist", "thumb-metacarpal", …
+
+enum class Side : std::uint8_t { Left, Right };
+
+/// One hand. Positions are in the frame of whoever made it: T from trackers and recordings, D after
+/// to_device(). Joint frames follow OpenXR: −z along the bone to the tip, +y dorsal.
+struct Hand {
+  std::int64_t id = 0;  ///< stays with a hand while it is tracked
+  Side side = Side::Right;
+  double confidence = 1.0;     ///< 0..1
+  std::uint32_t inferred = 0;  ///< bit 0: metacarpals were rebuilt, bit 1: the wrist was
+  std::array<Vec3, kJointCount> position;     ///< [m]
+  std::array<Quat, kJointCount> orientation;  ///< unit quaternions
+  std::array<double, kJointCount> radius{};   ///< of the flesh around the joint [m]
+  std::array<Vec3, kJointCount> velocity;     ///< [m/s]
+};
+
+struct HandFrame {
+  double time = 0.0;  ///< [s]
+  double age = 0.0;  ///< how long before `time` the tracker's frame came in that this is made from;
+                     ///< 0 for hands that were computed for exactly `time` [s]
+  boost::container::static_vector<Hand, 2> hands;
+};
+
+/// Poses, velocities and orientations of a frame in T, expressed in D.
+void to_device(const Pose& X_DT, HandFrame& frame);
+
+/// At the array's centre, axes (x, y, z)_T → (x, −z, y)_D.
+Pose default_tracker_pose();
+/// The Ultraleap kit's: the tracker sits 121 mm along +y of D from the array's centre.
+Pose ultraleap_kit_pose();
+
+}  // namespace prostm

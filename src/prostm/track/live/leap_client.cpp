@@ -1,0 +1,257 @@
+#include "prostm/track/live/leap_client.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <charconv>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/spsc_ring.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/track/live/leap_frame.hpp"
+
+namespace prostm {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+using asio::ip::tcp;
+using boost::system::error_code;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstRetry{50}, kLastRetry{1000}, kConnectTime{1000}, kSilence{2000};
+constexpr std::size_t kMaxMessage = std::size_t{256} << 10;  // a frame of two hands has 12 kB
+constexpr std::size_t kFramesKept = 128;
+
+// The bridge compares these letter by letter, and has room for 32 of them.
+constexpr std::array<std::string_view, 3> kRequests = {
+    R"({"background":true})", R"({"focused":true})", R"({"optimizeHMD":false})"};
+
+enum class Link : std::uint8_t { Connecting, Absent, Foreign, Lost, Connected };
+
+/// The places that a host's name stands for.
+std::vector<tcp::endpoint> endpoints_of(const LeapAddress& address, asio::io_context& io) {
+  error_code error;
+  const asio::ip::address numeric = asio::ip::make_address(address.host, error);
+  if (!error) return {{numeric, address.port}};
+  tcp::resolver resolver(io);
+  const auto found = resolver.resolve(address.host, std::to_string(address.port), error);
+  if (error) {
+    throw InputError(
+        fmt::format("leap://{}:{}: no host is known by the name {}; the service is "
+                    "usually at leap://127.0.0.1:6437",
+                    address.host, address.port, address.host));
+  }
+  std::vector<tcp::endpoint> endpoints;
+  for (const auto& entry : found) endpoints.push_back(entry.endpoint());
+  return endpoints;
+}
+
+class LeapTracker final : public LiveTracker {
+ public:
+  explicit LeapTracker(const LeapAddress& address)
+      : name_(fmt::format("leap://{}:{}", address.host, address.port)),
+        host_(fmt::format("{}:{}", address.host, address.port)),
+        endpoints_(endpoints_of(address, io_)),
+        retry_(io_),
+        thread_([this] { run(); }) {}
+
+  ~LeapTracker() override {
+    io_.stop();
+    thread_.join();
+  }
+
+  bool next(HandFrame& frame) override { return ring_.pop(frame); }
+  bool connected() const noexcept override {
+    return link_.load(std::memory_order_relaxed) == Link::Connected;
+  }
+
+  TrackerStatus status() const override {
+    TrackerStatus status;
+    const Link link = link_.load(std::memory_order_relaxed);
+    status.connected = link == Link::Connected;
+    status.frames = frames_.load(std::memory_order_relaxed);
+    status.dropped = dropped_.load(std::memory_order_relaxed);
+    status.repeated = repeated_.load(std::memory_order_relaxed);
+    status.reconnects = std::max<std::int64_t>(connections_.load(std::memory_order_relaxed) - 1, 0);
+    status.sentence = sentence(link);
+    if (status.dropped > 0) {
+      const std::lock_guard lock(problem_mutex_);
+      status.sentence +=
+          fmt::format("; {} frames were dropped, the last since {}", status.dropped, problem_);
+    }
+    if (status.repeated > 0) {
+      status.sentence += fmt::format("; {} frames were not taken: their time had been seen already",
+                                     status.repeated);
+    }
+    return status;
+  }
+
+ private:
+  std::string sentence(Link link) const {
+    switch (link) {
+      case Link::Connecting:
+        return "connecting to " + name_;
+      case Link::Absent:
+        return "nothing answers at " + name_ + "; is the tracking service or its bridge running?";
+      case Link::Foreign:
+        return "what answers at " + name_ + " does not serve /v6.json";
+      case Link::Lost:
+        return "the connection to " + name_ + " was lost; trying again";
+      case Link::Connected:
+        break;
+    }
+    return "connected to " + name_;
+  }
+
+  // ---- the tracker's thread: one operation at a time, each of which starts the next ----
+
+  void run() {
+    connect();
+    io_.run();
+  }
+
+  void connect() {
+    socket_.emplace(io_);
+    auto& stream = beast::get_lowest_layer(*socket_);
+    stream.expires_after(kConnectTime);
+    stream.async_connect(endpoints_, [this](error_code error, const tcp::endpoint&) {
+      if (error) return try_again(Link::Absent);
+      shake_hands();
+    });
+  }
+
+  void shake_hands() {
+    error_code ignored;
+    beast::get_lowest_layer(*socket_).socket().set_option(tcp::no_delay(true), ignored);
+    beast::get_lowest_layer(*socket_).expires_never();
+    socket_->set_option(websocket::stream_base::timeout{kConnectTime, kSilence, true});
+    socket_->read_message_max(kMaxMessage);
+    socket_->async_handshake(host_, "/v6.json", [this](error_code error) {
+      if (error) return try_again(Link::Foreign);
+      link_.store(Link::Connected, std::memory_order_relaxed);
+      connections_.fetch_add(1, std::memory_order_relaxed);
+      clock_.reset();
+      request(0);
+    });
+  }
+
+  void request(std::size_t i) {
+    if (i == kRequests.size()) return read();
+    socket_->text(true);
+    socket_->async_write(asio::buffer(kRequests[i]), [this, i](error_code error, std::size_t) {
+      if (error) return try_again(Link::Lost);
+      request(i + 1);
+    });
+  }
+
+  void read() {
+    buffer_.clear();
+    socket_->async_read(buffer_, [this](error_code error, std::size_t) {
+      if (error) return try_again(Link::Lost);
+      take(steady_now());
+      read();
+    });
+  }
+
+  void take(double arrival) {
+    const auto bytes = buffer_.cdata();
+    const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
+    const LeapMessage kind = leap_message(text, frame_, problem_of_last_);
+    if (kind == LeapMessage::Other) return;
+    frames_.fetch_add(1, std::memory_order_relaxed);
+    if (kind == LeapMessage::Refused) {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+      const std::lock_guard lock(problem_mutex_);
+      problem_ = problem_of_last_;
+      return;
+    }
+    wait_ = kFirstRetry;
+    const std::optional<double> time = clock_.time_of(frame_.time, arrival);
+    if (!time) {
+      repeated_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    frame_.time = *time;
+    ring_.push(frame_);
+  }
+
+  void try_again(Link why) {
+    link_.store(why, std::memory_order_relaxed);
+    socket_.reset();
+    retry_.expires_after(wait_);
+    wait_ = std::min(2 * wait_, kLastRetry);
+    retry_.async_wait([this](error_code error) {
+      if (!error) connect();
+    });
+  }
+
+  const std::string name_, host_;
+  asio::io_context io_{1};
+  const std::vector<tcp::endpoint> endpoints_;
+
+  // of the tracker's thread alone
+  std::optional<websocket::stream<beast::tcp_stream, false>> socket_;  // nothing deflated
+  asio::steady_timer retry_;
+  beast::flat_buffer buffer_;
+  milliseconds wait_ = kFirstRetry;
+  StampClock clock_;
+  HandFrame frame_;
+  std::string problem_of_last_;
+
+  SpscRing<HandFrame> ring_{kFramesKept};
+  std::atomic<Link> link_{Link::Connecting};
+  std::atomic<std::int64_t> frames_{0}, dropped_{0}, repeated_{0}, connections_{0};
+  mutable std::mutex problem_mutex_;  // neither who plans nor who emits ever waits for it
+  std::string problem_;
+
+  std::thread thread_;  // the last to be made: it uses all of the above
+};
+
+}  // namespace
+
+LeapAddress leap_address(const std::string& text) {
+  const auto wrong = [&](const char* what) {
+    return InputError(
+        fmt::format("{}: {}; it must be leap://HOST:PORT, for example "
+                    "leap://127.0.0.1:6437",
+                    text, what));
+  };
+  constexpr std::string_view kScheme = "leap://";
+  if (text.rfind(kScheme, 0) != 0) throw wrong("does not begin with leap://");
+  const std::string rest = text.substr(kScheme.size());
+  const bool bracketed = !rest.empty() && rest.front() == '[';
+  const std::size_t end = bracketed ? rest.find(']') : rest.find(':');
+  if (bracketed && end == rest.npos) throw wrong("has a bracket that does not close");
+  LeapAddress address;
+  address.host = bracketed ? rest.substr(1, end - 1) : rest.substr(0, end);
+  const std::size_t host_end = std::min(bracketed ? end + 1 : end, rest.size());
+  if (address.host.empty()) throw wrong("names no host");
+  if (address.host.find_first_of("/?#@ \t%\\") != address.host.npos)
+    throw wrong("has a host that cannot be");
+  if (host_end == rest.size()) return address;
+  const char* first = rest.data() + host_end + 1;
+  const char* last = rest.data() + rest.size();
+  const auto [stopped, error] = std::from_chars(first, last, address.port);
+  if (rest[host_end] != ':' || error != std::errc() || stopped != last || address.port == 0)
+    throw wrong("has a port that is not a number from 1 to 65535");
+  return address;
+}
+
+std::unique_ptr<LiveTracker> make_leap_tracker(const LeapAddress& address) {
+  return std::make_unique<LeapTracker>(address);
+}
+
+}  // namespace prostm

@@ -1,0 +1,277 @@
+#include "prostm/track/live/leap_frame.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/json.hpp"
+#include "prostm/track/hand_json.hpp"
+
+namespace prostm {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kMaxLeapDistance = 1.0;  // no Leap sees that far [m]
+constexpr int kFingers = 5;               // thumb, index, middle, ring, little
+constexpr int kFirstJoint[kFingers] = {kThumbMetacarpal, kIndexMetacarpal, kMiddleMetacarpal,
+                                       kRingMetacarpal, kLittleMetacarpal};
+
+// The Leap skeleton is one template, scaled as a whole, with a rigid palm. In the palm's frame of a
+// right hand (origin the palm position, x = y × z, y against the palm's normal, z against its
+// direction), in units of the distance between the index and the little finger's knuckles, measured
+// on recordings that have all of it:
+constexpr double kCarps[4][3] = {{-0.1976046, 0.2015095, 0.7201562},
+                                 {-0.0146782, 0.2261114, 0.6759428},
+                                 {0.1733065, 0.2098137, 0.6599816},
+                                 {0.3564779, 0.0946070, 0.6960421}};
+constexpr double kWristPoint[3] = {0.1174955, 0.0665872, 0.8323454};
+constexpr double kMetacarpalAxes[kFingers][2][3] = {  // rows: y (dorsal) and z (against the bone)
+    {{-0.8047939, 0.4472140, 0.3902646}, {0.4363291, 0.0000001, 0.8997872}},
+    {{-0.0249066, 0.9889363, -0.1462346}, {0.1660444, 0.1483405, 0.9748971}},
+    {{0.1457653, 0.9777160, -0.1510760}, {0.0295208, 0.1483405, 0.9884957}},
+    {{0.2169105, 0.9688349, -0.1196191}, {-0.1213179, 0.1483404, 0.9814669}},
+    {{0.3533502, 0.9354594, -0.0076935}, {-0.2593289, 0.1058513, 0.9599709}}};
+constexpr double kFingerRadius[kFingers] = {0.15384, 0.14130, 0.13504, 0.13029, 0.11774};
+constexpr double kPalmRadius = 0.2512;  // in the same unit
+constexpr double kWristOfPalm = 1.25;   // wrist radius over palm radius
+constexpr double kRadiusOfArmWidth = 0.31;
+constexpr double kTipOfFinger = 0.8;  // radius at the tip over radius of the finger
+constexpr double kMinWidth = 0.008,
+                 kMaxWidth = 0.040;  // of a finger [m]; other values are not in millimetres
+
+/// Joints of one finger as recorded [m].
+struct Finger {
+  Vec3 mcp, pip, dip, tip;
+  std::optional<Vec3> carp;
+  std::optional<std::array<Eigen::Matrix3d, 4>> bases;  // columns x, y, z
+  double width = 0.0;                                   // 0: not recorded [m]
+};
+
+/// The palm's frame in T.
+struct Palm {
+  Eigen::Matrix3d R_TP;  // of a right-handed frame for both hands
+  Vec3 p_TP;             // [m]
+  double mirror;         // x of the template: 1 for right, −1 for left hands
+  double span;           // index to little finger's knuckle [m]
+  Vec3 point(const double (&t)[3]) const {
+    return p_TP + span * (R_TP * Vec3(mirror * t[0], t[1], t[2]));
+  }
+};
+
+Vec3 metres(const JsonNode& node, const char* key) {
+  constexpr double kLimit = kMaxLeapDistance * 1e3;
+  return 1e-3 * node.at(key, "3 numbers in millimetres").vec3(-kLimit, kLimit);
+}
+
+Vec3 unit_vector(const JsonNode& node, const char* key) {
+  const JsonNode v = node.at(key, "a unit vector");
+  const Vec3 x = v.vec3(-2.0, 2.0);
+  if (!(std::abs(x.norm() - 1.0) <= 0.01))
+    v.fail(fmt::format("has length {}; it must be 1 within 0.01", x.norm()));
+  return x.normalized();
+}
+
+/// Rotation with the given z, and a y as near as can be to the given unit one.
+Eigen::Matrix3d frame_from(const JsonNode& node, const Vec3& y, const Vec3& z) {
+  Eigen::Matrix3d R;
+  const double length = z.norm();
+  const Vec3 x = y.cross(z);
+  if (!(x.norm() > 0.1 * length)) node.fail("has parallel axes; they must be perpendicular");
+  R.col(2) = z / length;
+  R.col(0) = (x - x.dot(R.col(2)) * R.col(2)).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return R;
+}
+
+/// A recorded basis: rows x, y, z. Left hands come with x to either side; y and z decide.
+Eigen::Matrix3d recorded_basis(const JsonNode& basis) {
+  if (basis.array_size() != 3)
+    basis.fail(fmt::format("has {} axes; it must have 3", basis.array_size()));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double length = basis.at(i).vec3(-2.0, 2.0).norm();
+    if (!(std::abs(length - 1.0) <= 0.05)) {
+      basis.at(i).fail(fmt::format("has length {}; it must be 1 within 0.05", length));
+    }
+  }
+  return frame_from(basis, basis.at(1).vec3(-2.0, 2.0), basis.at(2).vec3(-2.0, 2.0));
+}
+
+Finger read_finger(const JsonNode& node) {
+  Finger finger{metres(node, "mcpPosition"),
+                metres(node, "pipPosition"),
+                metres(node, "dipPosition"),
+                metres(node, node.has("btipPosition") ? "btipPosition" : "tipPosition"),
+                {},
+                {},
+                0.0};
+  if (node.has("carpPosition")) finger.carp = metres(node, "carpPosition");
+  if (node.has("bases")) {
+    const JsonNode bases = node.at("bases", "");
+    if (bases.array_size() != 4)
+      bases.fail(fmt::format("has {} bones; it must have 4", bases.array_size()));
+    finger.bases.emplace();
+    for (std::size_t b = 0; b < 4; ++b) (*finger.bases)[b] = recorded_basis(bases.at(b));
+  }
+  if (node.has("width")) finger.width = 1e-3 * node.at("width", "").number(0.0, 1e3);
+  return finger;
+}
+
+/// The five fingers of a hand among the frame's pointables.
+std::array<Finger, kFingers> read_fingers(const JsonNode& hand, std::int64_t id,
+                                          const JsonNode& pointables) {
+  std::array<std::optional<Finger>, kFingers> found;
+  for (std::size_t i = 0; i < pointables.array_size(); ++i) {
+    const JsonNode node = pointables.at(i);
+    const JsonNode owner = node.at("handId", "the hand's id");
+    if (owner.integer(-1, std::numeric_limits<int>::max()) != id) continue;
+    if (node.has("tool") && node.at("tool", "").value() == true) continue;
+    const int type = node.at("type", "0 (thumb) to 4 (little finger)").integer(0, 4);
+    std::optional<Finger>& finger = found[static_cast<std::size_t>(type)];
+    if (finger)
+      node.fail(fmt::format("is a second finger of type {}; a hand must have each once", type));
+    finger = read_finger(node);
+  }
+  std::array<Finger, kFingers> fingers;
+  for (std::size_t f = 0; f < kFingers; ++f) {
+    if (!found[f])
+      hand.fail(fmt::format("has no finger of type {}; it must have 5, the types 0 to 4", f));
+    fingers[f] = *found[f];
+  }
+  return fingers;
+}
+
+Palm read_palm(const JsonNode& hand, Side side, const std::array<Finger, kFingers>& fingers) {
+  Palm palm;
+  palm.R_TP = frame_from(hand, -unit_vector(hand, "palmNormal"), -unit_vector(hand, "direction"));
+  palm.p_TP = metres(hand, "palmPosition");
+  palm.mirror = side == Side::Right ? 1.0 : -1.0;
+  palm.span = (fingers[4].mcp - fingers[1].mcp).norm();
+  return palm;
+}
+
+/// "type" where it is recorded; else the side on which the index finger is, seen from the back of
+/// the hand.
+Side read_side(const JsonNode& hand, const std::array<Finger, kFingers>& fingers) {
+  if (hand.has("type")) {
+    const JsonNode type = hand.at("type", "");
+    const std::string side = type.text();
+    if (side != "left" && side != "right")
+      type.fail("is not a side; it must be \"left\" or \"right\"");
+    return side == "left" ? Side::Left : Side::Right;
+  }
+  const Vec3 thumb_side = unit_vector(hand, "direction").cross(unit_vector(hand, "palmNormal"));
+  return (fingers[1].mcp - fingers[4].mcp).dot(thumb_side) > 0.0 ? Side::Right : Side::Left;
+}
+
+/// R turned by the smallest rotation that brings its −z axis to `bone`.
+Eigen::Matrix3d transported(const Eigen::Matrix3d& R, const Vec3& bone) {
+  return Quat::FromTwoVectors(-R.col(2), bone).toRotationMatrix() * R;
+}
+
+/// The frame of a metacarpal in the template, in T.
+Eigen::Matrix3d template_frame(const JsonNode& node, const Palm& palm, std::size_t finger) {
+  const auto& axes = kMetacarpalAxes[finger];
+  const Vec3 y(palm.mirror * axes[0][0], axes[0][1], axes[0][2]),
+      z(palm.mirror * axes[1][0], axes[1][1], axes[1][2]);
+  return palm.R_TP * frame_from(node, y, z);
+}
+
+/// Positions and orientations of a finger's joints. Orientations are recorded, or carried from bone
+/// to bone.
+void set_finger(const JsonNode& node, const Palm& palm, const std::array<Finger, kFingers>& fingers,
+                std::size_t f, Hand& hand) {
+  const Finger& finger = fingers[f];
+  auto joint = static_cast<std::size_t>(kFirstJoint[f]);
+  const std::size_t first = joint;
+  // the thumb's metacarpal has no length in the Leap's skeleton, so that its joints move up by one
+  if (f > 0) {
+    if (!finger.carp) hand.inferred |= 1U;
+    hand.position[joint++] = finger.carp ? *finger.carp : palm.point(kCarps[f - 1]);
+  }
+  for (const Vec3& p : {finger.mcp, finger.pip, finger.dip, finger.tip}) hand.position[joint++] = p;
+
+  const std::size_t bones = joint - first - 1;
+  Eigen::Matrix3d R_TB = template_frame(node, palm, f);
+  for (std::size_t b = 0; b < bones; ++b) {
+    const Vec3 bone = hand.position[first + b + 1] - hand.position[first + b];
+    if (finger.bases) {
+      R_TB = (*finger.bases)[4 - bones + b];
+    } else if (bone.norm() > 1e-6) {
+      const bool knuckle = b + 3 == bones;
+      R_TB = knuckle ? frame_from(node, R_TB.col(1), -bone) : transported(R_TB, bone.normalized());
+    }
+    hand.orientation[first + b] = Quat(R_TB);
+  }
+  hand.orientation[first + bones] = Quat(R_TB);
+
+  // leapd gives widths in millimetres; other services give numbers that no finger has
+  const bool has_width = finger.width >= kMinWidth && finger.width <= kMaxWidth;
+  const double radius = has_width ? 0.5 * finger.width : kFingerRadius[f] * palm.span;
+  for (std::size_t b = 0; b <= bones; ++b)
+    hand.radius[first + b] = b == bones ? kTipOfFinger * radius : radius;
+}
+
+void set_palm_and_wrist(const JsonNode& node, const Palm& palm, Hand& hand) {
+  hand.position[kPalm] = 0.5 * (hand.position[kMiddleMetacarpal] + hand.position[kMiddleProximal]);
+  hand.orientation[kPalm] = Quat(frame_from(
+      node, palm.R_TP.col(1), hand.position[kMiddleMetacarpal] - hand.position[kMiddleProximal]));
+  hand.radius[kPalm] = kPalmRadius * palm.span;
+  if (!node.has("wrist")) hand.inferred |= 2U;
+  hand.position[kWrist] = node.has("wrist") ? metres(node, "wrist") : palm.point(kWristPoint);
+  hand.orientation[kWrist] = Quat(palm.R_TP);
+  const double arm_width =
+      node.has("armWidth") ? 1e-3 * node.at("armWidth", "").number(0.0, 1e3) : 0.0;
+  hand.radius[kWrist] =
+      arm_width > 0.0 ? kRadiusOfArmWidth * arm_width : kWristOfPalm * hand.radius[kPalm];
+}
+
+/// A hand of a frame whose fingers are among `pointables`.
+Hand leap_hand(const JsonNode& node, const JsonNode& pointables) {
+  Hand hand;
+  hand.id = node.at("id", "a whole number").integer(0, std::numeric_limits<int>::max());
+  hand.confidence = node.has("confidence") ? node.at("confidence", "").number(0.0, 1.0) : 1.0;
+  const std::array<Finger, kFingers> fingers = read_fingers(node, hand.id, pointables);
+  hand.side = read_side(node, fingers);
+  const Palm palm = read_palm(node, hand.side, fingers);
+  hand.velocity.fill(Vec3::Zero());
+  for (std::size_t f = 0; f < kFingers; ++f) set_finger(node, palm, fingers, f, hand);
+  set_palm_and_wrist(node, palm, hand);
+  check_hand(node, hand);
+  return hand;
+}
+
+}  // namespace
+
+HandFrame leap_frame(const JsonNode& node) {
+  HandFrame frame;
+  frame.time = 1e-6 * node.at("timestamp", "the time in microseconds").number(0.0, 1e15);
+  const JsonNode hands = hands_of(node);
+  for (std::size_t h = 0; h < hands.array_size(); ++h) {
+    const JsonNode pointables = node.at("pointables", "an array of fingers");
+    pointables.array_size();
+    frame.hands.push_back(leap_hand(hands.at(h), pointables));
+  }
+  return frame;
+}
+
+LeapMessage leap_message(std::string_view text, HandFrame& frame, std::string& problem) {
+  static const std::string kName = "a message of the tracker";
+  try {
+    const json document = parse_json(text, kName);
+    const JsonNode node(document, kName);
+    const bool greeting = node.has("version") || node.has("serviceVersion") || node.has("event");
+    if (greeting && !node.has("hands")) return LeapMessage::Other;
+    frame = leap_frame(node);
+    check_ids(node, frame);
+    return LeapMessage::Frame;
+  } catch (const InputError& error) {
+    problem = error.what();
+    return LeapMessage::Refused;
+  }
+}
+
+}  // namespace prostm

@@ -1,0 +1,31 @@
+#pragma once
+/// One frame of the Leap Motion's JSON, protocol version 6, as services send it live and recordings
+/// keep it, completed where old services lack bones: (H13) to (H16) of docs/design.md.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "prostm/track/hand_frame.hpp"
+
+namespace prostm {
+
+class JsonNode;
+
+/// The hands of a frame, in T; `time` is the tracker's own [s], velocities are 0. Left hands may
+/// come with left-handed bases, as the original service sends them, or with right-handed ones.
+/// @throws InputError that names the member: one that is missing or not a number, a place farther
+/// than 1 m from the tracker, radii or bone lengths that no hand has, more than 2 hands, a hand
+/// without its five fingers.
+HandFrame leap_frame(const JsonNode& node);
+
+enum class LeapMessage : std::uint8_t {
+  Frame,   ///< hands, or none in sight
+  Other,   ///< the greeting with the version, or an event of the device
+  Refused  ///< not JSON, or a frame that leap_frame() refuses, or two hands of one id and side
+};
+
+/// Reads one message. Sets `frame` when it is one, `problem` to a sentence when it is refused.
+LeapMessage leap_message(std::string_view text, HandFrame& frame, std::string& problem);
+
+}  // namespace prostm

@@ -1,0 +1,50 @@
+#pragma once
+/// From the snapshots of a run to the frames of the wire. Private to viewer.
+
+#include <chrono>
+#include <deque>
+
+#include "prostm/pipeline/live.hpp"
+#include "prostm/viewer/view_source.hpp"
+
+namespace prostm::viewer {
+
+/// Values of the last while, and what they say of it.
+class Recent {
+ public:
+  using Clock = std::chrono::steady_clock;
+  explicit Recent(double seconds) : span_(seconds) {}
+  void add(Clock::time_point now, double value);
+  /// Forgets what is older than the span, but never the last value.
+  void trim(Clock::time_point now);
+  /// The share p of the values are not above this; NaN without any.
+  double quantile(double p);
+
+ private:
+  struct Entry {
+    Clock::time_point at;
+    double value;
+  };
+  const double span_;  // [s]
+  std::deque<Entry> entries_;
+  std::vector<double> sorted_;
+};
+
+/// Keeps what it needs from frame to frame.
+class FrameMaker {
+ public:
+  explicit FrameMaker(Snapshots& snapshots) : snapshots_(snapshots) {}
+  /// Takes what is new and fills in the frame, but for its sequence number.
+  void refresh(ViewFrame& frame, ViewNews& news);
+
+ private:
+  void take_plan(ViewFrame& frame);
+  void fill_scores(ViewFrame& frame) const;
+  void fill_numbers(ViewFrame& frame);
+
+  Snapshots& snapshots_;
+  RenderedPlan rendered_;
+  Recent latencies_{10.0};
+};
+
+}  // namespace prostm::viewer

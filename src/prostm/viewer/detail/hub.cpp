@@ -1,0 +1,53 @@
+#include "prostm/viewer/detail/hub.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace prostm::viewer {
+namespace {
+
+/// null for what JSON cannot say.
+nlohmann::ordered_json number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace
+
+std::shared_ptr<const Bytes> EncodedFrame::message(const ViewFrame& frame, bool smoke,
+                                                   bool fields) {
+  std::shared_ptr<Bytes>& made = made_[(smoke ? 1U : 0U) + (fields ? 2U : 0U)];
+  if (!made) {
+    made = unused_buffer();
+    encode(frame, smoke, fields, *made);
+  }
+  return made;
+}
+
+std::shared_ptr<Bytes> EncodedFrame::unused_buffer() {
+  for (const auto& buffer : pool_)
+    if (buffer.use_count() == 1) return buffer;
+  pool_.push_back(std::make_shared<Bytes>());
+  return pool_.back();
+}
+
+void Hub::next_frame() {
+  source.refresh(frame, news);
+  ++frame.sequence;
+}
+
+std::string Hub::numbers() {
+  if (pages.empty()) next_frame();
+  nlohmann::ordered_json json = {{"sequence", frame.sequence},
+                                 {"run",
+                                  {{"time", number(frame.run.time)},
+                                   {"recording_time", number(frame.run.recording_time)},
+                                   {"fluid_steps", frame.run.fluid_steps},
+                                   {"plan_updates", frame.run.plan_updates},
+                                   {"flags", frame.run.flags}}}};
+  const auto names = view_number_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    json["numbers"][std::string(names[i])] = number(static_cast<double>(frame.numbers[i]));
+  return json.dump() + "\n";
+}
+
+}  // namespace prostm::viewer

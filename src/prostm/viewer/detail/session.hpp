@@ -1,0 +1,72 @@
+#pragma once
+/// One connection: requests, and from an upgrade on a page.
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "prostm/viewer/detail/http_answer.hpp"
+#include "prostm/viewer/detail/hub.hpp"
+
+namespace prostm::viewer {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+/// Lives as long as an operation on its socket is under way.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  Session(boost::asio::ip::tcp::socket&& socket, Hub& hub);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  void run() { read_request(); }
+
+  // of pages, called once a tick
+  std::uint32_t id() const { return id_; }
+  double rate() const { return rate_; }  ///< frames that it wants [Hz]
+  /// Sends the hub's frame if one is due at `now` and nothing is in flight.
+  void offer_frame(Clock::time_point now, EncodedFrame& frame);
+  /// The hub has a new state.
+  void tell_state();
+  void tell_error(const std::string& sentence);
+  /// Closes the connection if a write has been under way for longer than stall_time.
+  void check_stall(Clock::time_point now);
+
+ private:
+  void read_request();
+  void on_request(beast::error_code wrong);
+  void reply(const HttpAnswer& answer, bool keep_alive, bool head);
+  void upgrade();
+  void read_message();
+  void on_message(const std::string& text);
+  void pump();
+  void write(boost::asio::const_buffer bytes, bool text);
+  void drop();
+  void close();
+
+  Hub& hub_;
+  beast::flat_buffer buffer_;
+  beast::tcp_stream stream_;  // until the upgrade
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::string answer_;  // the text of one that is being written
+  std::optional<beast::websocket::stream<beast::tcp_stream, false>> socket_;  // nothing deflated
+
+  std::uint32_t id_ = 0;  // of the page, 0 before the upgrade
+  double rate_ = kPageRate;
+  Clock::time_point due_{}, write_began_{}, second_began_{};
+  bool writing_ = false, state_waits_ = false;
+  ViewNews sent_;  // the newest large sections that were sent
+  std::shared_ptr<const void> in_flight_;
+  std::deque<std::shared_ptr<const std::string>> texts_;
+  int nonsense_ = 0;  // messages in a row that were none
+  int messages_ = 0;  // since second_began_
+};
+
+}  // namespace prostm::viewer

@@ -1,0 +1,42 @@
+#pragma once
+/// What the server shows and steers, behind an interface: a run, or a stand-in in tests.
+
+#include <cstdint>
+#include <string>
+
+#include "prostm/viewer/page_message.hpp"
+#include "prostm/viewer/wire.hpp"
+
+namespace prostm {
+
+/// Counts the large sections of frames as they change.
+struct ViewNews {
+  std::uint64_t smoke = 0, fields = 0;
+};
+
+/// All functions are called by the server's thread. None may wait.
+class ViewSource {
+ public:
+  virtual ~ViewSource() = default;
+
+  /// Whether anybody looks; nobody does at first. Frames are asked for only while somebody does.
+  virtual void watch(bool somebody) = 0;
+  /// Fills in the newest frame but for its sequence number, and counts what is new in it.
+  virtual void refresh(ViewFrame& frame, ViewNews& news) = 0;
+
+  /// The message that a page gets first.
+  virtual std::string hello() = 0;
+  /// Puts the newest state message into `state` where it has changed since the last call; true if
+  /// so. The first call finds one.
+  virtual bool refresh_state(std::string& state) = 0;
+
+  /// Does what a page asks, RateMessage excepted. @return an empty text, or the sentence that says
+  /// why not.
+  virtual std::string take(std::uint32_t page, const PageMessage& message) = 0;
+  /// The oldest refusal that came after take() had returned; false when there is none.
+  virtual bool next_refusal(std::uint32_t& page, std::string& sentence) = 0;
+  /// A page has gone: whatever it held is let go.
+  virtual void forget(std::uint32_t page) = 0;
+};
+
+}  // namespace prostm

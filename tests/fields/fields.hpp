@@ -1,0 +1,67 @@
+#pragma once
+/// Generated target fields for benchmarks and tests: nine pressure patterns on a hand-shaped skin,
+/// each a sequence at 25 updates a second in which position, shape and strength change smoothly.
+///
+/// All fields are functions of their arguments alone: the same pattern and frame give the same
+/// field. Rasters are centred on the origin; pressures are of order 1.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "prostm/target/target_field.hpp"
+
+namespace prostm::fields {
+
+inline constexpr int kCells = 80;           ///< rows and columns
+inline constexpr double kCell = 2e-3;       ///< edge of a cell [m]
+inline constexpr int kFrames = 100;         ///< of a sequence; later frames go on as smoothly
+inline constexpr double kFrameTime = 0.04;  ///< between two frames [s]
+
+enum class Pattern {
+  OnePlume,
+  FourPlumes,
+  Ring,
+  Ridge,
+  Letter,
+  Noise,
+  Fingertips,  ///< contacts on two of them
+  Palm,        ///< the whole palm, pressed flat
+  Edge         ///< a front that sweeps over the hand, pressure falling off behind it
+};
+inline constexpr std::array kPatterns{Pattern::OnePlume,   Pattern::FourPlumes, Pattern::Ring,
+                                      Pattern::Ridge,      Pattern::Letter,     Pattern::Noise,
+                                      Pattern::Fingertips, Pattern::Palm,       Pattern::Edge};
+
+/// As in tables: "one-plume", …, "two-fingertips", "palm", "moving-edge".
+std::string to_string(Pattern pattern);
+
+/// One frame of a pattern's sequence on the open hand, `cells`² cells on 160 mm × 160 mm. From
+/// frame to frame a pattern moves by at most 4 mm. @pre frame >= 0, cells >= 8.
+TargetField make(Pattern pattern, int frame, int cells = kCells);
+
+/// Rows and columns of the fields of moved(): 200 mm, so that nothing leaves the raster.
+inline constexpr int kMovedCells = 100;
+/// Where the pattern of moved() is, from where it is in frame 0 [m]. It goes round a circle of
+/// 12 mm radius in 50 frames: each frame is kMovedStep from the one before.
+Vec2 displacement(int frame);
+inline constexpr double kMovedStep = 1.507e-3;  ///< [m]: 24 mm · sin(π/50)
+/// The pattern, cut off smoothly at 85 mm from its middle and moved rigidly by displacement(frame),
+/// on a raster of kMovedCells² cells that are all skin.
+TargetField moved(Pattern pattern, int frame);
+
+/// A steady contact and one that appears.
+struct Appearing {
+  TargetField field;           ///< both
+  std::vector<double> second;  ///< the pressure of the one that appears, alone; zeros before
+};
+inline constexpr int kAppearings = 8;       ///< pairs of places on the hand
+inline constexpr int kAppearingFrame = 50;  ///< the first with the second contact, at full strength
+/// Frame of pair `which` of 0..kAppearings − 1: the contacts are a fingertip and the palm.
+Appearing appearing(int which, int frame);
+
+/// The field turned by 90°: cell (row, col) goes to (col, rows − 1 − row), x to (height of the
+/// raster − y, x).
+TargetField rotated(const TargetField& field);
+
+}  // namespace prostm::fields
