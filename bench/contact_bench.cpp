@@ -12,6 +12,7 @@
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/pipeline/scene.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "report.hpp"
 
@@ -46,7 +47,7 @@ bench::Row contact_times(const std::string& name, double apart, double time_cons
   WorkerPool pool(2);
   FluidSettings fluid_settings;
   fluid_settings.cells = kCells;
-  Fluid fluid(fluid_settings, scene_from_name("one-plume"), pool);
+  Fluid fluid(fluid_settings, scene_from_name("one-plume").smoke, pool);
   HandRasteriser rasteriser(fluid.grid());
   FluidPressureSettings settings;
   settings.time_constant = time_constant;

@@ -13,6 +13,7 @@
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
+#include "prostm/pipeline/scene.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "report.hpp"
 
@@ -67,7 +68,7 @@ FluidSettings multigrid(int cells, int cycles) {
 FluidSettings jacobi(int cells, bool warm) {
   FluidSettings settings;
   settings.cells = cells;
-  settings.solver = "jacobi";
+  settings.solver = prostm::PressureMethod::Jacobi;
   settings.jacobi_sweeps = 40;
   settings.jacobi_warm = warm;
   return settings;
@@ -100,8 +101,8 @@ double hand_pressure_error(const Fluid& a, const Fluid& b) {
 /// A fluid's own history, each step compared with a converged solve from the same state.
 Summary accuracy(const FluidSettings& settings, const std::string& scene) {
   prostm::WorkerPool pool(kThreads);
-  Fluid fluid(settings, prostm::scene_from_name(scene), pool);
-  Fluid exact(multigrid(settings.cells, kExactCycles), prostm::scene_from_name(scene), pool);
+  Fluid fluid(settings, prostm::scene_from_name(scene).smoke, pool);
+  Fluid exact(multigrid(settings.cells, kExactCycles), prostm::scene_from_name(scene).smoke, pool);
   MovingHand hand(fluid.grid(), pool);
   Distribution errors;
   for (int t = 0; t < kWarmUp + kHistory; ++t) {
@@ -126,7 +127,7 @@ struct StepTimes {
 /// Steps of both solvers, one of each in turn.
 StepTimes step_times(int cells, int steps) {
   prostm::WorkerPool pool(kThreads);
-  const prostm::Scene scene = prostm::scene_from_name("one-plume");
+  const prostm::SmokeInflow scene = prostm::scene_from_name("one-plume").smoke;
   Fluid ours(multigrid(cells, FluidSettings{}.cycles), scene, pool),
       paper(jacobi(cells, false), scene, pool);
   MovingHand hand(ours.grid(), pool);
@@ -144,7 +145,7 @@ StepTimes step_times(int cells, int steps) {
 /// The scripted hand on a 64³ grid step by step, alone or with a second one beside and above it.
 Summary raster_times(bool two) {
   prostm::WorkerPool pool(kThreads);
-  const prostm::Fluid fluid(multigrid(64, 1), prostm::scene_from_name("four-plumes"), pool);
+  const prostm::Fluid fluid(multigrid(64, 1), prostm::scene_from_name("four-plumes").smoke, pool);
   const auto source = prostm::make_scripted_hand({}, {});
   prostm::HandRasteriser rasteriser(fluid.grid());
   Distribution ms;

@@ -33,9 +33,9 @@ struct Arrangement {
   std::vector<RunSummary> runs;
 };
 
-Arrangement ours(const Options& given, const std::string& switch_at) {
+Arrangement ours(const Options& given, SwitchAt switch_at) {
   Arrangement a;
-  a.name = "switch " + switch_at;
+  a.name = "switch " + std::string(name_of(switch_at));
   a.settings.scene = given.scene;
   a.settings.emit.switch_at = switch_at;
   a.settings.plan.budget = kLiveBudget;
@@ -47,9 +47,9 @@ Arrangement ours(const Options& given, const std::string& switch_at) {
 /// there; 40 Jacobi sweeps; plans at 25 Hz that take 24 ms, for which preset best stands in with
 /// that budget; switches at lap ends; the same queue.
 Arrangement papers(const Options& given) {
-  Arrangement a = ours(given, "lap");
+  Arrangement a = ours(given, SwitchAt::Lap);
   a.name = "the paper's";
-  a.settings.fluid.solver = "jacobi";
+  a.settings.fluid.solver = PressureMethod::Jacobi;
   a.settings.plan.budget = 24e-3;
   a.settings.frame_wait = 0.0;
   a.options.prepare_early = false;
@@ -58,7 +58,7 @@ Arrangement papers(const Options& given) {
 
 class NoObserver final : public RunObserver {
  public:
-  bool on_plan(const ContactFrame&, const PlanFrame&) override { return true; }
+  bool on_plan(const WorldFrame&, const PlanFrame&) override { return true; }
   bool on_progress(double) override { return true; }
 };
 
@@ -66,7 +66,7 @@ RunSummary run_once(const Arrangement& a, const Options& given) {
   auto hands = given.hand == "scripted"
                    ? make_scripted_hand(a.settings.scripted_hand, a.settings.track)
                    : make_replayed_hand(read_hand_recording(given.hand), a.settings.track, true,
-                                        1.0 / a.settings.fluid_rate);
+                                        1.0 / a.settings.world_rate);
   Pipeline pipeline(a.settings, std::move(hands));
   NoObserver observer;
   const RunSummary summary = run(pipeline, a.settings, a.options, observer);
@@ -118,7 +118,7 @@ void print_runs(const Arrangement& a) {
     fmt::print("{:<14} {:>7.1f} {:>7.1f} {:>7.1f} {:>9.1f} {:>7.1f} {:>9.1f} {:>6} {:>7} {:>8}\n",
                a.name, 1e3 * run.latency.p50, 1e3 * run.latency.p99, 1e3 * run.latency.max,
                1e3 * run.redraw.p50, 1e3 * run.redraw.p99, 100.0 * laps_completed(run),
-               run.device.late_blocks, run.device.missed_blocks, run.skipped_fluid_steps);
+               run.device.late_blocks, run.device.missed_blocks, run.skipped_world_steps);
   }
 }
 
@@ -141,7 +141,8 @@ std::vector<bench::Row> measure_latency(Options given) {
     fmt::print("{} is not there: the scripted hand instead\n", given.hand);
     given.hand = "scripted";
   }
-  std::vector<Arrangement> arrangements = {ours(given, "lap"), ours(given, "now"), papers(given)};
+  std::vector<Arrangement> arrangements = {ours(given, SwitchAt::Lap), ours(given, SwitchAt::Now),
+                                           papers(given)};
   Distribution wake_ups;
   for (int round = 0; round < given.rounds; ++round) {
     add_wake_ups(0.2 * given.seconds, wake_ups);

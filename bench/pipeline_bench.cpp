@@ -16,8 +16,8 @@ PipelineSettings settings_of(const std::string& scene, bool papers) {
   s.scene = scene;
   s.simulated_array.realtime = false;
   if (papers) {
-    s.fluid.solver = "jacobi";
-    s.plan.preset = "paper";
+    s.fluid.solver = PressureMethod::Jacobi;
+    s.plan.preset = Preset::Paper;
   }
   return s;
 }
@@ -29,12 +29,12 @@ struct Line {
 
   void update(bool counts) {
     StageTimer timer;
-    double fluid_time = 0.0;
-    while (!pipeline.step(0.02)) fluid_time += pipeline.contact().fluid_time;
+    double world_time = 0.0;
+    while (!pipeline.step(0.02)) world_time += pipeline.contact().world_time;
     const double seconds = timer.seconds();
     if (!counts) return;
     total.add(1e3 * seconds);
-    fluid.add(1e3 * (fluid_time + pipeline.contact().fluid_time));
+    fluid.add(1e3 * (world_time + pipeline.contact().world_time));
     plan.add(1e3 * pipeline.plan().stats.total);
   }
 

@@ -70,10 +70,11 @@ void compare(const std::string& name, const PlanSettings& settings, py::module_&
   const TargetField field = fields::make(fields::Pattern::FourPlumes, 0);
   Planner planner(settings, field.size());
   const py::object prostm = py::module_::import("prostm");
-  const py::object python_planner = prostm.attr("Planner")(
-      py::arg("max_cells") = field.size(), py::arg("preset") = settings.preset,
-      py::arg("clusters") = settings.clusters,
-      py::arg("refine_iterations") = settings.refine_iterations);
+  const py::object python_planner =
+      prostm.attr("Planner")(py::arg("max_cells") = field.size(),
+                             py::arg("preset") = std::string(name_of(settings.preset)),
+                             py::arg("clusters") = settings.clusters,
+                             py::arg("refine_iterations") = settings.refine_iterations);
   const py::array_t<double> pressure = as_array(field);
   const py::object python_field = prostm.attr("TargetField")(pressure, field.cell);
 
@@ -105,7 +106,7 @@ std::vector<bench::Row> measure() {
 
   std::vector<bench::Row> rows;
   const PlanSettings settings;
-  compare(settings.preset, settings, main, rows);
+  compare(std::string(name_of(settings.preset)), settings, main, rows);
   // a plan so short that the cost of the call itself shows
   PlanSettings least = settings;
   least.clusters = 4;

@@ -33,7 +33,7 @@ struct Options {
 
 class UntilToldToStop final : public RunObserver {
  public:
-  bool on_plan(const ContactFrame&, const PlanFrame&) override { return !stop; }
+  bool on_plan(const WorldFrame&, const PlanFrame&) override { return !stop; }
   bool on_progress(double) override { return !stop; }
   std::atomic<bool> stop{false};
 };
@@ -122,8 +122,8 @@ void measure_run(const Options& given, int readers, bool one_stops, Measured& ou
       std::make_unique<HandSwitch>(hands_of(settings), link.page_hand, default_tracker_pose());
   link.hands = hands.get();
   Pipeline pipeline(settings, std::move(hands));
-  PipelineView view(link, ViewHello{"bench", "usx", settings.transducers.position, Vec3::Zero(),
-                                    settings.fluid.width});
+  PipelineView view(link, ViewHello{"bench", "simulated usx", "usx", settings.transducers.position,
+                                    Vec3::Zero(), settings.fluid.width});
   ViewSettings view_settings;
   view_settings.port = 0;
   view_settings.stall_time = 3600.0;  // the page that stopped stays
@@ -170,9 +170,9 @@ void measure_hand_off(const Options& given, Distribution& step, Distribution& sm
   for (int i = 0; i < kSteps; ++i) {
     const bool planned = pipeline.step(0.02);
     StageTimer timer;
-    snapshots.step(pipeline.contact(), pipeline.smoke());
+    snapshots.step(pipeline.contact(), pipeline.world_stage());
     step.add(1e6 * timer.lap());
-    snapshots.smoke(pipeline.smoke().world());
+    snapshots.smoke(pipeline.world_stage().world());
     smoke.add(1e6 * timer.lap());
     if (!planned) continue;
     snapshots.plan(pipeline.contact(), pipeline.plan(), 0.02);

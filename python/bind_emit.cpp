@@ -135,7 +135,7 @@ void bind_emitter_of(py::module_& m, const char* name, const char* doc) {
   py::class_<SharedEmitterOf<kMethod>, SharedEmitter>(m, name, doc)
       .def(py::init([](const EmitSettings* settings, double sample_rate, const py::kwargs& values) {
              EmitSettings own = settings != nullptr ? *settings : EmitSettings{};
-             set_settings(visit_of(own), "EmitSettings", values);
+             set_settings(group_of("EmitSettings", own), values);
              return std::make_unique<SharedEmitterOf<kMethod>>(own, sample_rate);
            }),
            "settings: EmitSettings, copied; None: the defaults. sample_rate: of the device [Hz].\n"

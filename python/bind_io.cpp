@@ -39,7 +39,7 @@ std::string plan_text(const Plan& plan, const TargetField& target, const AnySett
   extras.stats = stats;
   extras.metrics = metrics;
   extras.controls = controls ? &*controls : nullptr;
-  return plan_to_json(plan, target, extras, in_file.json);
+  return plan_to_json(plan, target, extras, in_file.groups);
 }
 
 void write_plan_file(const Path& path, const Plan& plan, const TargetField& target,

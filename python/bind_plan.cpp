@@ -34,7 +34,7 @@ std::unique_ptr<SharedPlanner<P>> make_planner(const S* settings, const char* ty
                                 " must be between 1 and " + std::to_string(kMaxFieldCells));
   }
   S own = settings != nullptr ? *settings : S{};
-  set_settings(visit_of(own), type, values);
+  set_settings(group_of(type, own), values);
   return std::make_unique<SharedPlanner<P>>(own, static_cast<std::size_t>(max_cells));
 }
 
@@ -190,25 +190,8 @@ py::array array_of(const std::vector<T>& values) {
 }
 
 void bind_stats(py::module_& m) {
-  Record<PlanStats>(m, "PlanStats",
-                    "What a call did and how long each stage took [s]. `refine` includes making "
-                    "paths valid.")
-      .field("init", &PlanStats::init, "[s]")
-      .field("kmeans", &PlanStats::kmeans, "[s]")
-      .field("tour", &PlanStats::tour, "[s]")
-      .field("split", &PlanStats::split, "[s]")
-      .field("resample", &PlanStats::resample, "[s]")
-      .field("refine", &PlanStats::refine, "[s]")
-      .field("total", &PlanStats::total, "[s]")
-      .field("clusters", &PlanStats::clusters, "Clusters with pressure.")
-      .field("lloyd_iterations", &PlanStats::lloyd_iterations, "Of the clustering.")
-      .field("refine_iterations", &PlanStats::refine_iterations, "Gradient steps.")
-      .field("cost_evaluations", &PlanStats::cost_evaluations, "In the refinement.")
-      .field("leaves", &PlanStats::leaves, "Paths after splitting, before the heaviest are kept.")
-      .field("cost", &PlanStats::cost, "Of the paper's Eqs. (2)-(5) after refinement.")
-      .field("long_paths", &PlanStats::long_paths, "Paths longer than the limit by > 0.5 mm.")
-      .field("crossings", &PlanStats::crossings,
-             "Pairs of segments that cross, within and between paths.")
+  Record<PlanStats>(m, "PlanStats", "What a call did and how long each stage took [s].")
+      .quantities()
       .done();
 
   py::class_<PlanTrace>(m, "PlanTrace", "The intermediate results of the paper's Fig. 2.")
@@ -237,10 +220,8 @@ void bind_plan(py::module_& m) {
   bind_settings<PlanSettings>(
       m, "PlanSettings",
       "Settings of the planner, in SI units; the defaults are the paper's where it gives one.\n"
-      "src/plan/planner.hpp says what each of them does.");
-  bind_settings<AmSettings>(
-      m, "AmSettings",
-      "Settings of amplitude modulation, in SI units. src/am/am_planner.hpp says what each does.");
+      "help(PlanSettings) lists them with bounds and meaning.");
+  bind_settings<AmSettings>(m, "AmSettings", "Settings of amplitude modulation, in SI units.");
   bind_stats(m);
   bind_planner(m);
   bind_am_planner(m);

@@ -9,8 +9,9 @@
 #include "plan_result.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/require.hpp"
+#include "prostm/io/array_file.hpp"
 #include "prostm/io/plan_file.hpp"
-#include "prostm/io/settings_file.hpp"
+#include "prostm/score/felt_skill.hpp"
 #include "prostm/score/score.hpp"
 
 namespace prostm::python {
@@ -19,11 +20,20 @@ namespace {
 constexpr double kSampleRate = 40e3;  // unless another is given [Hz]
 
 Metrics metrics_of(const PlanResult& result, int patch, const EmitSettings* emission,
-                   double sample_rate) {
+                   double sample_rate, const std::optional<std::string>& array) {
   const TargetField& field = result.patch(patch);
   const SegmentPressures played = result.played(emission, sample_rate);
+  const TargetFrame frame = result.frame();
+  const EmitSettings emit = result.emission(emission);
   const py::gil_scoped_release unlocked;
-  return score_plan(field, result.plan, patch, result.sigma(), result.gain_law(), &played);
+  Metrics metrics =
+      score_plan(field, result.plan, patch, result.sigma(), result.gain_law(), &played);
+  if (array) {
+    WorkerPool pool(1);
+    metrics.felt_skill =
+        felt_skill(result.plan, frame, patch, emit, sample_rate, array_from_name(*array), pool);
+  }
+  return metrics;
 }
 
 py::array field_of(const PlanResult& result, int patch, const EmitSettings* emission,
@@ -52,20 +62,20 @@ void write(const PlanResult& result, const std::filesystem::path& path) {
   extras.preset = settings.preset;
   extras.stats = &result.stats;
   extras.quality = &quality;
-  write_file(path.string(), plan_to_json(result.plan, field, extras, settings.json));
+  write_file(path.string(), plan_to_json(result.plan, field, extras, settings.groups));
 }
 
 }  // namespace
 
-SettingsInFile::SettingsInFile(AnySettings settings) {
-  if (auto* am = std::get_if<AmSettings>(&settings)) {
+SettingsInFile::SettingsInFile(const AnySettings& settings) {
+  if (const auto* am = std::get_if<AmSettings>(&settings)) {
     method = Method::Am;
-    json = settings_to_json({{"am", [am](SettingsVisitor& v) { am->visit(v); }}});
+    groups = {group_of("am", *am)};
   } else {
-    auto& plan = std::get<PlanSettings>(settings);
+    const auto& plan = std::get<PlanSettings>(settings);
     method = Method::ProStm;
     preset = plan.preset;
-    json = settings_to_json({{"plan", [&plan](SettingsVisitor& v) { plan.visit(v); }}});
+    groups = {group_of("plan", plan)};
   }
 }
 
@@ -101,15 +111,17 @@ EmitSettings PlanResult::emission(const EmitSettings* given) const {
   return emit;
 }
 
+TargetFrame PlanResult::frame() const {
+  if (!py::isinstance<TargetField>(target)) return target.cast<const TargetFrame&>();
+  TargetFrame frame;
+  frame.patches.push_back(patch(0));
+  return frame;
+}
+
 SegmentPressures PlanResult::played(const EmitSettings* given, double sample_rate) const {
   if (plan.empty()) return {};
   const EmitSettings emit = emission(given);
-  TargetFrame frame;
-  if (py::isinstance<TargetField>(target)) {
-    frame.patches.push_back(patch(0));
-  } else {
-    frame = target.cast<const TargetFrame&>();
-  }
+  const TargetFrame frame = this->frame();
   const py::gil_scoped_release unlocked;
   return played_pressures(plan, frame, emit, sample_rate);
 }
@@ -133,12 +145,14 @@ void bind_result(py::module_& m) {
       .def_property_readonly(
           "settings", [](const PlanResult& r) { return AnySettings(r.settings); },
           "A copy of the PlanSettings or AmSettings.")
-      .def("metrics", &metrics_of,
-           "Metrics of what is played, with the planner's sigma and gain. emission: EmitSettings;\n"
-           "None: the defaults. Without a full scale it is the gain times the target's largest\n"
-           "pressure. score_plan() gives those of the pressures as planned.",
-           py::arg("patch") = 0, py::arg("emission") = py::none(),
-           py::arg("sample_rate") = kSampleRate)
+      .def(
+          "metrics", &metrics_of,
+          "Metrics of what is played, with the planner's sigma and gain. emission: EmitSettings;\n"
+          "None: the defaults. Without a full scale it is the gain times the target's largest\n"
+          "pressure. array: usx, autd3 or a file of an array; felt_skill is of what it plays, and\n"
+          "NaN without. score_plan() gives the metrics of the pressures as planned.",
+          py::arg("patch") = 0, py::arg("emission") = py::none(),
+          py::arg("sample_rate") = kSampleRate, py::arg("array") = py::none())
       .def("quasi_static_field", &field_of,
            "Eq. (1) of what is played on the target's raster, with the planner's sigma and gain:\n"
            "(rows, cols). emission, sample_rate: as of metrics(). The function of this name takes\n"

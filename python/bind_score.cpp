@@ -49,15 +49,7 @@ void bind_score(py::module_& m) {
   Record<Metrics>(m, "Metrics",
                   "How well a field renders its target, over the skin, both divided by max p*\n"
                   "(docs/design.md, Quality).")
-      .field("rmse", &Metrics::rmse, "Root mean square difference.")
-      .field("correlation", &Metrics::correlation, "Pearson's; 0 when either field is constant.")
-      .field("coverage", &Metrics::coverage, "Share of the sum of p* within sigma of a path.")
-      .field("skill_0", &Metrics::skill_0,
-             "1 - min_g sum (p* - g p)^2 / sum (p* - mean)^2; 0 = a flat field.")
-      .field("skill_8", &Metrics::skill_8, "The same after a Gaussian blur of 8.5 mm of both.")
-      .field("overlap", &Metrics::overlap,
-             "sum min(p*, g p) / sum max(p*, g p), with the g of skill_0.")
-      .field("spill", &Metrics::spill, "Share of the rendered field on skin where p* < 0.1 max p*.")
+      .quantities()
       .done();
   Record<Control>(m, "Control", "What the metrics say about something that must lose.")
       .field("name", &Control::name, "What it is.")

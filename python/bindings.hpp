@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "prostm/core/geometry.hpp"
+#include "prostm/core/quantity.hpp"
 
 namespace prostm::python {
 
@@ -58,17 +59,34 @@ class Record {
     names_.append(name);
     return *this;
   }
+  /// Every number of the list of S, in SI.
+  Record& quantities() {
+    for (const Quantity<S>& quantity : prostm::quantities<S>()) {
+      class_.def_property_readonly(
+          quantity.name,
+          [&quantity](const S& self) {
+            return visit_value(quantity, self, [](auto value) { return py::cast(value); });
+          },
+          quantity.help);
+      names_.append(quantity.name);
+      if (quantity.optional) optional_.append(quantity.name);
+    }
+    return *this;
+  }
   /// Call last.
   void done() {
-    const py::tuple names(names_);
+    const py::tuple names(names_), optional(optional_);
     class_.def(
         "as_dict",
-        [names](const py::object& self) {
+        [names, optional](const py::object& self) {
           py::dict values;
-          for (const py::handle name : names) values[name] = self.attr(name);
+          for (const py::handle name : names) {
+            const py::object value = self.attr(name);
+            if (!optional.contains(name) || value.equal(value)) values[name] = value;
+          }
           return values;
         },
-        "The fields by name, as a new dictionary.");
+        "The fields by name, as a new dictionary, but for those that nobody asked for (NaN).");
     class_.def("__repr__", [names](const py::object& self) {
       std::string text = py::str(py::type::of(self).attr("__name__"));
       const char* before = "(";
@@ -82,7 +100,7 @@ class Record {
 
  private:
   py::class_<S> class_;
-  py::list names_;
+  py::list names_, optional_;
 };
 
 }  // namespace prostm::python

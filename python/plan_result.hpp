@@ -2,8 +2,8 @@
 /// What one call of the planner gave, with what it was given.
 
 #include <optional>
-#include <string>
 #include <variant>
+#include <vector>
 
 #include "bindings.hpp"
 #include "prostm/am/am_planner.hpp"
@@ -16,12 +16,13 @@ namespace prostm::python {
 /// The settings of a planner, which say the method too.
 using AnySettings = std::variant<PlanSettings, AmSettings>;
 
-/// What a plan file says of them. @param settings are listed as {"plan": …} or {"am": …}.
+/// What a plan file says of them. @param settings are listed as {"plan": …} or {"am": …}, and
+/// outlive it.
 struct SettingsInFile {
-  explicit SettingsInFile(AnySettings settings);
+  explicit SettingsInFile(const AnySettings& settings);
   Method method;
-  std::string preset;  ///< empty for AM
-  std::string json;
+  std::optional<Preset> preset;  ///< none for AM
+  std::vector<SettingsGroup> groups;
 };
 
 struct PlanResult {
@@ -34,6 +35,9 @@ struct PlanResult {
 
   /// @throws std::invalid_argument for a patch that the target does not have.
   const TargetField& patch(int index) const;
+
+  /// The target as a frame, of one patch where it is a TargetField.
+  TargetFrame frame() const;
 
   /// The emission that it is taken to be played with: `given`, or the defaults. Where they give no
   /// full scale, γ times the target's largest pressure.

@@ -1,6 +1,6 @@
 #include "settings.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -8,30 +8,63 @@ namespace prostm::python {
 namespace {
 
 /// Collects names and values.
-class Reader : public SettingsVisitor {
+class Reader : public SettingsReader {
  public:
-  void field(const char* name, double& value) override { values[name] = value; }
-  void field(const char* name, int& value) override { values[name] = value; }
-  void field(const char* name, bool& value) override { values[name] = value; }
-  void field(const char* name, std::string& value) override { values[name] = value; }
+  void field(const Setting& s, const double& value) override { values[s.name] = value; }
+  void field(const Setting& s, const int& value) override { values[s.name] = value; }
+  void field(const Setting& s, const bool& value) override { values[s.name] = value; }
+  void field(const Setting& s, const std::string& value) override { values[s.name] = value; }
+  void choice(const Setting& s, std::span<const std::string_view> names, int index) override {
+    values[s.name] = std::string(names[static_cast<std::size_t>(index)]);
+  }
   py::dict values;
 };
 
+/// Collects the lines of a docstring.
+class Documentation : public SettingsReader {
+ public:
+  void field(const Setting& s, const double& value) override {
+    add(s, py::repr(py::float_(value)), bounds(s));
+  }
+  void field(const Setting& s, const int& value) override {
+    add(s, py::repr(py::int_(value)), bounds(s));
+  }
+  void field(const Setting& s, const bool& value) override { add(s, value ? "True" : "False", ""); }
+  void field(const Setting& s, const std::string& value) override {
+    add(s, py::repr(py::str(value)), "");
+  }
+  void choice(const Setting& s, std::span<const std::string_view> names, int index) override {
+    add(s, py::repr(py::str(std::string(names[static_cast<std::size_t>(index)]))),
+        "; " + one_of(names));
+  }
+  std::string text;
+
+ private:
+  static std::string bounds(const Setting& s) {
+    const std::string unit = *s.unit == '\0' ? "" : std::string(" ") + s.unit;
+    return "; " + std::string(py::str(py::float_(s.least))) + " to " +
+           std::string(py::str(py::float_(s.most))) + unit;
+  }
+  void add(const Setting& s, const std::string& value, const std::string& range) {
+    text += std::string("  ") + s.name + " = " + value + range + ": " + s.help + "\n";
+  }
+};
+
 /// Sets the one field of a name.
-class Writer : public SettingsVisitor {
+class Writer : public SettingsWriter {
  public:
   Writer(std::string type, std::string name, py::handle value)
       : type_(std::move(type)), name_(std::move(name)), value_(value) {}
 
-  void field(const char* name, double& value) override {
-    if (name != name_) return;
+  void field(const Setting& s, double& value) override {
+    if (s.name != name_) return;
     const double x = is_bool() ? -1.0 : PyFloat_AsDouble(value_.ptr());
     if (is_bool() || PyErr_Occurred() != nullptr) refuse("a number");
     value = x;
     found = true;
   }
-  void field(const char* name, int& value) override {
-    if (name != name_) return;
+  void field(const Setting& s, int& value) override {
+    if (s.name != name_) return;
     if (is_bool() || PyIndex_Check(value_.ptr()) == 0) refuse("a whole number");
     const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(value_.ptr()));
     if (!number) refuse("a whole number");
@@ -45,17 +78,24 @@ class Writer : public SettingsVisitor {
     value = static_cast<int>(x);
     found = true;
   }
-  void field(const char* name, bool& value) override {
-    if (name != name_) return;
+  void field(const Setting& s, bool& value) override {
+    if (s.name != name_) return;
     if (!is_bool()) refuse("True or False");
     value = value_.cast<bool>();
     found = true;
   }
-  void field(const char* name, std::string& value) override {
-    if (name != name_) return;
+  void field(const Setting& s, std::string& value) override {
+    if (s.name != name_) return;
     if (!py::isinstance<py::str>(value_)) refuse("a text");
     value = value_.cast<std::string>();
     found = true;
+  }
+  void choice(const Setting& s, std::span<const std::string_view> names, int& index) override {
+    std::string name(names[static_cast<std::size_t>(index)]);
+    field(s, name);
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) refuse_name((type_ + "." + name_).c_str(), name, names);
+    index = static_cast<int>(at - names.begin());
   }
 
   bool found = false;
@@ -82,47 +122,44 @@ std::string joined(const py::list& names) {
 
 }  // namespace
 
-py::dict settings_dict(const Visit& visit) {
+py::dict settings_dict(const SettingsGroup& group) {
   Reader reader;
-  visit(reader);
+  group.read(reader);
   return reader.values;
 }
 
-void set_setting(const Visit& visit, const std::string& type, const std::string& name,
-                 py::handle value) {
-  Writer writer(type, name, value);
-  visit(writer);
+void set_setting(const SettingsGroup& group, const std::string& name, py::handle value) {
+  Writer writer(group.name, name, value);
+  group.write(writer);
   if (writer.found) return;
 
-  const py::list known(settings_dict(visit).attr("keys")());
+  const py::list known(settings_dict(group).attr("keys")());
   const py::list near = py::module_::import("difflib").attr("get_close_matches")(name, known, 1);
   throw std::invalid_argument(
-      type + " has no setting '" + name + "'; " +
+      group.name + " has no setting '" + name + "'; " +
       (near.empty() ? "known are " + joined(known) : "did you mean '" + joined(near) + "'?"));
 }
 
-void set_settings(const Visit& visit, const std::string& type, const py::dict& values) {
+void set_settings(const SettingsGroup& group, const py::dict& values) {
   for (const auto& [name, value] : values) {
-    set_setting(visit, type, name.cast<std::string>(), value);
+    set_setting(group, name.cast<std::string>(), value);
   }
 }
 
-std::string settings_repr(const Visit& visit, const std::string& type) {
-  std::string text = type;
+std::string settings_repr(const SettingsGroup& group) {
+  std::string text = group.name;
   const char* before = "(";
-  for (const auto& [name, value] : settings_dict(visit)) {
+  for (const auto& [name, value] : settings_dict(group)) {
     text += before + std::string(py::str(name)) + "=" + std::string(py::repr(value));
     before = ", ";
   }
   return text + ")";
 }
 
-std::string settings_doc(const Visit& visit) {
-  std::string text;
-  for (const auto& [name, value] : settings_dict(visit)) {
-    text += "  " + std::string(py::str(name)) + " = " + std::string(py::repr(value)) + "\n";
-  }
-  return text;
+std::string settings_doc(const SettingsGroup& group) {
+  Documentation lines;
+  group.read(lines);
+  return lines.text;
 }
 
 }  // namespace prostm::python

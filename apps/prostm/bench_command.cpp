@@ -153,7 +153,7 @@ class FieldBench {
  public:
   FieldBench(const PipelineSettings& settings, int repeats)
       : settings_(settings),
-        am_alone_(method_from_name(settings.method) == Method::Am),
+        am_alone_(settings.method == Method::Am),
         repeats_(repeats),
         planner_(playable_plan_settings(settings, settings.emission_rate()), kMaxFieldCells),
         am_(settings.am, kMaxFieldCells) {}
@@ -231,7 +231,8 @@ int bench_command(const BenchOptionsGiven& given) {
   const Interrupt interrupt;
   for (const std::string& file : given.files) {
     const RecordingReader recording(file);
-    Columns columns{Column("textbook"), Column("prostm " + settings.plan.preset)};
+    Columns columns{Column("textbook"),
+                    Column("prostm " + std::string(name_of(settings.plan.preset)))};
     FieldBench bench(settings, given.repeats);
     bool complete = false;
     {

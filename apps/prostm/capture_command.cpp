@@ -13,7 +13,7 @@ class Capture final : public RunObserver {
  public:
   Capture(Recorder& recorder, int frames) : recorder_(recorder), frames_(frames) {}
 
-  bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
+  bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
     if (plan.status == PlanStatus::Planned && taken_ < frames_) {
       recorder_.append(contact.target, contact.hands, &plan.plan, &plan.stats);
       ++taken_;
@@ -44,14 +44,14 @@ int capture_command(const CaptureOptionsGiven& given) {
   settings.simulated_array.realtime = false;
   double duration = 0.0;
   Pipeline pipeline(settings, make_hands(given.hand, settings, duration));
-  Recorder recorder(given.out, settings_json(settings));
+  Recorder recorder(given.out, settings_groups(settings));
   recorder.set_attribute("scene", settings.scene);
   recorder.set_attribute("hand", given.hand);
 
   // a hand is away for part of its time; one that never meets the smoke must not capture for ever
   RunOptions options;
   options.mode = RunMode::AsFastAsPossible;
-  options.seconds = 120.0 + 10.0 * given.frames * settings.steps_per_plan() / settings.fluid_rate;
+  options.seconds = 120.0 + 10.0 * given.frames * settings.steps_per_plan() / settings.world_rate;
   Capture capture(recorder, given.frames);
   const RunSummary summary = run(pipeline, settings, options, capture);
   if (summary.failure) std::rethrow_exception(summary.failure);

@@ -33,12 +33,6 @@ void on_signal(int signal) {
   if (interrupt.exchange(signal) != 0) _exit(128 + signal);
 }
 
-std::vector<SettingsGroup> groups_of(PipelineSettings& settings) {
-  std::vector<SettingsGroup> groups;
-  for (auto& [name, visit] : settings_groups(settings)) groups.push_back({name, visit});
-  return groups;
-}
-
 /// What the settings file names is among the files of the command.
 void check_files_of(const PipelineSettings& settings, const CommonOptions& options) {
   Files files = options.files;
@@ -55,7 +49,7 @@ PipelineSettings make_settings(const CommonOptions& options,
   PipelineSettings settings;
   std::vector<std::string> given;
   if (!options.settings_file.empty())
-    given = read_settings(options.settings_file, groups_of(settings));
+    given = read_settings(options.settings_file, settings_groups(settings));
   if (scene) settings.scene = *scene;
   if (options.array) settings.array = *options.array;
   if (options.tracker) settings.tracker = *options.tracker;
@@ -66,13 +60,13 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (options.seed) require_between("--seed", *options.seed, 0, kAnySeed);
   require_between("plan.seed", settings.plan.seed, 0, kAnySeed);
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
-  if (options.method) settings.method = *options.method;
-  const bool is_am = method_from_name(settings.method) == Method::Am;
+  if (options.method) settings.method = from_name<Method>(*options.method, "--method");
+  const bool is_am = settings.method == Method::Am;
   const bool gives_width = std::ranges::any_of(given, [is_am](const std::string& name) {
     return name == "pipeline.array_width" || name == (is_am ? "am.sigma" : "plan.sigma");
   });
   if (!gives_width && (plays || options.array)) settings.array_width = true;
-  if (options.preset) settings.plan.preset = *options.preset;
+  if (options.preset) settings.plan.preset = from_name<Preset>(*options.preset, "--preset");
   if (options.paths) settings.plan.paths = settings.am.foci = settings.emit.foci = *options.paths;
   if (options.budget_ms) settings.plan.budget = 1e-3 * *options.budget_ms;
   if (options.grid) settings.fluid.cells = *options.grid;
@@ -91,12 +85,7 @@ bool names_recording(const std::string& hand) {
 }
 
 FocusMethod solver_of(const std::string& name) {
-  if (const auto method = focus_method_from_name(name)) return *method;
-  throw InputError("--solver " + name + " is unknown; it must be one of " + focus_method_names());
-}
-
-std::string settings_json(PipelineSettings settings) {
-  return settings_to_json(groups_of(settings));
+  return from_name<FocusMethod>(name, "--solver");
 }
 
 std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
@@ -123,7 +112,7 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
   HandRecording recording = read_hand_recording(name, [&](std::size_t done, std::size_t all) {
     progress.show(1e-6 * static_cast<double>(done), 1e-6 * static_cast<double>(all), "MB");
   });
-  auto hands = make(std::move(recording), settings.track, true, 1.0 / settings.fluid_rate);
+  auto hands = make(std::move(recording), settings.track, true, 1.0 / settings.world_rate);
   duration = hands->duration();
   return hands;
 }
@@ -240,10 +229,26 @@ nlohmann::ordered_json to_json(const Summary& s, double unit) {
           {"max", s.max * unit}};
 }
 
-nlohmann::ordered_json to_json(const Metrics& m) {
-  return {{"rmse", m.rmse},       {"correlation", m.correlation}, {"coverage", m.coverage},
-          {"skill_0", m.skill_0}, {"skill_8", m.skill_8},         {"overlap", m.overlap},
-          {"spill", m.spill}};
+void print_metrics(std::FILE* out, const std::string& heading,
+                   const std::vector<MetricsRow>& rows) {
+  std::vector<const Quantity<Metrics>*> columns;
+  for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
+    if (std::ranges::any_of(rows, [&](const MetricsRow& row) {
+          return std::isfinite(value_of(metric, row.metrics));
+        })) {
+      columns.push_back(&metric);
+    }
+  }
+  fmt::print(out, "  {:<44}", heading);
+  for (const Quantity<Metrics>* column : columns) fmt::print(out, " {:>7}", column->label);
+  for (const MetricsRow& row : rows) {
+    fmt::print(out, "\n  {:<44}", row.name);
+    for (const Quantity<Metrics>* column : columns) {
+      const double value = value_of(*column, row.metrics);
+      fmt::print(out, " {:>7}", std::isfinite(value) ? fmt::format("{:.3f}", value) : "–");
+    }
+  }
+  fmt::print(out, "\n");
 }
 
 }  // namespace prostm::app

@@ -30,9 +30,6 @@ bool names_recording(const std::string& hand);
 /// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
 FocusMethod solver_of(const std::string& name);
 
-/// All settings as {"pipeline": {…}, "plan": {…}, …}.
-std::string settings_json(PipelineSettings settings);
-
 /// The hands that `--hand` names. `duration` gets the recording's length, or infinity [s].
 std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
                                        double& duration);
@@ -102,7 +99,15 @@ void flush(std::FILE* out);
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value);
 
 nlohmann::ordered_json to_json(const Summary& summary, double unit);
-nlohmann::ordered_json to_json(const Metrics& metrics);
+
+/// A table of metrics, a row for each of what they are of; a metric that no row knows has no
+/// column.
+struct MetricsRow {
+  MetricsRow(std::string row, const Metrics& of) : name(std::move(row)), metrics(of) {}
+  std::string name;
+  const Metrics& metrics;
+};
+void print_metrics(std::FILE* out, const std::string& heading, const std::vector<MetricsRow>& rows);
 
 inline constexpr int kBadInput = 2;  ///< exit status, also for files that cannot be written
 

@@ -9,11 +9,11 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/units.hpp"
-#include "prostm/emit/compensation.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/field_file.hpp"
 #include "prostm/io/physical_file.hpp"
 #include "prostm/io/plan_file.hpp"
+#include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
 
 namespace prostm::app {
@@ -59,37 +59,6 @@ Input read_input(const FieldOptionsGiven& given) {
         file.raster.rows, file.raster.cols, 1e3 * file.raster.cell));
   }
   return input;
-}
-
-/// The plan on the skin as one loop. Without a full scale in the settings the plan's own largest
-/// pressure is it.
-LoopSamples make_loop(const Input& input, EmitSettings& settings, double sample_rate) {
-  TargetFrame frame;
-  frame.patches.push_back(input.raster);
-  LiftedPlan lifted;
-  lift(input.plan, frame, lifted);
-  compensate_tilt(lifted, frame, settings.tilt_bound);
-  if (settings.full_scale_pressure <= 0.0) {
-    for (const LiftedPath& path : lifted.paths) {
-      for (const double p : path.pressure) {
-        settings.full_scale_pressure = std::max(settings.full_scale_pressure, p);
-      }
-    }
-    for (const LiftedFocus& focus : lifted.foci) {
-      settings.full_scale_pressure = std::max(settings.full_scale_pressure, focus.pressure);
-    }
-  }
-  if (settings.full_scale_pressure <= 0.0) {
-    throw InputError("the plan has no pressure anywhere, so there is no field to compute");
-  }
-  settings.foci =
-      std::max(settings.foci, static_cast<int>(lifted.paths.size() + lifted.foci.size()));
-  return loop_samples(lifted, settings, sample_rate);
-}
-
-void print_row(std::FILE* out, const char* name, const Metrics& m) {
-  fmt::print(out, "  {:<44} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n", name,
-             m.rmse, m.correlation, m.coverage, m.skill_0, m.skill_8, m.overlap, m.spill);
 }
 
 void print_loop(std::FILE* out, const PhysicalReport& r) {
@@ -155,11 +124,11 @@ void print_scores(std::FILE* out, const PhysicalReport& r) {
     fmt::print(out, "  no target to compare with; --field FILE gives one\n");
     return;
   }
-  fmt::print(out, "  {:<44} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "against the target",
-             "RMSE", "corr", "cover", "S_0", "S_8.5", "overlap", "spill");
-  print_row(out, "envelope: the largest over the loop", *r.envelope_metrics);
-  if (r.felt_metrics != nullptr) print_row(out, "felt: perceived intensity", *r.felt_metrics);
-  print_row(out, "mean over the loop, which judges nothing", *r.mean_metrics);
+  std::vector<MetricsRow> rows;
+  rows.emplace_back("envelope: the largest over the loop", *r.envelope_metrics);
+  if (r.felt_metrics != nullptr) rows.emplace_back("felt: perceived intensity", *r.felt_metrics);
+  rows.emplace_back("mean over the loop, which judges nothing", *r.mean_metrics);
+  print_metrics(out, "against the target", rows);
   fmt::print(out,
              "  (skin feels movement, not the mean: by the mean a flat field can beat any path)\n");
 }
@@ -262,7 +231,9 @@ int field_command(const FieldOptionsGiven& given) {
     return 0;
   }
   const Input input = read_input(given);
-  const LoopSamples loop = make_loop(input, all.emit, all.emission_rate());
+  TargetFrame frame;
+  frame.patches.push_back(input.raster);
+  const LoopSamples loop = plan_loop(input.plan, frame, all.emit, all.emission_rate());
   const Medium air;
   const Interrupt interrupt;
   LoopDriveResult drives;
@@ -281,7 +252,7 @@ int field_command(const FieldOptionsGiven& given) {
   report.drives = &drives;
   report.field = &field;
   report.focus = focus_accuracy(packed, loop, drives, input.raster.X_DP);
-  report.settings_json = settings_json(all);
+  report.settings = settings_groups(std::as_const(all));
   Judgement judgement;
   if (is_felt(input.raster, loop)) {
     judgement.felt = FeelingSkin(input.raster).feel(packed, air, input.raster, loop, drives, pool);

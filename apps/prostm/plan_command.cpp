@@ -18,6 +18,7 @@
 #include "prostm/io/plan_file.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static.hpp"
+#include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
 #include "prostm/score/score.hpp"
 
@@ -25,7 +26,7 @@ namespace prostm::app {
 namespace {
 
 bool is_am(const PipelineSettings& settings) {
-  return method_from_name(settings.method) == Method::Am;
+  return settings.method == Method::Am;
 }
 
 void print_foci(std::FILE* out, const Plan& plan, const PlanStats& stats, double maximum) {
@@ -55,17 +56,14 @@ void print_quality(std::FILE* out, const PlanQuality& quality,
                    const std::vector<Control>& controls) {
   fmt::print(out, "  quality of what is played, by Eq. (1) with sigma {:.2f} mm:\n",
              1e3 * quality.sigma);
-  const auto row = [&](const std::string& name, const Metrics& m) {
-    fmt::print(out, "  {:<44} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f} {:>7.3f}\n",
-               name, m.rmse, m.correlation, m.coverage, m.skill_0, m.skill_8, m.overlap, m.spill);
-  };
-  fmt::print(out, "  {:<44} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "", "RMSE", "corr",
-             "cover", "S_0", "S_8.5", "overlap", "spill");
-  row("this plan", quality.played);
+  std::vector<MetricsRow> rows;
+  rows.emplace_back("this plan", quality.played);
   for (const PlanQuality::At& at : quality.at) {
-    row(fmt::format("this plan, sigma {:.2f} mm", 1e3 * at.sigma), at.played);
+    rows.emplace_back(fmt::format("this plan, sigma {:.2f} mm", 1e3 * at.sigma), at.played);
   }
-  for (const Control& control : controls) row("control: " + control.name, control.metrics);
+  for (const Control& control : controls)
+    rows.emplace_back("control: " + control.name, control.metrics);
+  print_metrics(out, "", rows);
 }
 
 /// Another target on the same skin, for the control that plays the paths of one: three blobs at
@@ -245,19 +243,19 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
     power = power_share(r.plan, settings.emit.power_limit);
     extras.power = &power;
   }
-  extras.method = method_from_name(settings.method);
+  extras.method = settings.method;
   if (extras.method == Method::ProStm) extras.preset = settings.plan.preset;
   extras.stats = &r.stats;
   extras.quality = &r.quality;
   extras.controls = &r.controls;
-  write_file(json, plan_to_json(r.plan, target, extras, settings_json(settings)));
+  write_file(json, plan_to_json(r.plan, target, extras, settings_groups(settings)));
 }
 
 /// Whether a plan counts on the width of the array's focus, where that is known; the paper's
 /// presets keep [plan] sigma.
 bool counts_on_own_width(const PipelineSettings& settings) {
   if (is_am(settings)) return true;
-  const Preset preset = preset_from_name(settings.plan.preset);
+  const Preset preset = settings.plan.preset;
   return preset == Preset::Best || preset == Preset::Fast;
 }
 
@@ -278,6 +276,16 @@ double sigma_on_skin(const TransducerArray& array, const TargetField& target, do
   const Medium air;
   const PackedArray packed(array, air);
   return focus_width(packed, air, middle / sum, normal, normal.unitOrthogonal()).sigma();
+}
+
+/// What is felt of the plan as the array of the settings plays it.
+double felt_skill_of(const TargetField& target, const Plan& plan,
+                     const PipelineSettings& settings) {
+  TargetFrame frame;
+  frame.patches.push_back(target);
+  WorkerPool pool(settings.threads);
+  return felt_skill(plan, frame, 0, emit_settings(settings, max_pressure(target)),
+                    settings.emission_rate(), settings.transducers, pool);
 }
 
 }  // namespace
@@ -305,18 +313,20 @@ int plan_command(const PlanOptionsGiven& given) {
     }
   }
 
-  const Result r = plan_and_score(target, settings, other_widths, !given.common.figure.empty());
+  Result r = plan_and_score(target, settings, other_widths, !given.common.figure.empty());
   if (r.status == PlanStatus::InvalidTarget) {
     throw InputError(
         given.field +
         ": the field has a value that cannot be planned; pressures must be finite and >= 0");
   }
+  if (given.common.array) r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
   if (!given.common.json.empty()) write_plan(r, target, settings, given.common.json);
   if (!given.common.figure.empty()) {
     PlanFigure figure = as_figure(target, r.plan, r.trace, settings);
     figure.metrics = r.quality.played;
     figure.controls = r.controls;
-    figure.title = given.field + (is_am(settings) ? ", method am" : ", preset " + s.preset);
+    figure.title = given.field +
+                   (is_am(settings) ? ", method am" : ", preset " + std::string(name_of(s.preset)));
     draw_figure(figure, given, settings);
   }
   std::FILE* out = prose(given.common.json);

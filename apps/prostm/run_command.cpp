@@ -31,7 +31,7 @@ class Observer final : public RunObserver {
            const RunOptions& options, std::FILE* out)
       : recorder_(recorder), view_(view), picture_at_(picture_at), options_(options), out_(out) {}
 
-  bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
+  bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
     if (recorder_ != nullptr) {
       const bool planned = plan.status == PlanStatus::Planned;
       recorder_->append(contact.target, contact.hands, planned ? &plan.plan : nullptr,
@@ -78,7 +78,7 @@ class Observer final : public RunObserver {
 
   const Interrupt& interrupt() const { return interrupt_; }
   bool has_instant() const { return std::isfinite(away_); }
-  const ContactFrame& contact() const { return contact_; }
+  const WorldFrame& contact() const { return contact_; }
   const PlanFrame& plan() const { return plan_; }
 
  private:
@@ -96,7 +96,7 @@ class Observer final : public RunObserver {
   const RunOptions& options_;
   std::FILE* out_;
   double away_ = std::numeric_limits<double>::infinity();
-  ContactFrame contact_;
+  WorldFrame contact_;
   PlanFrame plan_;
   std::function<void(const RunSummary&)> report_;
   bool reported_ = false, muted_ = false;
@@ -108,7 +108,7 @@ class Observer final : public RunObserver {
 /// @pre the observer has an instant.
 void draw_instant(const Observer& observer, const PipelineSettings& settings, const GridShape& grid,
                   const std::string& path) {
-  const ContactFrame& contact = observer.contact();
+  const WorldFrame& contact = observer.contact();
   SceneFigure figure;
   figure.nx = grid.nx;
   figure.nz = grid.nz;
@@ -132,8 +132,7 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   std::vector<std::string> widths;  // of a focal point on each patch [mm]
   for (std::size_t patch = 0; patch < contact.target.patches.size(); ++patch) {
     const TargetField& target = contact.target.patches[patch];
-    const double sigma =
-        method_from_name(settings.method) == Method::Am ? settings.am.sigma : plan.sigma_on(target);
+    const double sigma = settings.method == Method::Am ? settings.am.sigma : plan.sigma_on(target);
     widths.push_back(fmt::format("{:.1f}", 1e3 * sigma));
     std::vector<double> field(target.size());
     quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, sigma,
@@ -168,10 +167,10 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
   if (given.device) settings.device = *given.device;
   device_kind(settings.device);
   settings.simulated_array.realtime = realtime;
-  if (given.switch_at) settings.emit.switch_at = *given.switch_at;
+  if (given.switch_at) settings.emit.switch_at = from_name<SwitchAt>(*given.switch_at, "--switch");
   // a clock is running: the planner gets a share of an update, not a number of tries
-  if (realtime && method_from_name(settings.method) == Method::ProStm &&
-      settings.plan.preset == "best" && settings.plan.budget == 0.0 && !given.common.budget_ms) {
+  if (realtime && settings.method == Method::ProStm && settings.plan.preset == Preset::Best &&
+      settings.plan.budget == 0.0 && !given.common.budget_ms) {
     settings.plan.budget = kLiveBudget;
   }
   settings.side_view = !given.common.figure.empty();
@@ -194,7 +193,7 @@ double seconds_of(const RunOptionsGiven& given, double duration) {
 std::unique_ptr<Recorder> make_recorder(const RunOptionsGiven& given,
                                         const PipelineSettings& settings) {
   if (given.record.empty()) return nullptr;
-  auto recorder = std::make_unique<Recorder>(given.record, settings_json(settings));
+  auto recorder = std::make_unique<Recorder>(given.record, settings_groups(settings));
   recorder->set_attribute("scene", settings.scene);
   recorder->set_attribute("hand", given.hand);
   return recorder;
@@ -212,11 +211,11 @@ struct Ending {
   std::FILE* out;
 
   void report(const RunSummary& summary) const {
-    const std::optional<TrackerStatus> tracker = pipeline.smoke().hands().tracker_status();
+    const std::optional<TrackerStatus> tracker = pipeline.world_stage().hands().tracker_status();
     nlohmann::ordered_json json = summary_json(summary, settings);
     json["hand"] = given.hand;
     json["tracker"] = tracker_json(tracker);
-    json["settings"] = nlohmann::ordered_json::parse(settings_json(settings));
+    json["settings"] = settings_to_json(settings_groups(settings));
     Attempts attempts;
     attempts.add([&] {
       if (recorder == nullptr || !recorder->open()) return;
@@ -226,7 +225,7 @@ struct Ending {
     attempts.add([&] { write_json(given.common.json, json); });
     attempts.add([&] {
       if (given.common.figure.empty()) return;
-      draw_or_say_why(observer, summary, settings, pipeline.smoke().world().grid(),
+      draw_or_say_why(observer, summary, settings, pipeline.world_stage().world().grid(),
                       given.common.figure, out);
     });
     attempts.add([&] {

@@ -66,12 +66,12 @@ std::unique_ptr<HandSource> View::behind_the_page(std::unique_ptr<HandSource> ba
 }
 
 void View::serve(Pipeline& pipeline, std::FILE* out) {
-  link_.hands->set_tracker_pose(pipeline.smoke().tracker_pose());
-  const GridShape& grid = pipeline.smoke().world().grid();
+  link_.hands->set_tracker_pose(pipeline.world_stage().tracker_pose());
+  const GridShape& grid = pipeline.world_stage().world().grid();
   const PipelineSettings& s = settings();
   source_ = std::make_unique<PipelineView>(
-      link_, ViewHello{PROSTM_VERSION, s.transducers.name, s.transducers.position, grid.p_DF,
-                       grid.cell * grid.nx});
+      link_, ViewHello{PROSTM_VERSION, pipeline.device().info().name, s.transducers.name,
+                       s.transducers.position, grid.p_DF, grid.cell * grid.nx});
   ViewSettings settings;
   if (given_.view_address) settings.address = *given_.view_address;
   settings.port = given_.view_port;

@@ -31,7 +31,7 @@ Plan plan_by(Way way, const TargetField& target, double sigma) {
     case Way::PaperValid:
     case Way::Best:
     case Way::BestNarrow:
-      settings.preset = way == Way::PaperValid ? "paper-valid" : "best";
+      settings.preset = way == Way::PaperValid ? Preset::PaperValid : Preset::Best;
       if (way == Way::BestNarrow) settings.sigma = sigma;
       Planner(settings, target.size()).plan(target, plan, stats);
       break;

@@ -54,7 +54,7 @@ AtWeight plan_all(const Kind& kind, double weight) {
   AtWeight out;
   out.weight = weight;
   PlanSettings settings;
-  settings.preset = kind.preset;
+  settings.preset = from_name<Preset>(kind.preset, "preset");
   settings.*kind.weight = weight;
   for (const Sequence& sequence : gallery()) {
     Planner planner(settings, sequence.cells);

@@ -16,7 +16,7 @@ const std::vector<Variant>& variants() {
 
 PlanSettings settings_of(const Variant& variant) {
   PlanSettings settings;
-  settings.preset = variant.preset;
+  settings.preset = from_name<Preset>(variant.preset, "preset");
   settings.paths = variant.paths;
   settings.budget = 1e-3 * variant.budget_ms;
   return settings;

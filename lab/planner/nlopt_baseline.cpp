@@ -211,7 +211,7 @@ void append(const std::string& name, const Against& ours, const Against& theirs,
 /// The paper's costs: gradient descent of the paper's presets against NLopt.
 void compare_refinement(int frames, std::vector<Row>& rows) {
   PlanSettings settings;
-  settings.preset = "paper";
+  settings.preset = Preset::Paper;
   Against preset, converged, theirs;
   for (const Sequence& sequence : gallery()) {
     Planner planner(settings, sequence.cells);

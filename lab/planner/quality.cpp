@@ -12,10 +12,6 @@
 namespace prostm::bench {
 namespace {
 
-constexpr std::array kMembers{&Metrics::rmse,    &Metrics::correlation, &Metrics::coverage,
-                              &Metrics::skill_0, &Metrics::skill_8,     &Metrics::overlap,
-                              &Metrics::spill};
-
 /// Weights (pressure, length, intersection, bending) that the textbook is tried with; the first are
 /// its own.
 struct Weights {
@@ -32,18 +28,6 @@ PlanSettings textbook_settings(const Weights& w, int seed) {
   settings.weight_bending = w.bending;
   settings.seed = seed;
   return settings;
-}
-
-/// The median of each metric for itself.
-Metrics median(const std::vector<Metrics>& all) {
-  Metrics out;
-  for (const auto member : kMembers) {
-    std::vector<double> values;
-    for (const Metrics& m : all) values.push_back(m.*member);
-    std::sort(values.begin(), values.end());
-    out.*member = 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
-  }
-  return out;
 }
 
 double mean_rmse(const std::vector<Metrics>& all) {
@@ -91,9 +75,7 @@ void add_controls(const TargetField& target, const Plan& other, int frame, int f
     for (const Control& control : table) outcome.controls.push_back({control.name, {}});
   }
   for (std::size_t c = 0; c < table.size(); ++c) {
-    for (const auto member : kMembers) {
-      outcome.controls[c].metrics.*member += table[c].metrics.*member / frames;
-    }
+    add_share(table[c].metrics, 1.0 / frames, outcome.controls[c].metrics);
     for (Outcome& planner : outcome.planners) {
       ++planner.controls;
       planner.controls_lost += loses(table[c].metrics, planner.metrics.back()) ? 1 : 0;
@@ -166,6 +148,13 @@ void show_progress(const std::string& name, int done, int of) {
 }
 
 }  // namespace
+
+void add_share(const Metrics& more, double share, Metrics& sum) {
+  for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
+    const auto member = std::get<double Metrics::*>(metric.value);
+    sum.*member += share * more.*member;
+  }
+}
 
 void StageTimes::add(const PlanStats& s) {
   constexpr std::array kTimes{&PlanStats::init,  &PlanStats::kmeans,   &PlanStats::tour,

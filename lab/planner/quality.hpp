@@ -61,4 +61,7 @@ void print_summary(const std::vector<SequenceOutcome>& outcomes);
 /// Times and errors of each planner beside the textbook's.
 void append_rows(const std::vector<SequenceOutcome>& outcomes, std::vector<Row>& rows);
 
+/// Adds `share` of each metric to that of `sum`.
+void add_share(const Metrics& more, double share, Metrics& sum);
+
 }  // namespace prostm::bench

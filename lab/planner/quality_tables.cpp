@@ -21,14 +21,6 @@ struct Comparison {
   double blur_ratio() const { return (1.0 - ours.skill_8) / blur_error; }
 };
 
-void add_share(Metrics& sum, const Metrics& m, double share) {
-  for (const auto member :
-       {&Metrics::rmse, &Metrics::correlation, &Metrics::coverage, &Metrics::skill_0,
-        &Metrics::skill_8, &Metrics::overlap, &Metrics::spill}) {
-    sum.*member += share * m.*member;
-  }
-}
-
 bool counts(const Outcome& outcome, int frame) {
   return !outcome.warm || frame >= kWarmFrom;
 }
@@ -42,9 +34,9 @@ Comparison compare(const Outcome& ours, const SequenceOutcome& all) {
   Metrics textbook, paper;
   for (std::size_t f = 0; f < all.frames.size(); ++f) {
     if (!counts(ours, all.frames[f])) continue;
-    add_share(c.ours, ours.metrics[f], 1.0 / c.frames);
-    add_share(textbook, all.textbook.metrics[f], 1.0 / c.frames);
-    add_share(paper, valid.metrics[f], 1.0 / c.frames);
+    add_share(ours.metrics[f], 1.0 / c.frames, c.ours);
+    add_share(all.textbook.metrics[f], 1.0 / c.frames, textbook);
+    add_share(valid.metrics[f], 1.0 / c.frames, paper);
     const Metrics &m = ours.metrics[f], &a = all.textbook.metrics[f], &b = valid.metrics[f];
     const bool worse =
         m.rmse > std::min(a.rmse, b.rmse) || m.skill_8 < std::max(a.skill_8, b.skill_8);
@@ -134,7 +126,7 @@ Means means_of(const std::vector<SequenceOutcome>& outcomes, std::size_t planner
   for (const SequenceOutcome& all : outcomes) {
     const Comparison c = compare(all.planners[planner], all);
     if (c.frames == 0.0) continue;
-    add_share(m.ours, c.ours, 1.0);
+    add_share(c.ours, 1.0, m.ours);
     m.rmse += c.rmse;
     m.blur_error += c.blur_error;
     m.textbook_rmse += c.textbook_rmse;

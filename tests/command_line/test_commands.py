@@ -199,7 +199,7 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
     recording, figure = tmp_path / "run.h5", tmp_path / "run.png"
     summary = run_summary(prostm, "--as-fast-as-possible", "--record", recording, "--figure", figure)
     assert summary["format"] == "prostm-run/1" and finite_or_null(summary)
-    assert summary["fluid_steps"] == 400 and summary["plans"] + summary["empty_updates"] == 200
+    assert summary["world_steps"] == 400 and summary["plans"] + summary["empty_updates"] == 200
     assert summary["blocks"] == 8000 and summary["missed_blocks"] == summary["limited_samples"] == 0
     assert summary["plans"] > 50
     assert summary["max_focus_step_mm"] <= 0.2 + 1e-6 and summary["max_path_length_mm"] <= 140.5
@@ -213,7 +213,7 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
 @pytest.mark.long
 def test_in_still_air_the_hand_feels_its_own_movement(prostm):
     still = run_summary(prostm, "--as-fast-as-possible", "--scene", "still-air")
-    assert still["fluid_steps"] == 400 and still["plans"] > 50
+    assert still["world_steps"] == 400 and still["plans"] > 50
 
 
 @pytest.mark.long

@@ -42,7 +42,7 @@ def test_a_signal_ends_a_run_whole(program, tmp_path, name, status):
     summary = json.loads((tmp_path / "run.json").read_text())
     assert summary["stopped"] is True and summary["failure"] is None and summary["seconds"] < 60
     with h5py.File(tmp_path / "run.h5") as h5:
-        assert json.loads(h5.attrs["summary"])["fluid_steps"] == summary["fluid_steps"]
+        assert json.loads(h5.attrs["summary"])["world_steps"] == summary["world_steps"]
         assert len(h5["frame/time"]) > 0
     assert not part.exists()
     assert (tmp_path / "run.png").exists() or "no picture was drawn in run.png" in out
@@ -107,6 +107,6 @@ def test_files_are_whole_where_standard_output_is_full(program, tmp_path):
         done = subprocess.run([str(program), "run", "--stepped", "--grid", "32", "--seconds", "1", "--json", "run.json",
                                "--record", "run.h5"], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
     assert done.returncode == 2
-    assert json.loads((tmp_path / "run.json").read_text())["fluid_steps"] == 50
+    assert json.loads((tmp_path / "run.json").read_text())["world_steps"] == 50
     with h5py.File(tmp_path / "run.h5") as h5:
         assert len(h5["frame/time"]) == 25

@@ -19,7 +19,7 @@ def start(program, folder, *arguments, port="0"):
     line = process.stdout.readline()
     assert line.startswith("page: http://127.0.0.1:"), line + process.stderr.read()
     address = line.split()[1]
-    wait_for(lambda: numbers(address)["run"]["fluid_steps"] > 0)
+    wait_for(lambda: numbers(address)["run"]["world_steps"] > 0)
     return process, address
 
 
@@ -107,8 +107,8 @@ def test_stays_after_its_seconds(program, tmp_path):
     wait_for(lambda: (tmp_path / "summary.json").exists())
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["stopped"] is False and summary["seconds"] == pytest.approx(2.0, abs=0.1)
-    before = numbers(address)["run"]["fluid_steps"]
-    wait_for(lambda: numbers(address)["run"]["fluid_steps"] > before + 10)
+    before = numbers(address)["run"]["world_steps"]
+    wait_for(lambda: numbers(address)["run"]["world_steps"] > before + 10)
     status, out = end(process)
     assert status == 0
     assert "goes on at " + address in out

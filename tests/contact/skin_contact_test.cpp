@@ -8,6 +8,7 @@
 #include "prostm/core/units.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/pipeline/scene.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
 
@@ -29,7 +30,7 @@ struct Bench {
       : pool(threads),
         filter(filter_settings(filter_on)),
         source(make_scripted_hand(hand, filter_settings(filter_on))),
-        fluid(fluid_settings(cells), scene_from_name(scene), pool),
+        fluid(fluid_settings(cells), scene_from_name(scene).smoke, pool),
         pressure({}, fluid.grid()),
         rasteriser(fluid.grid()),
         contact(settings, fluid.grid()) {}
@@ -84,7 +85,7 @@ TEST(SkinContact, PointsLieOnTheSkinAndFaceTheArray) {
   ASSERT_EQ(bench.target.patches.size(), 1u);
   const TargetField& patch = bench.target.patches[0];
   validate(patch);
-  EXPECT_GT(stats.skin_cells * patch.cell * patch.cell, 63e-4);
+  EXPECT_GT(static_cast<double>(stats.skin_cells) * patch.cell * patch.cell, 63e-4);
   EXPECT_EQ(stats.joints_outside, 0);
 
   const HandShape shape(bench.hands.hands[0]);
@@ -100,7 +101,7 @@ TEST(SkinContact, PointsLieOnTheSkinAndFaceTheArray) {
       on_skin += skin.normal.z() < 0.5 ? 1 : 0;
     }
   }
-  EXPECT_GT(on_skin, 0.95 * stats.skin_cells);  // what the array sees is the underside
+  EXPECT_GT(on_skin, 0.95 * static_cast<double>(stats.skin_cells));  // what the array sees is the underside
 }
 
 TEST(SkinContact, PlaneAxesFollowTheDevice) {

@@ -324,20 +324,21 @@ TEST(SimulatedArray, HalfTheFocusGivesHalfTheRadiationPressureThroughTheModulati
 TEST(SimulatedArray, AtAZeroOfTheModulationTransducersStillRingAsTheirMemorySays) {
   const TransducerSettings transducer;
   const double tau_turns = time_constant(transducer) * 200.0;
-  for (const char* name : {"sine-magnitude", "raised-cosine"}) {
-    const Waveform waveform = waveform_from_name(name);
+  for (const Waveform waveform : {Waveform::SineMagnitude, Waveform::RaisedCosine}) {
     TransducerDynamics dynamics(transducer, 1);
     for (int k = 0; k <= 400; ++k) {
       const std::complex<double> drive = envelope(waveform, k % 200 / 200.0);
       dynamics.step(std::span(&drive, 1));
     }
     const double rings = std::abs(dynamics.output()[0]), x = kPi * tau_turns;  // (B6)
-    EXPECT_NEAR(rings, waveform == Waveform::SineMagnitude ? x : 2.0 * x * x, 0.15 * rings) << name;
+    EXPECT_NEAR(rings, waveform == Waveform::SineMagnitude ? x : 2.0 * x * x, 0.15 * rings)
+        << name_of(waveform);
   }
 }
 
 TEST(SimulatedArray, HalfTheTargetGivesHalfTheRadiationPressure) {
-  for (const char* solver : {"weighted", "gs-pat", "superposition"}) {
+  for (const FocusMethod solver :
+       {FocusMethod::Weighted, FocusMethod::GsPat, FocusMethod::Superposition}) {
     const auto pressure_at = [&](double target) {
       bool saturated = false;
       FocusSample sample;
@@ -449,7 +450,7 @@ TEST(SimulatedArray, SettingsAreChecked) {
   settings.sample_rate = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(make(settings), std::invalid_argument);
   settings = by_hand();
-  settings.solver = "lm";
+  settings.solver = FocusMethod::LevenbergMarquardt;
   EXPECT_THROW(make(settings), std::invalid_argument);
   settings = by_hand();
   settings.max_foci = 0;

@@ -56,7 +56,7 @@ struct PlannedExample {
                           const std::string& preset = "paper-valid")
       : target(std::move(field)) {
     PlanSettings settings;
-    settings.preset = preset;
+    settings.preset = from_name<Preset>(preset, "preset");
     Planner planner(settings, target.size());
     PlanStats stats;
     planner.plan(target, plan, stats, &trace);

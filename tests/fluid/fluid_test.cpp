@@ -11,6 +11,7 @@
 
 #include "analytic_raster.hpp"
 #include "prostm/fluid/detail/obstacle.hpp"
+#include "prostm/pipeline/scene.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {
@@ -25,8 +26,8 @@ FluidSettings settings_of(int cells, int cycles = 2) {
   return settings;
 }
 
-Scene still_air() {
-  return {"still", {}, 1.0, 0.0};
+SmokeInflow still_air() {
+  return {};
 }
 
 HandRaster hand_at(const GridShape& grid, double z, double speed) {
@@ -58,8 +59,6 @@ TEST(Fluid, RefusesSettingsOutOfBounds) {
             "cells = 144 must be a multiple of 16 between 32 and 128");
   EXPECT_EQ(message([](FluidSettings& s) { s.cycles = 0; }),
             "cycles = 0 must be between 1 and 100");
-  EXPECT_EQ(message([](FluidSettings& s) { s.solver = "magic"; }),
-            "solver = magic must be multigrid or jacobi");
   EXPECT_THAT(message([](FluidSettings& s) { s.width = std::numeric_limits<double>::quiet_NaN(); }),
               testing::HasSubstr("width"));
   EXPECT_THAT(message([](FluidSettings& s) { s.density = 0; }),
@@ -67,9 +66,9 @@ TEST(Fluid, RefusesSettingsOutOfBounds) {
   EXPECT_THAT(message([](FluidSettings& s) { s.jacobi_sweeps = 0; }),
               testing::HasSubstr("jacobi_sweeps = 0"));
   EXPECT_THROW(scene_from_name("five-plumes"), std::invalid_argument);
-  EXPECT_EQ(scene_from_name("one-plume").jets.size(), 1u);
-  EXPECT_EQ(scene_from_name("four-plumes").jets.size(), 4u);
-  EXPECT_TRUE(scene_from_name("still-air").jets.empty());
+  EXPECT_EQ(scene_from_name("one-plume").smoke.jets.size(), 1u);
+  EXPECT_EQ(scene_from_name("four-plumes").smoke.jets.size(), 4u);
+  EXPECT_TRUE(scene_from_name("still-air").smoke.jets.empty());
 }
 
 TEST(Fluid, RestStaysRest) {
@@ -130,7 +129,7 @@ TEST(Fluid, SphereHasHalfItsVolumeOfAddedMass) {
 TEST(Fluid, PlumesStaySymmetric) {
   WorkerPool pool(2);
   for (const char* name : {"one-plume", "four-plumes"}) {
-    Fluid fluid(settings_of(48), scene_from_name(name), pool);
+    Fluid fluid(settings_of(48), scene_from_name(name).smoke, pool);
     const HandRaster none = test::empty_raster(fluid.grid());
     for (int t = 0; t < 25; ++t) fluid.step(kStep, none);
     const int n = fluid.grid().nx;
@@ -156,7 +155,7 @@ TEST(Fluid, SmokeStaysBetweenNoneAndAll) {
   settings.buoyancy = 1.0;
   settings.vorticity = 2.0;
   settings.dissipation = 0.5;
-  Fluid fluid(settings, scene_from_name("one-plume"), pool);
+  Fluid fluid(settings, scene_from_name("one-plume").smoke, pool);
   for (int t = 0; t < 40; ++t) {
     EXPECT_FALSE(fluid.step(kStep, bobbing_hand(fluid.grid(), t)).reset);
     for (const float s : fluid.smoke()) {
@@ -171,7 +170,8 @@ TEST(Fluid, BuoyancyLiftsSmoke) {
   WorkerPool pool(1);
   FluidSettings heavy = settings_of(32), light = heavy;
   light.buoyancy = 2.0;
-  Fluid a(heavy, scene_from_name("one-plume"), pool), b(light, scene_from_name("one-plume"), pool);
+  Fluid a(heavy, scene_from_name("one-plume").smoke, pool),
+      b(light, scene_from_name("one-plume").smoke, pool);
   const HandRaster none = test::empty_raster(a.grid());
   for (int t = 0; t < 40; ++t) {
     a.step(kStep, none);
@@ -186,7 +186,7 @@ TEST(Fluid, ThreadsDoNotChangeABit) {
     WorkerPool pool(threads);
     FluidSettings settings = settings_of(48);
     settings.vorticity = 1.0;
-    Fluid fluid(settings, scene_from_name("four-plumes"), pool);
+    Fluid fluid(settings, scene_from_name("four-plumes").smoke, pool);
     for (int t = 0; t < 12; ++t) fluid.step(kStep, bobbing_hand(fluid.grid(), t));
     pressures.emplace_back(fluid.pressure().begin(), fluid.pressure().end());
     smokes.emplace_back(fluid.smoke().begin(), fluid.smoke().end());
@@ -200,9 +200,9 @@ TEST(Fluid, ThreadsDoNotChangeABit) {
 TEST(Fluid, JacobiWithManySweepsAgreesWithMultigrid) {
   WorkerPool pool(2);
   FluidSettings paper = settings_of(32), exact = settings_of(32, 20);
-  paper.solver = "jacobi";
+  paper.solver = PressureMethod::Jacobi;
   paper.jacobi_sweeps = 4000;
-  const Scene scene = scene_from_name("one-plume");
+  const SmokeInflow scene = scene_from_name("one-plume").smoke;
   Fluid history(settings_of(32), scene, pool), a(paper, scene, pool), b(exact, scene, pool);
   for (int t = 0; t < 20; ++t) history.step(kStep, bobbing_hand(history.grid(), t));
   const HandRaster hand = bobbing_hand(history.grid(), 20);
@@ -224,7 +224,7 @@ TEST(Fluid, ReportsTheDivergenceThatItLeaves) {
   WorkerPool pool(2);
   double previous = 1.0;
   for (const int cycles : {1, 2, 4}) {
-    Fluid fluid(settings_of(48, cycles), scene_from_name("one-plume"), pool);
+    Fluid fluid(settings_of(48, cycles), scene_from_name("one-plume").smoke, pool);
     double most = 0.0;
     for (int t = 0; t < 20; ++t) {
       const FluidStats stats = fluid.step(kStep, bobbing_hand(fluid.grid(), t));
@@ -238,7 +238,7 @@ TEST(Fluid, ReportsTheDivergenceThatItLeaves) {
 
 TEST(Fluid, AHandThatLeftLeavesNoTrace) {
   WorkerPool pool(1);
-  const Scene scene = scene_from_name("one-plume");
+  const SmokeInflow scene = scene_from_name("one-plume").smoke;
   Fluid seen(settings_of(32), scene, pool), fresh(settings_of(32), scene, pool);
   for (int t = 0; t < 10; ++t) seen.step(kStep, bobbing_hand(seen.grid(), t));
   EXPECT_EQ(std::count(seen.fluid_cells().begin(), seen.fluid_cells().end(), 0) > 50, true);
@@ -256,7 +256,7 @@ TEST(Fluid, AHandThatLeftLeavesNoTrace) {
 
 TEST(Fluid, PressureIsZeroInsideTheHand) {
   WorkerPool pool(1);
-  Fluid fluid(settings_of(48), scene_from_name("one-plume"), pool);
+  Fluid fluid(settings_of(48), scene_from_name("one-plume").smoke, pool);
   const HandRaster hand = hand_at(fluid.grid(), 0.18, 0.0);
   for (int t = 0; t < 30; ++t) fluid.step(kStep, hand);
   const GridShape& g = fluid.grid();
@@ -281,7 +281,7 @@ TEST(Fluid, PressureIsZeroInsideTheHand) {
 
 TEST(Fluid, TheSmokePressesOnTheSideOfTheArray) {
   WorkerPool pool(2);
-  Fluid fluid(settings_of(48), scene_from_name("one-plume"), pool);
+  Fluid fluid(settings_of(48), scene_from_name("one-plume").smoke, pool);
   const HandRaster hand = hand_at(fluid.grid(), 0.18, 0.0);
   for (int t = 0; t < 100; ++t) fluid.step(kStep, hand);
   const GridShape& g = fluid.grid();
@@ -297,7 +297,7 @@ TEST(Fluid, AStepInPartsEqualsAStepToTheBit) {
   FluidSettings settings = settings_of(32);
   settings.vorticity = 2.0;
   settings.buoyancy = 0.5;
-  const Scene scene = scene_from_name("four-plumes");
+  const SmokeInflow scene = scene_from_name("four-plumes").smoke;
   Fluid whole(settings, scene, pool), parts(settings, scene, pool), other(settings, scene, pool);
   const GridShape& grid = whole.grid();
   const auto copy = [](auto span) { return std::vector(span.begin(), span.end()); };
@@ -340,7 +340,7 @@ TEST(Fluid, AStepInPartsEqualsAStepToTheBit) {
 
 TEST(Fluid, NonFiniteInputResetsToRest) {
   WorkerPool pool(1);
-  Fluid fluid(settings_of(32), scene_from_name("one-plume"), pool);
+  Fluid fluid(settings_of(32), scene_from_name("one-plume").smoke, pool);
   const HandRaster good = hand_at(fluid.grid(), 0.18, 0.0);
   for (int t = 0; t < 5; ++t) fluid.step(kStep, good);
   const auto at_rest = [&] {
@@ -394,7 +394,7 @@ TEST(Fluid, StepAllocatesNothing) {
   FluidSettings settings = settings_of(32);
   settings.vorticity = 1.0;
   settings.buoyancy = 1.0;
-  Fluid fluid(settings, scene_from_name("four-plumes"), pool);
+  Fluid fluid(settings, scene_from_name("four-plumes").smoke, pool);
   const HandRaster a = bobbing_hand(fluid.grid(), 0), b = bobbing_hand(fluid.grid(), 3);
   fluid.step(kStep, a);
   const test::HeapGuard guard;

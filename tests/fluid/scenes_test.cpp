@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "prostm/fluid/fluid.hpp"
+#include "prostm/pipeline/scene.hpp"
 
 namespace prostm {
 namespace {
@@ -67,7 +68,7 @@ struct PalmPressure {
 
 PalmPressure pressure_on_palm(const std::string& scene, const FluidSettings& settings = {}) {
   WorkerPool pool(2);
-  Fluid fluid(settings, scene_from_name(scene), pool);
+  Fluid fluid(settings, scene_from_name(scene).smoke, pool);
   const GridShape& grid = fluid.grid();
   const HandRaster plate = plate_on(grid);
   const auto index = [&](double x) {

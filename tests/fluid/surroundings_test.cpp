@@ -16,8 +16,8 @@ GridShape box() {
 }
 
 /// A jet about the centre of cell (10, 4).
-Scene one_jet(double vent_speed) {
-  Scene scene;
+SmokeInflow one_jet(double vent_speed) {
+  SmokeInflow scene;
   scene.jets.push_back({Vec2(0.025, -0.035), 0.03, 2.0});
   scene.vent_speed = vent_speed;
   return scene;
@@ -70,7 +70,7 @@ TEST(Surroundings, CalmWhatFlowsInThroughAnOpenSide) {
 }
 
 TEST(Surroundings, RefuseAJetOutOfBounds) {
-  Scene scene = one_jet(0.0);
+  SmokeInflow scene = one_jet(0.0);
   scene.jets[0].radius = 0.0;
   EXPECT_THROW(Surroundings(box(), scene), std::invalid_argument);
   EXPECT_THROW(Surroundings(box(), one_jet(-1.0)), std::invalid_argument);

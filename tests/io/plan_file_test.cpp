@@ -38,7 +38,7 @@ std::string example() {
   field.cell = 0.005;
   field.skin[1] = 1;
   field.height[1] = 0.001;
-  return plan_to_json(test::triangle_plan(), field, {}, "");
+  return plan_to_json(test::triangle_plan(), field, {}, {});
 }
 
 TEST(PlanFile, RoundTripsPathsAndRaster) {
@@ -46,7 +46,7 @@ TEST(PlanFile, RoundTripsPathsAndRaster) {
   for (int trial = 0; trial < 200; ++trial) {
     const TargetField field = test::random_field(random);
     const Plan plan = random_plan(random, random.below(kMaxPaths + 1));
-    const PlanFile file = plan_from_json(plan_to_json(plan, field, {}, ""), "plan.json");
+    const PlanFile file = plan_from_json(plan_to_json(plan, field, {}, {}), "plan.json");
     ASSERT_EQ(file.plan.paths.size(), plan.paths.size());
     for (std::size_t i = 0; i < plan.paths.size(); ++i) {
       const FocalPath &a = file.plan.paths[i], &b = plan.paths[i];
@@ -80,10 +80,12 @@ TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
   extras.stats = &stats;
   extras.metrics = &metrics;
   extras.controls = &controls;
-  extras.preset = "paper";
+  extras.preset = Preset::Paper;
   const Plan plan = random_plan(random, 4);
+  PlanSettings settings;
+  settings.speed = 6.5;
   const auto json = nlohmann::json::parse(
-      plan_to_json(plan, test::random_field(random), extras, R"({"emit": {"speed": 7}})"));
+      plan_to_json(plan, test::random_field(random), extras, {group_of("plan", settings)}));
   EXPECT_EQ(json["format"], "prostm-plan/1");
   EXPECT_EQ(json["method"], "pro-stm");
   EXPECT_EQ(json["preset"], "paper");
@@ -99,7 +101,7 @@ TEST(PlanFile, SaysHowThePlanCameAboutInTheFormatsUnits) {
     EXPECT_TRUE(json["metrics"].contains(metric));
   }
   EXPECT_EQ(json["controls"][0]["name"], "flat field");
-  EXPECT_EQ(json["settings"]["emit"]["speed"], 7);
+  EXPECT_EQ(json["settings"]["plan"]["speed"], 6.5);
   const auto& path = json["paths"][0];
   EXPECT_NEAR(path["length_mm"].get<double>(), 1e3 * plan.paths[0].length, 1e-9);
   EXPECT_NEAR(path["period_ms"].get<double>(), 1e3 * plan.paths[0].period, 1e-9);
@@ -126,7 +128,7 @@ std::string foci_example() {
   field.skin[0] = 1;
   PlanFileExtras extras;
   extras.method = Method::Am;
-  return plan_to_json(two_foci(), field, extras, "");
+  return plan_to_json(two_foci(), field, extras, {});
 }
 
 TEST(PlanFile, RoundTripsFoci) {

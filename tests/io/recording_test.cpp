@@ -52,7 +52,7 @@ void expect_same(const TargetFrame& a, const TargetFrame& b) {
 }
 
 std::string record(const std::string& path, const std::vector<TargetFrame>& frames) {
-  Recorder recorder(path, "{}");
+  Recorder recorder(path, {});
   recorder.set_attribute("scene", "one-plume");
   const Plan plan = test::triangle_plan();
   const PlanStats stats;
@@ -150,7 +150,7 @@ TEST(Recording, OpensAfterItsWriterDiedWithWhatWasFlushed) {
   const test::TemporaryFolder folder;
   const std::vector<TargetFrame> frames = random_frames(160);  // 3.2 s
   const std::string path = folder.file("r.h5"), copy = folder.file("copy.h5");
-  Recorder recorder(path, "{}");
+  Recorder recorder(path, {});
   for (const TargetFrame& frame : frames)
     recorder.append(frame, hand_at(frame.time), nullptr, nullptr);
   EXPECT_FALSE(std::filesystem::exists(path));
@@ -164,7 +164,7 @@ TEST(Recording, ReplacesAnOlderOneOnlyWhenItIsDone) {
   const test::TemporaryFolder folder;
   const std::string path = record(folder.file("r.h5"), random_frames(3));
   {
-    Recorder recorder(path, "{}");
+    Recorder recorder(path, {});
     EXPECT_EQ(RecordingReader(path).frames(), 3);
   }
   EXPECT_EQ(RecordingReader(path).frames(), 0);
@@ -191,11 +191,11 @@ TEST(Recording, SaysWhatIsNoRecording) {
 TEST(Recording, CannotBeWrittenWithoutAFolder) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("missing/r.h5");
-  EXPECT_THAT(input_error([&] { const Recorder recorder(path, "{}"); }),
+  EXPECT_THAT(input_error([&] { const Recorder recorder(path, {}); }),
               AllOf(HasSubstr(path), HasSubstr("No such file")));
-  EXPECT_THAT(input_error([&] { const Recorder recorder("/dev/full", "{}"); }),
+  EXPECT_THAT(input_error([&] { const Recorder recorder("/dev/full", {}); }),
               HasSubstr("not an ordinary file"));
-  EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file(""), "{}"); }),
+  EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file(""), {}); }),
               HasSubstr("is a folder"));
 }
 

@@ -8,6 +8,15 @@
 namespace prostm {
 namespace {
 
+enum class Heat { Low, High };
+
+}  // namespace
+
+template <>
+inline constexpr std::array<std::string_view, 2> kNames<Heat> = {"low", "high"};
+
+namespace {
+
 using test::input_error;
 using testing::HasSubstr;
 
@@ -16,43 +25,51 @@ struct Stove {
   int plates = 4;
   bool gas = false;
   std::string maker = "us";
-  void visit(SettingsVisitor& v) {
-    v.field("power", power);
-    v.field("plates", plates);
-    v.field("gas", gas);
-    v.field("maker", maker);
+  Heat heat = Heat::Low;
+  void visit(SettingsReader& v) const { list(*this, v); }
+  void visit(SettingsWriter& v) { list(*this, v); }
+
+ private:
+  template <class Self, class Visitor>
+  static void list(Self& s, Visitor& v) {
+    v.field({"power", "kW", 0, 10, "of all plates"}, s.power);
+    v.field({"plates", "", -1, 8, "to cook on"}, s.plates);
+    v.field({.name = "gas", .help = "whether it burns"}, s.gas);
+    v.field({.name = "maker", .help = "who made it"}, s.maker);
+    v.field({.name = "heat", .help = "how hot"}, s.heat);
   }
 };
 
 struct Kitchen {
   Stove stove, oven;
-  std::vector<SettingsGroup> groups() {
-    return {{"stove", [this](SettingsVisitor& v) { stove.visit(v); }},
-            {"oven", [this](SettingsVisitor& v) { oven.visit(v); }}};
-  }
+  std::vector<SettingsGroup> groups() { return {group_of("stove", stove), group_of("oven", oven)}; }
 };
 
 TEST(Settings, SetWhatTheFileGivesAndLeaveTheRest) {
   Kitchen kitchen;
-  settings_from_toml("[stove]\npower = 2\ngas = true\n[oven]\nmaker = \"them\"\nplates = -1\n",
-                     "s.toml", kitchen.groups());
+  settings_from_toml(
+      "[stove]\npower = 2\ngas = true\n[oven]\nmaker = \"them\"\nplates = -1\nheat = \"high\"\n",
+      "s.toml", kitchen.groups());
   EXPECT_EQ(kitchen.stove.power, 2.0);
   EXPECT_TRUE(kitchen.stove.gas);
   EXPECT_EQ(kitchen.stove.plates, 4);
   EXPECT_EQ(kitchen.oven.maker, "them");
   EXPECT_EQ(kitchen.oven.plates, -1);
   EXPECT_EQ(kitchen.oven.power, 1.5);
+  EXPECT_EQ(kitchen.oven.heat, Heat::High);
+  EXPECT_EQ(kitchen.stove.heat, Heat::Low);
 }
 
 TEST(Settings, RoundTripThroughJson) {
   Kitchen kitchen;
   kitchen.stove.power = 0.1;
   kitchen.oven.maker = "a \"quoted\"\nname";
-  const auto json = nlohmann::json::parse(settings_to_json(kitchen.groups()));
+  const nlohmann::ordered_json json = settings_to_json(kitchen.groups());
   EXPECT_EQ(json["stove"]["power"].get<double>(), 0.1);
   EXPECT_EQ(json["stove"]["plates"], 4);
   EXPECT_EQ(json["stove"]["gas"], false);
   EXPECT_EQ(json["oven"]["maker"], "a \"quoted\"\nname");
+  EXPECT_EQ(json["oven"]["heat"], "low");
 }
 
 TEST(Settings, ReadAFile) {
@@ -75,7 +92,7 @@ TEST(Settings, SayWhatIsWrongAndWhere) {
   const Wrong wrongs[] = {
       {"[stove]\npowr = 1",
        "s.toml, line 2: stove has no setting \"powr\"; did you mean \"power\"?"},
-      {"[stove]\nxylophone = 1", "known are power, plates, gas, maker"},
+      {"[stove]\nxylophone = 1", "known are power, plates, gas, maker, heat"},
       {"\n[stov]\npower = 1",
        "s.toml, line 2: there is no group of settings \"stov\"; did you mean \"stove\"?"},
       {"[bath]", "known are stove, oven"},
@@ -87,6 +104,8 @@ TEST(Settings, SayWhatIsWrongAndWhere) {
       {"[stove]\nplates = 3000000000", "stove.plates must lie within 32 bits"},
       {"[stove]\ngas = 1", "stove.gas must be true or false"},
       {"[stove]\nmaker = 1", "stove.maker must be a text in quotes"},
+      {"[stove]\nheat = 1", "stove.heat must be a text in quotes"},
+      {"[stove]\nheat = \"warm\"", "s.toml, line 2: stove.heat must be low or high"},
       {"[stove]\npower = ", "s.toml, line 2, column 9: is not valid TOML"},
       {"[stove]\npower = 1\npower = 2", "is not valid TOML"},
   };

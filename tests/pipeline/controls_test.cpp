@@ -13,6 +13,7 @@
 #include "pipeline/simulated.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/pipeline/pipeline.hpp"
+#include "prostm/pipeline/scene.hpp"
 #include "prostm/pipeline/snapshot.hpp"
 
 namespace prostm {
@@ -143,7 +144,7 @@ double difference(const Outcome& one, const Outcome& other) {
 // whatever can be turned changes the plan or how it is emitted. Where hands come from and their
 // prediction are up to who makes the hands.
 TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
-  for (const char* method : {"pro-stm", "am"}) {
+  for (const Method method : {Method::ProStm, Method::Am}) {
     LiveSettings s = small_settings();
     s.pipeline.method = method;
     s.pipeline.scripted_hand.still = false;
@@ -153,7 +154,8 @@ TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
       if (c.group == "Hand" || !c.enabled(s)) continue;
       LiveSettings wanted = s;
       c.set(wanted, c.get(s) == c.low ? c.high : c.low);
-      EXPECT_GT(difference(as_it_was, outcome_of(s, wanted)), 1e-4) << method << ": " << c.id;
+      EXPECT_GT(difference(as_it_was, outcome_of(s, wanted)), 1e-4)
+          << name_of(method) << ": " << c.id;
     }
   }
 }
@@ -166,13 +168,13 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   ASSERT_GT(pipeline.plan().plan.paths.size(), 2U);
   const std::int64_t blocks = pipeline.device_stats().blocks;
   const std::int64_t updates = pipeline.plan().id;
-  const auto smoke = pipeline.smoke().world().fluid()->smoke();
+  const auto smoke = pipeline.world_stage().world().fluid()->smoke();
   const std::vector<float> before(smoke.begin(), smoke.end());
 
   s.pipeline.plan.paths = 2;
   s.pipeline.fluid.jet_speed = 0.5;
   pipeline.reconfigure(s.pipeline);
-  const auto after = pipeline.smoke().world().fluid()->smoke();
+  const auto after = pipeline.world_stage().world().fluid()->smoke();
   EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
   while (!pipeline.step(0.02)) {
   }
@@ -180,7 +182,7 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   EXPECT_LE(pipeline.plan().plan.paths.size(), 2U);
   EXPECT_GE(pipeline.device_stats().blocks, blocks) << "counters go on";
 
-  s.pipeline.method = "am";
+  s.pipeline.method = Method::Am;
   pipeline.reconfigure(s.pipeline);
   pipeline.step(0.02);
   EXPECT_FALSE(pipeline.plan().plan.foci.empty());
@@ -227,7 +229,7 @@ TEST(SmokeView, IsTheMeanOfWholeBlocks) {
     WorkerPool pool(1);
     FluidSettings settings;
     settings.cells = cells;
-    Fluid fluid(settings, scene_from_name("four-plumes"), pool);
+    Fluid fluid(settings, scene_from_name("four-plumes").smoke, pool);
     HandRasteriser hands(fluid.grid());
     hands.rasterise({}, pool);
     for (int i = 0; i < 10; ++i) fluid.step(0.02, hands.raster());

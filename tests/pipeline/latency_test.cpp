@@ -17,8 +17,8 @@ double sum(const Latency& latency) {
   return std::accumulate(latency.part.begin(), latency.part.end(), 0.0);
 }
 
-ContactFrame contact_taken_at(double time, double age) {
-  ContactFrame contact;
+WorldFrame contact_taken_at(double time, double age) {
+  WorldFrame contact;
   contact.arrival = time - age;
   contact.due = contact.taken = time;
   contact.track_time = 0.001;  // stages take time even where no clock runs
@@ -45,7 +45,7 @@ TEST(LatencyLog, WithoutAClockIsWhatOneComputesByHand) {
   EXPECT_NEAR(last.part[kFrameWait], 0.004, 1e-12);
   EXPECT_NEAR(last.part[kBlockWait], 0.001, 1e-12);
   EXPECT_NEAR(last.part[kLapWait], 0.024, 1e-12);
-  EXPECT_EQ(last.part[kFluidPart], 0.0);
+  EXPECT_EQ(last.part[kWorldPart], 0.0);
   EXPECT_EQ(last.part[kPlanPart], 0.0);
   EXPECT_EQ(last.part[kQueuePart], 0.0);
   EXPECT_NEAR(sum(last), last.total, 1e-12);
@@ -70,7 +70,7 @@ TEST(LatencyLog, PartsOfAClockedPlanAddUp) {
   // the run began half a second before the device; its hands were taken 2 ms late, and a tracker's
   // frame had come in 1 ms after the step was due
   const double run_start = device.play_time(0) - 0.5;
-  ContactFrame contact = contact_taken_at(0.6, 0.0);
+  WorldFrame contact = contact_taken_at(0.6, 0.0);
   contact.due = 0.598;
   contact.arrival = 0.599;
   PlanFrame plan;
@@ -85,7 +85,7 @@ TEST(LatencyLog, PartsOfAClockedPlanAddUp) {
   EXPECT_EQ(last.part[kFrameWait], 0.0);
   EXPECT_NEAR(last.part[kLateStart], 0.001, 1e-12);
   EXPECT_NEAR(last.part[kHandPart], 0.001, 1e-12);
-  EXPECT_NEAR(last.part[kFluidPart], 0.003, 1e-12);
+  EXPECT_NEAR(last.part[kWorldPart], 0.003, 1e-12);
   EXPECT_NEAR(last.part[kHandOver], 0.001, 1e-12);
   EXPECT_NEAR(last.part[kPlanPart], 0.002, 1e-12);
   EXPECT_NEAR(last.part[kLiftPart], 0.0005, 1e-12);
@@ -123,11 +123,11 @@ class OldHand final : public HandSource {
 
 class NoObserver final : public RunObserver {
  public:
-  bool on_plan(const ContactFrame&, const PlanFrame&) override { return true; }
+  bool on_plan(const WorldFrame&, const PlanFrame&) override { return true; }
   bool on_progress(double) override { return true; }
 };
 
-RunSummary run_with(RunMode mode, double age, const char* switch_at) {
+RunSummary run_with(RunMode mode, double age, SwitchAt switch_at) {
   PipelineSettings settings;
   settings.fluid.cells = 32;
   settings.simulated_array.realtime = mode == RunMode::RealTime;
@@ -149,8 +149,8 @@ void expect_means_add_up(const RunSummary& s) {
 }
 
 TEST(RunLatency, SteppedCountsTheAgeAndTheLapAlone) {
-  const RunSummary young = run_with(RunMode::Stepped, 0.0, "lap"),
-                   old = run_with(RunMode::Stepped, 0.003, "lap");
+  const RunSummary young = run_with(RunMode::Stepped, 0.0, SwitchAt::Lap),
+                   old = run_with(RunMode::Stepped, 0.003, SwitchAt::Lap);
   ASSERT_GT(young.latency.n, 10u);
   expect_means_add_up(old);
   EXPECT_NEAR(old.latency.mean, young.latency.mean + 0.003, 1e-9);
@@ -168,18 +168,18 @@ TEST(RunLatency, SteppedCountsTheAgeAndTheLapAlone) {
 }
 
 TEST(RunLatency, SwitchNowDoesNotWaitForLaps) {
-  const RunSummary s = run_with(RunMode::Stepped, 0.0, "now");
+  const RunSummary s = run_with(RunMode::Stepped, 0.0, SwitchAt::Now);
   ASSERT_GT(s.latency.n, 10u);
   EXPECT_NEAR(s.latency.p50, 0.0, 1e-9);
   EXPECT_GT(s.emit.laps_cut, 10);
 }
 
 TEST(RunLatency, OfARealTimeRunAddsUp) {
-  const RunSummary s = run_with(RunMode::RealTime, 0.003, "lap");
+  const RunSummary s = run_with(RunMode::RealTime, 0.003, SwitchAt::Lap);
   ASSERT_GT(s.latency.n, 0u);
   expect_means_add_up(s);
   EXPECT_GE(s.latency_parts[kQueuePart].mean, 3e-3 - 1e-9);
-  EXPECT_GT(s.latency_parts[kFluidPart].mean, 0.0);
+  EXPECT_GT(s.latency_parts[kWorldPart].mean, 0.0);
   EXPECT_GT(s.latency_parts[kPlanPart].mean, 0.0);
 }
 

@@ -36,7 +36,7 @@ class OtherDevice final : public Device {
 };
 
 struct Onlooker final : RunObserver {
-  bool on_plan(const ContactFrame&, const PlanFrame&) override { return true; }
+  bool on_plan(const WorldFrame&, const PlanFrame&) override { return true; }
   bool on_progress(double) override { return true; }
 };
 

@@ -20,7 +20,7 @@ constexpr double kSeconds = 2.0;
 constexpr double kSeconds = 8.0;
 #endif
 
-PipelineSettings small_settings(bool realtime, const char* method = "pro-stm") {
+PipelineSettings small_settings(bool realtime, Method method = Method::ProStm) {
   PipelineSettings s;
   s.method = method;
   s.fluid.cells = 32;
@@ -48,7 +48,7 @@ class NoHand final : public HandSource {
 class Keeper final : public RunObserver {
  public:
   explicit Keeper(int stop_after = 1 << 30) : stop_after_(stop_after) {}
-  bool on_plan(const ContactFrame& contact, const PlanFrame& plan) override {
+  bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
     steps.push_back(contact.step);
     plans.push_back(plan.plan);
     return static_cast<int>(plans.size()) < stop_after_;
@@ -77,7 +77,7 @@ void expect_same(const Plan& a, const Plan& b) {
   }
 }
 
-Keeper run_keeping(const char* method, RunMode mode, RunSummary& summary,
+Keeper run_keeping(Method method, RunMode mode, RunSummary& summary,
                    std::vector<FocusSample>& played) {
   const PipelineSettings settings = small_settings(false, method);
   Pipeline pipeline(settings, scripted(settings));
@@ -89,11 +89,11 @@ Keeper run_keeping(const char* method, RunMode mode, RunSummary& summary,
 }
 
 /// Of both methods.
-class EachMethod : public testing::TestWithParam<const char*> {};
+class EachMethod : public testing::TestWithParam<Method> {};
 
-INSTANTIATE_TEST_SUITE_P(Pipeline, EachMethod, testing::Values("pro-stm", "am"),
+INSTANTIATE_TEST_SUITE_P(Pipeline, EachMethod, testing::Values(Method::ProStm, Method::Am),
                          [](const auto& method) {
-                           return std::string(method.param) == "am" ? "am" : "pro_stm";
+                           return std::string(method.param == Method::Am ? "am" : "pro_stm");
                          });
 
 TEST_P(EachMethod, ThreadedRunEqualsSteppedRunToTheBit) {
@@ -102,7 +102,7 @@ TEST_P(EachMethod, ThreadedRunEqualsSteppedRunToTheBit) {
   const Keeper first = run_keeping(GetParam(), RunMode::Stepped, stepped, a);
   const Keeper second = run_keeping(GetParam(), RunMode::AsFastAsPossible, threaded, b);
   const int steps_per_plan = small_settings(false, GetParam()).steps_per_plan();
-  EXPECT_EQ(steps_per_plan, std::string(GetParam()) == "am" ? 1 : 2);
+  EXPECT_EQ(steps_per_plan, GetParam() == Method::Am ? 1 : 2);
   ASSERT_EQ(first.plans.size(), second.plans.size());
   EXPECT_EQ(first.steps, second.steps);
   for (std::size_t k = 0; k < first.steps.size(); ++k)
@@ -156,7 +156,7 @@ TEST_P(EachMethod, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
     const bool hand = !pipeline.contact().hands.hands.empty();
     if (hand) {
       const HandShape shape(pipeline.contact().hands.hands[0]);
-      const Vec3 margin = Vec3::Constant(2.0 * pipeline.smoke().world().grid().cell + 0.02);
+      const Vec3 margin = Vec3::Constant(2.0 * pipeline.world_stage().world().grid().cell + 0.02);
       recent.emplace_back(shape.lower() - margin, shape.upper() + margin);
       if (recent.size() > 5) recent.erase(recent.begin());
     }
@@ -198,8 +198,8 @@ TEST(Pipeline, RealTimeRunAccountsForEveryStep) {
   Pipeline pipeline(settings, scripted(settings));
   Keeper keeper;
   const RunSummary s = run(pipeline, settings, {1.0, RunMode::RealTime}, keeper);
-  EXPECT_EQ(s.fluid_steps + s.skipped_fluid_steps, 50);
-  EXPECT_EQ(s.plans + s.empty_updates + s.skipped_updates, s.fluid_steps / 2);
+  EXPECT_EQ(s.world_steps + s.skipped_world_steps, 50);
+  EXPECT_EQ(s.plans + s.empty_updates + s.skipped_updates, s.world_steps / 2);
   EXPECT_GE(s.device.blocks + s.device.missed_blocks, 900);
   EXPECT_LE(s.device.queue_blocks, 10);
   EXPECT_FALSE(s.stopped);
@@ -217,7 +217,7 @@ TEST(Pipeline, PlansWithTheWidthOfTheArrayWhereItIsAskedTo) {
   const auto first_plan = [](const PipelineSettings& s) {
     Pipeline pipeline(s, make_scripted_hand(s.scripted_hand, s.track));
     for (int step = 0; step < 400; ++step) {
-      if (pipeline.step(1.0 / s.fluid_rate) && pipeline.plan().status == PlanStatus::Planned) break;
+      if (pipeline.step(1.0 / s.world_rate) && pipeline.plan().status == PlanStatus::Planned) break;
     }
     return pipeline.plan().plan;
   };
@@ -237,17 +237,15 @@ TEST(Pipeline, RejectsBadSettings) {
   s.X_DT.linear() *= 2.0;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
   s = small_settings(false);
-  s.fluid_rate = 0.0;
+  s.world_rate = 0.0;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
   s = small_settings(false);
-  s.fluid_steps_per_plan = -1;
+  s.world_steps_per_plan = -1;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
-  s = small_settings(false, "fm");
-  EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
-  s = small_settings(false, "am");
+  s = small_settings(false, Method::Am);
   s.am.foci = 9;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
-  s = small_settings(false, "am");
+  s = small_settings(false, Method::Am);
   s.emit.am_frequency = 500.0;
   EXPECT_THROW(Pipeline(s, scripted(s)), std::invalid_argument);
 }

@@ -25,7 +25,7 @@ PipelineSettings settings_for(RunMode mode) {
   PipelineSettings s;
   s.fluid.cells = 32;
   s.scripted_hand.still = true;
-  s.plan.preset = "fast";
+  s.plan.preset = Preset::Fast;
   s.simulated_array.realtime = mode == RunMode::RealTime;
   return s;
 }
@@ -51,7 +51,7 @@ class Ender final : public RunObserver {
  public:
   enum class By { Throwing, ThrowingInProgress, Stopping, Nothing };
   explicit Ender(By by) : by_(by) {}
-  bool on_plan(const ContactFrame&, const PlanFrame& plan) override {
+  bool on_plan(const WorldFrame&, const PlanFrame& plan) override {
     EXPECT_FALSE(ended_) << "nobody is told anything after the end";
     sounding_ += plan.status == PlanStatus::Planned ? 1 : 0;
     if (sounding_ < 3) return true;
@@ -148,7 +148,7 @@ TEST_P(RunEnds, WhenTheHandsThrow) {
   Ender observer(Ender::By::Nothing);
   const RunSummary summary = run(pipeline, settings_, {kTooLong, GetParam()}, observer);
   EXPECT_EQ(what(summary), "the hand failed");
-  EXPECT_GE(summary.fluid_steps, 1);
+  EXPECT_GE(summary.world_steps, 1);
   EXPECT_EQ(pipeline.device().status(), DeviceStatus::Idle);
 }
 
@@ -162,7 +162,7 @@ TEST_P(RunEnds, WhenTheDeviceVanishes) {
 
 TEST(RunEnd, AModulationFadesToo) {
   PipelineSettings settings = settings_for(RunMode::RealTime);
-  settings.method = "am";
+  settings.method = Method::Am;
   settings.emit.am_frequency = 25.0;
   Pipeline pipeline(settings, make_scripted_hand(settings.scripted_hand, settings.track));
   Ender observer(Ender::By::Throwing);

@@ -23,7 +23,7 @@ PlanSnapshot small_contact() {
     field.pressure[i] = 0.3 * std::exp(-d2 / (2.0 * 6e-3 * 6e-3));
   }
   auto settings = std::make_shared<PipelineSettings>();
-  settings->plan.preset = "fast";
+  settings->plan.preset = Preset::Fast;
   Planner planner(settings->plan, field.size());
   PlanStats stats;
   s.planned = planner.plan(s.target, s.plan, stats) == PlanStatus::Planned;

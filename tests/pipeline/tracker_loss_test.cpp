@@ -77,15 +77,15 @@ class Noted final : public HandSource {
 
 class UntilToldToStop final : public RunObserver {
  public:
-  bool on_plan(const ContactFrame&, const PlanFrame&) override { return !stop; }
+  bool on_plan(const WorldFrame&, const PlanFrame&) override { return !stop; }
   bool on_progress(double) override { return !stop; }
   std::atomic<bool> stop{false};
 };
 
-class TrackerLoss : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Pipeline, TrackerLoss, testing::Values("pro-stm", "am"),
+class TrackerLoss : public testing::TestWithParam<Method> {};
+INSTANTIATE_TEST_SUITE_P(Pipeline, TrackerLoss, testing::Values(Method::ProStm, Method::Am),
                          [](const auto& method) {
-                           return std::string(method.param) == "am" ? "am" : "pro_stm";
+                           return std::string(method.param == Method::Am ? "am" : "pro_stm");
                          });
 
 TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {

@@ -19,7 +19,7 @@ constexpr std::size_t kCells = static_cast<std::size_t>(fields::kCells) * fields
 
 PlanSettings settings_at(const std::string& preset, double speed, double draw_rate) {
   PlanSettings settings;
-  settings.preset = preset;
+  settings.preset = from_name<Preset>(preset, "preset");
   settings.speed = speed;
   settings.draw_rate = draw_rate;
   return settings;

@@ -257,7 +257,7 @@ TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {
 
 PlanSettings preset(const std::string& name) {
   PlanSettings settings;
-  settings.preset = name;
+  settings.preset = from_name<Preset>(name, "preset");
   return settings;
 }
 
@@ -270,7 +270,7 @@ SpacingRule stated_rule() {
 
 /// Of a path in a plan: of `best` those that it searches for, and one between each two.
 int samples_of(const PlanSettings& settings) {
-  return settings.preset == "best" ? 2 * settings.fit_samples : settings.samples;
+  return settings.preset == Preset::Best ? 2 * settings.fit_samples : settings.samples;
 }
 
 std::vector<Vec2> all_points(const Plan& plan) {

@@ -72,11 +72,11 @@ TEST(FocusWidths, OfATargetAreThoseWhereItsPressureIs) {
 
 TEST(FocusWidths, GiveThePlansOfTheirSigma) {
   const TargetField field = fields::make(fields::Pattern::FourPlumes, 20, 40);
-  for (const char* preset : {"best", "fast", "paper-valid"}) {
+  for (const Preset preset : {Preset::Best, Preset::Fast, Preset::PaperValid}) {
     PlanSettings with, without;
     with.preset = without.preset = preset;
     with.widths = constant(5e-3);
-    const bool by_place = preset != std::string("paper-valid");
+    const bool by_place = preset != Preset::PaperValid;
     if (by_place) without.sigma = 5e-3;
     EXPECT_DOUBLE_EQ(with.sigma_on(field), without.sigma);
     Planner a(with, field.size()), b(without, field.size());
@@ -87,8 +87,8 @@ TEST(FocusWidths, GiveThePlansOfTheirSigma) {
       ASSERT_EQ(b.plan(field, of_sigma, stats), PlanStatus::Planned);
       ASSERT_EQ(of_widths.paths.size(), of_sigma.paths.size());
       for (std::size_t k = 0; k < of_sigma.paths.size(); ++k) {
-        EXPECT_EQ(of_widths.paths[k].points, of_sigma.paths[k].points) << preset;
-        EXPECT_EQ(of_widths.paths[k].pressure, of_sigma.paths[k].pressure) << preset;
+        EXPECT_EQ(of_widths.paths[k].points, of_sigma.paths[k].points) << name_of(preset);
+        EXPECT_EQ(of_widths.paths[k].pressure, of_sigma.paths[k].pressure) << name_of(preset);
       }
     }
   }
@@ -96,7 +96,7 @@ TEST(FocusWidths, GiveThePlansOfTheirSigma) {
 
 TEST(FocusWidths, AllocateNothingAndKeepPlansValidWhileTheHandRises) {
   PlanSettings settings;
-  settings.preset = "fast";
+  settings.preset = Preset::Fast;
   settings.widths = table();
   TargetField field = fields::make(fields::Pattern::OnePlume, 20, 40);
   Planner planner(settings, field.size());

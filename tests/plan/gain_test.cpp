@@ -24,7 +24,7 @@ constexpr double kExponent = 0.5;
 
 PlanSettings settings_with(const std::string& preset, double exponent) {
   PlanSettings settings;
-  settings.preset = preset;
+  settings.preset = from_name<Preset>(preset, "preset");
   settings.gain_exponent = exponent;
   settings.full_scale_pressure = 1e5;  // so much that it bounds nothing
   return settings;

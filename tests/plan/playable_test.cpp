@@ -172,7 +172,7 @@ TEST(Playable, SoftenedPressuresAreNearlyTheBestThatCanBePlayed) {
 
 PlanSettings preset(const std::string& name) {
   PlanSettings settings;
-  settings.preset = name;
+  settings.preset = from_name<Preset>(name, "preset");
   return settings;
 }
 

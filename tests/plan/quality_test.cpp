@@ -35,7 +35,7 @@ Metrics median_over_seeds(const TargetField& target, const std::string& preset,
   std::vector<double> rmse, correlation, coverage;
   for (int seed = 1; seed <= 20; ++seed) {
     PlanSettings settings;
-    settings.preset = preset;
+    settings.preset = from_name<Preset>(preset, "preset");
     settings.seed = seed;
     Plan plan;
     plan_with(target, settings, plan);
@@ -78,7 +78,7 @@ TEST(PlanQuality, ReachesTheTextbookOnThePapersExample) {
 TEST(PlanQuality, TurningTheFieldLeavesTheMeanErrorAlone) {
   const int frames = static_cast<int>(test::reduced(200));
   PlanSettings settings;
-  settings.preset = "paper";
+  settings.preset = Preset::Paper;
   Planner planner(settings, fields::kCells * fields::kCells);
   double upright = 0.0, turned = 0.0;
   for (int frame = 0; frame < frames; ++frame) {
@@ -125,7 +125,7 @@ TEST(PlanQuality, EveryControlLosesToThePlan) {
 TEST(PlanQuality, TheTextbookIsAsGoodOnAverage) {
   constexpr int kFrames = 4;
   PlanSettings settings;
-  settings.preset = "paper";
+  settings.preset = Preset::Paper;
   Planner planner(settings, fields::kCells * fields::kCells);
   double by_textbook = 0.0, by_planner = 0.0;
   for (const fields::Pattern pattern : fields::kPatterns) {

@@ -26,7 +26,7 @@ constexpr double kSampleRate = 40e3;
 
 PlanSettings preset(const std::string& name) {
   PlanSettings settings;
-  settings.preset = name;
+  settings.preset = from_name<Preset>(name, "preset");
   return settings;
 }
 

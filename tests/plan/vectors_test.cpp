@@ -64,7 +64,7 @@ void expect_as_good_as_plain(const PlanSettings& settings, int frames, std::int6
 
 TEST(Vectors, FastRendersTheGalleryAsWellOnEverySet) {
   PlanSettings settings;
-  settings.preset = "fast";
+  settings.preset = Preset::Fast;
   expect_as_good_as_plain(settings, 10, vector_targets());
 }
 

@@ -29,7 +29,7 @@ constexpr GainLaw kGain;
 
 PlanSettings preset(const std::string& name) {
   PlanSettings settings;
-  settings.preset = name;
+  settings.preset = from_name<Preset>(name, "preset");
   return settings;
 }
 
@@ -354,7 +354,7 @@ TEST(Weights, OfAnyKindGiveValidPlans) {
     ASSERT_NE(input.kind, test::FieldKind::Invalid);
     ASSERT_GE(plan.paths.size(), 1U);
     const PlanSettings& used = planner.settings();
-    const int samples = used.preset == "best" ? 2 * used.fit_samples : used.samples;
+    const int samples = used.preset == Preset::Best ? 2 * used.fit_samples : used.samples;
     ASSERT_NO_FATAL_FAILURE(test::expect_valid_plan(plan, samples, 0.140));
     const double most = kGain.gain * max_pressure(input.field) * (1.0 + 1e-6);
     for (const FocalPath& path : plan.paths) {

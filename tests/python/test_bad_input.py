@@ -74,7 +74,7 @@ def test_fields_beyond_the_planner(field):
     ({"paths": 9}, "paths = 9 must be between 1 and 8"),
     ({"sigma": 0}, "sigma = 0 m must be between"),
     ({"speed": np.nan}, "speed"),
-    ({"preset": "papre"}, "preset 'papre' is unknown"),
+    ({"preset": "papre"}, 'PlanSettings.preset "papre" is unknown'),
     ({"pathz": 4}, "PlanSettings has no setting 'pathz'; did you mean 'paths'"),
     ({"xyzzy": 4}, "known are preset, paths"),
     ({"seed": 2**40}, "32 bits"),

@@ -75,8 +75,8 @@ def test_a_field_without_pressure_gives_a_plan_without_paths():
 
 def test_settings_follow_the_header():
     """Names and order are those of PlanSettings::visit, whatever it lists."""
-    source = (ROOT / "src" / "plan" / "planner_settings.cpp").read_text()
-    listed = re.findall(r'v\.field\("(\w+)"', source)
+    source = (ROOT / "src" / "prostm" / "plan" / "plan_settings.cpp").read_text()
+    listed = re.findall(r'v\.field\(\{(?:\.name = )?"(\w+)"', source)
     settings = prostm.PlanSettings()
     assert list(settings.as_dict()) == listed and len(listed) >= 16
     for name, value in settings.as_dict().items():
@@ -273,6 +273,8 @@ def test_the_types_name_what_there_is():
         for member in vars(value):
             if not member.startswith("_") and name not in ("PlanStatus",):
                 assert re.search(rf"\b{member}\b", block.group() + stub.split("class PlanSettings")[0]), f"{name}.{member}"
+        for member in re.findall(r"^    (\w+):", block.group(), flags=re.M):
+            assert hasattr(value, member) or member in dir(value()), f"{name}.{member} is declared and not there"
 
 
 def test_a_reset_planner_plans_as_a_new_one():

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "prostm/core/file.hpp"
+#include "prostm/score/score.hpp"
 #include "prostm/viewer/wire.hpp"
 #include "support/heap_guard.hpp"
 #include "support/places.hpp"
@@ -79,8 +80,8 @@ std::vector<Fixture> fixtures() {
 
   Fixture empty{"no-hand", some_frame(1)};
   empty.frame.run = {0.02, std::numeric_limits<double>::quiet_NaN(), 1, 0, 0};
-  empty.frame.numbers.fill(kNone);
-  empty.frame.numbers[kFluidMs] = 7.25F;
+  empty.frame.numbers.assign(view_number_names().size(), kNone);
+  empty.frame.numbers[kWorldMs] = 7.25F;
   empty.frame.smoke = {4, {-0.18F, -0.18F, 0.0F}, 0.36F, std::vector<std::uint8_t>(64)};
   for (std::size_t i = 0; i < 64; ++i)
     empty.frame.smoke.density[i] = static_cast<std::uint8_t>(4 * i);
@@ -134,7 +135,7 @@ Json to_json(const Fixture& fixture) {
                {"run",
                 {{"time", f.run.time},
                  {"recording_time", number(f.run.recording_time)},
-                 {"fluid_steps", f.run.fluid_steps},
+                 {"world_steps", f.run.world_steps},
                  {"plan_updates", f.run.plan_updates},
                  {"flags", f.run.flags}}}};
   for (std::size_t i = 0; i < f.numbers.size(); ++i)
@@ -257,7 +258,11 @@ TEST(Wire, AllocatesNothingOnceTheBufferHasGrown) {
 
 TEST(Wire, EveryNumberHasANameOfItsOwn) {
   const auto names = view_number_names();
-  ASSERT_EQ(names.size(), static_cast<std::size_t>(kViewNumberCount));
+  ASSERT_GE(names.size(), static_cast<std::size_t>(kPlacedNumbers));
+  EXPECT_EQ(names[kSpill], "spill");
+  EXPECT_EQ(names.back(), "felt_skill");
+  for (std::size_t m = 0; m < quantities<Metrics>().size(); ++m)
+    EXPECT_EQ(names[view_metric_places()[m]], quantities<Metrics>()[m].name);
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_FALSE(names[i].empty());
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(names[i], names[j]);

@@ -23,7 +23,7 @@ namespace prostm::test {
 
 class UntilToldToStop final : public RunObserver {
  public:
-  bool on_plan(const ContactFrame&, const PlanFrame&) override { return !stop; }
+  bool on_plan(const WorldFrame&, const PlanFrame&) override { return !stop; }
   bool on_progress(double) override { return !stop; }
   void on_abandoned_pause(double time) override { abandoned_at = time; }
   std::atomic<bool> stop{false};
@@ -78,7 +78,7 @@ class LiveRun {
       prediction = s.track.prediction;
       auto base = source == "page" ? make_absent_hand()
                   : source == "recording"
-                      ? make_recorded_hand(some_recording(s), s.track, true, 1.0 / s.fluid_rate)
+                      ? make_recorded_hand(some_recording(s), s.track, true, 1.0 / s.world_rate)
                   : source == "leap" ? tracker(s)
                                      : make_scripted_hand(s.scripted_hand, s.track);
       return std::make_unique<HandSwitch>(std::move(base), link_.page_hand, Pose::Identity());
@@ -88,7 +88,8 @@ class LiveRun {
     link_.hands = hands.get();
     pipeline_ = std::make_unique<Pipeline>(settings, std::move(hands), link_.mute);
     view_ = std::make_unique<PipelineView>(
-        link_, ViewHello{"0", "usx", settings.transducers.position, Vec3::Zero(), 0.36});
+        link_,
+        ViewHello{"0", "simulated usx", "usx", settings.transducers.position, Vec3::Zero(), 0.36});
     ViewSettings view;
     view.port = 0;
     server_ = std::make_unique<ViewServer>(view, *view_, std::span<const PageFile>());
@@ -123,7 +124,7 @@ class LiveRun {
     const Json value = numbers().at("numbers").at(name);
     return value.is_null() ? std::nan("") : value.get<double>();
   }
-  int fluid_steps() const { return numbers().at("run").at("fluid_steps"); }
+  int world_steps() const { return numbers().at("run").at("world_steps"); }
   int plan_updates() const { return numbers().at("run").at("plan_updates"); }
   const SimulatedArray& device() const { return simulated(*pipeline_); }
   /// The strongest intensity of samples first … last − 1.

@@ -134,14 +134,14 @@ TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
     page.say(R"({"type":"transport","do":"pause"})");
     EXPECT_TRUE(transport_becomes(page, "playing", false));
     ASSERT_TRUE(eventually([&] { return (run.flags() & kViewPaused) != 0; }));
-    const int steps = run.fluid_steps();
+    const int steps = run.world_steps();
     updates = run.plan_updates();
     EXPECT_EQ(steps % 2, 0) << "a pause follows a whole update";
     EXPECT_TRUE(eventually([&] { return (run.flags() & kViewFading) != 0; }));
-    EXPECT_EQ(run.fluid_steps(), steps);
+    EXPECT_EQ(run.world_steps(), steps);
     page.say(R"({"type":"transport","do":"step"})");
     EXPECT_TRUE(eventually([&] { return run.plan_updates() == updates + 1; }));
-    EXPECT_EQ(run.fluid_steps(), steps + 2);
+    EXPECT_EQ(run.world_steps(), steps + 2);
     if (round == 2) break;
     page.say(R"({"type":"transport","do":"play"})");
     EXPECT_TRUE(transport_becomes(page, "playing", true));
@@ -183,7 +183,7 @@ TEST(Live, RatesAreThoseOfTheRunHoweverSeldomTheyAreAskedFor) {
   EXPECT_TRUE(eventually([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
     const Json numbers = run.numbers().at("numbers");
-    return numbers.at("fluid_hz") > 0.0 && numbers.at("plan_hz") > 0.0;
+    return numbers.at("world_hz") > 0.0 && numbers.at("plan_hz") > 0.0;
   }));
 }
 

@@ -150,7 +150,7 @@ TEST_F(Server, KeepsAConnectionForTheNextRequest) {
 TEST_F(Server, TellsNumbersByName) {
   const std::string answer = get(port_, "/numbers.json");
   const auto json = test::Json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
-  EXPECT_EQ(json.at("numbers").at("fluid_ms"), 7.25);
+  EXPECT_EQ(json.at("numbers").at("world_ms"), 7.25);
   EXPECT_TRUE(json.at("numbers").at("rmse").is_null());
   EXPECT_EQ(json.at("sequence"), 1);
 }

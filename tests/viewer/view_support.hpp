@@ -34,9 +34,9 @@ class StandIn final : public ViewSource {
   void watch(bool somebody) override { watched = somebody; }
   void refresh(ViewFrame& frame, ViewNews& news) override {
     if (fails) throw std::runtime_error("the stand-in fell down");
-    frame.run.fluid_steps = static_cast<std::uint32_t>(++refreshed);
-    frame.numbers.fill(std::numeric_limits<float>::quiet_NaN());
-    frame.numbers[kFluidMs] = 7.25F;
+    frame.run.world_steps = static_cast<std::uint32_t>(++refreshed);
+    frame.numbers.assign(view_number_names().size(), std::numeric_limits<float>::quiet_NaN());
+    frame.numbers[kWorldMs] = 7.25F;
     frame.hand_count = 2;
     frame.smoke.n = smoke_cells_;
     frame.smoke.density.assign(std::size_t{smoke_cells_} * smoke_cells_ * smoke_cells_, 7);

@@ -44,7 +44,7 @@ const connection = new Connection(`${location.protocol === "https:" ? "wss" : "w
     view.array.set(hello);
     view.array.setDark(looks.dark);
     pageHand.setBox(hello);
-    find("about").textContent = `prostm ${hello.prostm} · array ${hello.array.name}, ${hello.array.transducers_mm.length} transducers`;
+    find("about").textContent = `prostm ${hello.prostm} · device ${hello.device}, ${hello.array.transducers_mm.length} transducers`;
   },
   state: (state) => {
     controls.show(state.controls);

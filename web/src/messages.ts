@@ -4,6 +4,8 @@ export interface Hello {
   type: "hello";
   version: number;
   prostm: string;
+  device: string;
+  numbers: string[];
   array: { name: string; transducers_mm: [number, number, number][] };
   box_mm: { origin: [number, number, number]; edge: number };
 }
@@ -130,7 +132,8 @@ export function parseMessage(text: string): ServerMessage | null {
   let known = false;
   if (message.type === "hello") {
     const { array, box_mm: box } = message;
-    known = isObject(array) && isText(array.name) && Array.isArray(array.transducers_mm) && array.transducers_mm.every(isPoint) &&
+    known = isText(message.device) && Array.isArray(message.numbers) && message.numbers.every(isText) &&
+      isObject(array) && isText(array.name) && Array.isArray(array.transducers_mm) && array.transducers_mm.every(isPoint) &&
       isObject(box) && isPoint(box.origin) && Number.isFinite(box.edge);
   } else if (message.type === "state") {
     message.tracker ??= null;

@@ -5,21 +5,21 @@ export const kJoints = 26;
 
 /// The order of section 2, which only ever grows at its end.
 export const kNumbers = [
-  "track_ms", "hand_ms", "fluid_ms", "contact_ms", "plan_ms", "lift_ms", "step_ms",
-  "fluid_hz", "plan_hz",
+  "track_ms", "hand_ms", "world_ms", "contact_ms", "plan_ms", "lift_ms", "step_ms",
+  "world_hz", "plan_hz",
   "latency_ms", "latency_p50_ms", "latency_p99_ms", "latency_max_ms",
   "blocks", "late_blocks", "missed_blocks", "queue_blocks",
   "rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill",
   "max_target_pa", "full_scale_pa",
   "laps_completed", "tracker_age_ms", "intensity", "saturated", "sigma_mm",
-  "setting_sigma_mm", "setting_rmse", "setting_correlation",
+  "setting_sigma_mm", "setting_rmse", "setting_correlation", "felt_skill",
 ] as const;
 export type NumberName = (typeof kNumbers)[number];
 
 export interface Run {
   time: number; // [s]
   recordingTime: number; // [s], NaN without a recording
-  fluidSteps: number;
+  worldSteps: number;
   planUpdates: number;
   paused: boolean;
   pageHand: boolean;
@@ -144,7 +144,7 @@ function readRun(reader: Reader): Run {
   const run = {
     time: reader.f64(),
     recordingTime: reader.f64(),
-    fluidSteps: reader.u32(),
+    worldSteps: reader.u32(),
     planUpdates: reader.u32(),
   };
   const flags = reader.u32();

@@ -18,9 +18,6 @@ using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-// in the order of FocusMethod
-constexpr std::array kNames = {"superposition", "ibp", "gs-pat", "weighted", "eigenvector", "lm"};
-
 constexpr int kPowerIterations = 100;
 constexpr int kReferenceFactor = 50;      // of iterations that the reference may take
 constexpr double kConverged = 1e-12;      // of an eigenvector's or of the targets' square norm
@@ -230,22 +227,6 @@ void check(const Propagation& g, const VectorXd& target, const FocusSettings& se
 }
 
 }  // namespace
-
-const char* focus_method_name(FocusMethod method) {
-  return kNames[static_cast<std::size_t>(method)];
-}
-
-std::optional<FocusMethod> focus_method_from_name(std::string_view name) {
-  const auto at = std::find(kNames.begin(), kNames.end(), name);
-  if (at == kNames.end()) return std::nullopt;
-  return static_cast<FocusMethod>(at - kNames.begin());
-}
-
-std::string focus_method_names() {
-  std::string all = kNames[0];
-  for (std::size_t i = 1; i < kNames.size(); ++i) all += std::string(", ") + kNames[i];
-  return all;
-}
 
 FocusSolution solve_foci(const Propagation& propagation, const Eigen::VectorXd& target,
                          const FocusSettings& settings, const Eigen::VectorXd& start) {

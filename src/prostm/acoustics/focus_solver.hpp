@@ -1,11 +1,11 @@
 #pragma once
 /// Drives of an array that make several focal points at the same time.
 
-#include <optional>
-#include <string>
+#include <array>
 #include <string_view>
 
 #include "prostm/acoustics/propagation.hpp"
+#include "prostm/core/names.hpp"
 
 namespace prostm {
 
@@ -19,12 +19,9 @@ enum class FocusMethod {
   LevenbergMarquardt  ///< (A15): phases alone, to convergence: the slow reference
 };
 
-/// "superposition", "ibp", "gs-pat", "weighted", "eigenvector", "lm".
-const char* focus_method_name(FocusMethod method);
-/// Nothing when there is no method of that name.
-std::optional<FocusMethod> focus_method_from_name(std::string_view name);
-/// All names, with a comma between.
-std::string focus_method_names();
+template <>
+inline constexpr std::array<std::string_view, 6> kNames<FocusMethod> = {
+    "superposition", "ibp", "gs-pat", "weighted", "eigenvector", "lm"};
 
 struct FocusSettings {
   FocusMethod method = FocusMethod::Weighted;

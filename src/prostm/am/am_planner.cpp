@@ -5,7 +5,6 @@
 #include <boost/container/static_vector.hpp>
 
 #include "prostm/am/am_pressures.hpp"
-#include "prostm/core/require.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/clustering.hpp"
 #include "prostm/plan/patches.hpp"
@@ -47,12 +46,20 @@ Places greedy_start(const TargetField& target, int count, double apart, double m
   return places;
 }
 
+template <class Settings, class Visitor>
+void list(Settings& s, Visitor& v) {
+  v.field({"foci", "", 1, kMaxPaths, "N, focal points at most"}, s.foci);
+  v.field({"sigma", "m", 1e-3, 0.1, "fall-off of a focal point"}, s.sigma);
+  v.field({"lloyd_iterations", "", 1, 1'000'000, "of the k-means, at most"}, s.lloyd_iterations);
+}
+
 }  // namespace
 
-void AmSettings::visit(SettingsVisitor& v) {
-  v.field("foci", foci);
-  v.field("sigma", sigma);
-  v.field("lloyd_iterations", lloyd_iterations);
+void AmSettings::visit(SettingsReader& v) const {
+  list(*this, v);
+}
+void AmSettings::visit(SettingsWriter& v) {
+  list(*this, v);
 }
 
 struct AmPlanner::Scratch {
@@ -92,9 +99,7 @@ void AmPlanner::Scratch::plan_patch(const TargetField& target, int patch, int fo
 }
 
 AmPlanner::AmPlanner(const AmSettings& settings, std::size_t max_cells) {
-  require_between("foci", settings.foci, 1, kMaxPaths);
-  require_between("sigma", settings.sigma, 1e-3, 0.1, "m");
-  require_between("lloyd_iterations", settings.lloyd_iterations, 1, 1'000'000);
+  require_bounds(settings);
   scratch_ = std::make_unique<Scratch>(settings, max_cells);
 }
 AmPlanner::~AmPlanner() = default;

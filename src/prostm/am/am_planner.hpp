@@ -15,7 +15,8 @@ struct AmSettings {
   double sigma = 8.6e-3;        ///< fall-off σ of a focal point [m], 1 to 100 mm
   int lloyd_iterations = 1000;  ///< at most; a field of a hand takes 5 to 50
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
   bool operator==(const AmSettings&) const = default;
 };
 

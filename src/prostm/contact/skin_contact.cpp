@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/core/require.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm {
@@ -41,12 +40,21 @@ double fade_of(double cosine) {
   return std::clamp((kFadeTo - angle) / (kFadeTo - kFadeFrom), 0.0, 1.0);
 }
 
+template <class Settings, class Visitor>
+void list(Settings& s, Visitor& v) {
+  // above 0, since a hand may show but one part of it
+  v.field({"touch_palm", "", 0.001, 1000, "weight of the palm's skin"}, s.touch_palm);
+  v.field({"touch_finger", "", 0.001, 1000, "weight of the fingers'"}, s.touch_finger);
+  v.field({"touch_tip", "", 0.001, 1000, "weight of the fingertips'"}, s.touch_tip);
+}
+
 }  // namespace
 
-void ContactSettings::visit(SettingsVisitor& v) {
-  v.field("touch_palm", touch_palm);
-  v.field("touch_finger", touch_finger);
-  v.field("touch_tip", touch_tip);
+void ContactSettings::visit(SettingsReader& v) const {
+  list(*this, v);
+}
+void ContactSettings::visit(SettingsWriter& v) {
+  list(*this, v);
 }
 
 SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
@@ -56,10 +64,7 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
       grid_(grid),
       max_side_(2 * std::max({grid.nx, grid.ny, grid.nz})),
       rays_(grid) {
-  // above 0, since a hand may show but one part of it
-  require_between("touch_palm", settings.touch_palm, 0.001, 1000.0);
-  require_between("touch_finger", settings.touch_finger, 0.001, 1000.0);
-  require_between("touch_tip", settings.touch_tip, 0.001, 1000.0);
+  require_bounds(settings);
   for (std::vector<SeenSkin>& skin : visible_)
     skin.reserve(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
   queue_.reserve(max_cells());

@@ -11,6 +11,7 @@
 #include "prostm/contact/detail/skin_owner.hpp"
 #include "prostm/contact/detail/skin_rays.hpp"
 #include "prostm/contact/pressure_source.hpp"
+#include "prostm/core/quantity.hpp"
 #include "prostm/core/settings.hpp"
 #include "prostm/hand/hand_raster.hpp"
 #include "prostm/target/target_field.hpp"
@@ -23,17 +24,22 @@ struct ContactSettings {
   double touch_finger = 1.0;  ///< on the phalanges but the last
   double touch_tip = 1.0;     ///< on the last phalanges
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
   bool operator==(const ContactSettings&) const = default;
 };
 
 struct ContactStats {
-  int skin_cells = 0;      ///< raster cells with skin, over all patches
-  double skin_area = 0.0;  ///< of these, each counted as it has faded [m²]
-  int steep_cells = 0;     ///< cells whose skin is too steep for the array, and no part of a target
-  int joints_outside =
-      0;  ///< joints that lie outside the fluid's box: no pressure is known on the skin there
+  std::int64_t skin_cells = 0;   ///< raster cells with skin, over all patches
+  double skin_area = 0.0;        ///< of these, each counted as it has faded [m²]
+  std::int64_t steep_cells = 0;  ///< cells whose skin is too steep for the array: no target's
+  std::int64_t joints_outside =
+      0;  ///< joints that lie outside the grid: no pressure is known there
 };
+/// Of skin, the cells that are too steep; 0 where there is none.
+double steep_share(const ContactStats& stats);
+template <>
+std::span<const Quantity<ContactStats>> quantities<ContactStats>();
 
 /// Builds one target patch per hand.
 ///

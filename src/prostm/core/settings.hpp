@@ -1,21 +1,100 @@
 #pragma once
-/// How a stage's settings are listed once, and read, written and documented from that one list.
+/// How a stage's settings are listed once, and read, written, checked and documented from that one
+/// list.
 ///
-/// Each `XxxSettings` has `void visit(SettingsVisitor&)`, which names its fields in order. Names in
-/// files are the names in C++, values are SI as in C++. `io` reads TOML and writes JSON through
-/// this interface alone.
+/// Each `XxxSettings` has `visit()`, which names its fields in order with what they mean. Names in
+/// files are the names in C++, values are SI as in C++. Files, the command line and Python know
+/// settings through this interface alone.
 
+#include <functional>
+#include <limits>
+#include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "prostm/core/names.hpp"
 
 namespace prostm {
 
-class SettingsVisitor {
- public:
-  virtual ~SettingsVisitor() = default;
-  virtual void field(const char* name, double& value) = 0;
-  virtual void field(const char* name, int& value) = 0;
-  virtual void field(const char* name, bool& value) = 0;
-  virtual void field(const char* name, std::string& value) = 0;
+/// What a field is, beside its value.
+struct Setting {
+  const char* name;
+  const char* unit = "";  ///< "m/s"; empty for a plain number, and for what is none
+  double least = -std::numeric_limits<double>::infinity();  ///< of a number, in its unit
+  double most = std::numeric_limits<double>::infinity();
+  const char* help = "";  ///< one clause, without the unit and the bounds
 };
+
+/// Sees every field and may change it.
+class SettingsWriter {
+ public:
+  virtual ~SettingsWriter() = default;
+  virtual void field(const Setting& setting, double& value) = 0;
+  virtual void field(const Setting& setting, int& value) = 0;
+  virtual void field(const Setting& setting, bool& value) = 0;
+  virtual void field(const Setting& setting, std::string& value) = 0;
+  /// One of several names, by its place.
+  virtual void choice(const Setting& setting, std::span<const std::string_view> names,
+                      int& index) = 0;
+
+  template <class E>
+  requires std::is_enum_v<E>
+  void field(const Setting& setting, E& value) {
+    int index = static_cast<int>(value);
+    choice(setting, kNames<E>, index);
+    value = static_cast<E>(index);
+  }
+};
+
+/// Sees every field.
+class SettingsReader {
+ public:
+  virtual ~SettingsReader() = default;
+  virtual void field(const Setting& setting, const double& value) = 0;
+  virtual void field(const Setting& setting, const int& value) = 0;
+  virtual void field(const Setting& setting, const bool& value) = 0;
+  virtual void field(const Setting& setting, const std::string& value) = 0;
+  virtual void choice(const Setting& setting, std::span<const std::string_view> names,
+                      int index) = 0;
+
+  template <class E>
+  requires std::is_enum_v<E>
+  void field(const Setting& setting, const E& value) {
+    choice(setting, kNames<E>, static_cast<int>(value));
+  }
+};
+
+using ReadSettings = std::function<void(SettingsReader&)>;
+using WriteSettings = std::function<void(SettingsWriter&)>;
+
+/// A stage's settings under its name in files.
+struct SettingsGroup {
+  std::string name;
+  ReadSettings read;
+  WriteSettings write;  ///< none of a group that is only to be read
+};
+
+/// The settings of one struct, or of several under one name; they outlive it.
+template <class... Settings>
+SettingsGroup group_of(std::string name, Settings&... settings) {
+  SettingsGroup group;
+  group.name = std::move(name);
+  group.read = [&settings...](SettingsReader& v) { (std::as_const(settings).visit(v), ...); };
+  if constexpr ((!std::is_const_v<Settings> && ...)) {
+    group.write = [&settings...](SettingsWriter& v) { (settings.visit(v), ...); };
+  }
+  return group;
+}
+
+/// Whether every number lies within its bounds. @throws std::invalid_argument with the sentence of
+/// require_between() about the first that does not.
+void require_bounds(const ReadSettings& settings);
+template <class Settings>
+void require_bounds(const Settings& settings) {
+  require_bounds(ReadSettings([&settings](SettingsReader& v) { settings.visit(v); }));
+}
 
 }  // namespace prostm

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "prostm/core/quantity.hpp"
 #include "prostm/emit/focus_sample.hpp"
 
 namespace prostm {
@@ -32,6 +33,9 @@ struct DeviceStats {
   std::int64_t missed_blocks = 0;  ///< block times at which the queue had run dry
   int queue_blocks = 0;            ///< depth of the queue now
 };
+
+template <>
+std::span<const Quantity<DeviceStats>> quantities<DeviceStats>();
 
 enum class DeviceStatus : std::uint8_t {
   Idle,  ///< not started, or stopped

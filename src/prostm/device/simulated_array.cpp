@@ -21,18 +21,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr int kMostFoci = 8;
 constexpr std::int64_t kMostWaiting = 64;  // blocks, while a reader holds the lock
-
-FocusMethod live_method(const std::string& name) {
-  const std::optional<FocusMethod> method = focus_method_from_name(name);
-  if (method != FocusMethod::Weighted && method != FocusMethod::GsPat &&
-      method != FocusMethod::Superposition) {
-    throw std::invalid_argument("solver = \"" + name +
-                                "\" must be weighted, gs-pat or superposition");
-  }
-  return *method;
-}
 
 /// What the whole array makes 200 mm over its origin [Pa, rms]: there an intensity of 1 is all that
 /// it has. 0 where that is behind it or on it.
@@ -50,7 +39,7 @@ double full_scale_of(const TransducerArray& array, const Medium& medium) {
 ArrayOutputSettings output_settings(const SimulatedArraySettings& s, const TransducerArray& array,
                                     const Medium& medium) {
   ArrayOutputSettings out;
-  out.solver.method = live_method(s.solver);
+  out.solver.method = s.solver;
   out.solver.iterations = out.solver.method == FocusMethod::GsPat ? 20 : 1;
   out.solver.full_scale = full_scale_of(array, medium);
   out.transducer.frequency = array.frequency;
@@ -60,13 +49,13 @@ ArrayOutputSettings output_settings(const SimulatedArraySettings& s, const Trans
 }
 
 const SimulatedArraySettings& validated(const SimulatedArraySettings& s) {
-  require_between("sample_rate", s.sample_rate, 1e3, 1e6, "Hz");
-  require_between("block_samples", s.block_samples, 1, 4096);
-  require_between("max_foci", s.max_foci, 1, kMostFoci);
-  require_between("queue_blocks", s.queue_blocks, 1, 10);
+  require_bounds(s);
   require_between("most_queue_blocks", s.most_queue_blocks, s.queue_blocks, 10);
-  require_between("history", s.history, 0.0, 600.0, "s");
-  live_method(s.solver);
+  if (s.solver != FocusMethod::Weighted && s.solver != FocusMethod::GsPat &&
+      s.solver != FocusMethod::Superposition) {
+    throw std::invalid_argument("solver = \"" + std::string(name_of(s.solver)) +
+                                "\" must be weighted, gs-pat or superposition");
+  }
   return s;
 }
 

@@ -17,13 +17,14 @@ struct SimulatedArraySettings {
   int max_foci = 8;           ///< 1..8
   int queue_blocks = 3;       ///< 1..10; each costs a block of latency and covers for one of delay;
                               ///< the queue shortens to so many while the machine is calm
-  int most_queue_blocks = 10;       ///< queue_blocks..10; that the queue begins with, and grows to
-  double history = 4.0;             ///< kept for reading back [s], up to 600
-  bool realtime = true;             ///< false: no thread and no clock, pull() is called by hand
-  std::string solver = "weighted";  ///< of `output`: or superposition, gs-pat
-  bool memoryless = false;          ///< transducers follow their drives at once, against (A9)
+  int most_queue_blocks = 10;  ///< queue_blocks..10; that the queue begins with, and grows to
+  double history = 4.0;        ///< kept for reading back [s], up to 600
+  bool realtime = true;        ///< false: no thread and no clock, pull() is called by hand
+  FocusMethod solver = FocusMethod::Weighted;  ///< of `output`: or Superposition, GsPat
+  bool memoryless = false;  ///< transducers follow their drives at once, against (A9)
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
 };
 
 /// Faults for tests and demonstrations.

@@ -3,16 +3,33 @@
 
 namespace prostm {
 
-void SimulatedArraySettings::visit(SettingsVisitor& v) {
-  v.field("sample_rate", sample_rate);
-  v.field("block_samples", block_samples);
-  v.field("max_foci", max_foci);
-  v.field("queue_blocks", queue_blocks);
-  v.field("most_queue_blocks", most_queue_blocks);
-  v.field("history", history);
-  v.field("realtime", realtime);
-  v.field("solver", solver);
-  v.field("memoryless", memoryless);
+namespace {
+
+template <class Settings, class Visitor>
+void list(Settings& s, Visitor& v) {
+  v.field({"sample_rate", "Hz", 1e3, 1e6, "of focal points"}, s.sample_rate);
+  v.field({"block_samples", "", 1, 4096, "pulled at a time"}, s.block_samples);
+  v.field({"max_foci", "", 1, 8, "focal points of a sample"}, s.max_foci);
+  v.field({"queue_blocks", "", 1, 10, "blocks ahead while the machine is calm"}, s.queue_blocks);
+  v.field({"most_queue_blocks", "", 1, 10, "blocks ahead at the beginning, and at most"},
+          s.most_queue_blocks);
+  v.field({"history", "s", 0, 600, "kept for reading back"}, s.history);
+  v.field({.name = "realtime", .help = "whether a clock pulls"}, s.realtime);
+  v.field({.name = "solver",
+           .help = "from focal points to drives: weighted, gs-pat or "
+                   "superposition"},
+          s.solver);
+  v.field({.name = "memoryless", .help = "whether transducers follow their drives at once"},
+          s.memoryless);
+}
+
+}  // namespace
+
+void SimulatedArraySettings::visit(SettingsReader& v) const {
+  list(*this, v);
+}
+void SimulatedArraySettings::visit(SettingsWriter& v) {
+  list(*this, v);
 }
 
 DeviceInfo SimulatedArray::info_of(const SimulatedArraySettings& settings,

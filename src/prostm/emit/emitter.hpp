@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
+#include "prostm/core/quantity.hpp"
 #include "prostm/core/settings.hpp"
 #include "prostm/emit/focus_sample.hpp"
 #include "prostm/emit/mute.hpp"
@@ -16,6 +18,21 @@ namespace prostm {
 /// Of a focal point that sounds [m/s]; where a path asks for more its laps take longer.
 inline constexpr double kMaxFocusSpeed = 8.0;
 
+/// When a new plan takes over: at each path's lap end, or at the next block.
+enum class SwitchAt : std::uint8_t { Lap, Now };
+template <>
+inline constexpr std::array<std::string_view, 2> kNames<SwitchAt> = {"lap", "now"};
+
+/// Of the intensity a over a period of AM, from 0 to 0 with its peak of 1 in the middle, (B4):
+/// `raised-cosine`: a = (1 − cos 2πt)/2, the radiation pressure a² has the mean 3/8, 1/2 at the
+/// frequency of the modulation and 1/8 at twice that. `sine-magnitude`: a = |sin πt|, the square
+/// root of a raised cosine, so that a² is one itself: mean 1/2, 1/2 at the frequency, nothing at
+/// twice that.
+enum class Waveform : std::uint8_t { RaisedCosine, SineMagnitude };
+template <>
+inline constexpr std::array<std::string_view, 2> kNames<Waveform> = {"raised-cosine",
+                                                                     "sine-magnitude"};
+
 struct EmitSettings {
   int foci = 4;                      ///< focal points, 1..8
   double full_scale_pressure = 0.0;  ///< that maps to intensity 1 [unit of the target]; > 0
@@ -23,15 +40,16 @@ struct EmitSettings {
   double power_limit = 4.0;          ///< largest Σ intensity² over simultaneous focal points, > 0
   double tilt_bound = 1.0;  ///< largest factor of pressure that makes up for tilted skin, (E8),
                             ///< 1 to 4; 1: none
-  std::string switch_at = "lap";  ///< take-over at each path's lap end, or "now": at the next block
+  SwitchAt switch_at = SwitchAt::Lap;  ///< take-over
   double fade_time = 1e-3;    ///< of a fade down or up over the full range [s], at least 40 samples
   double stall_time = 0.100;  ///< without a new plan for this long, the output fades [s]
   double stall_fade_time = 0.010;  ///< that fade, and the one after lose() [s], at most 40 ms
   // of foci, which need no fades: their modulation falls silent by itself
   double am_frequency = 200.0;  ///< of the modulation [Hz], 25 to a 126th of the sample rate
-  std::string am_waveform = "sine-magnitude";  ///< of the intensity, see Waveform
+  Waveform am_waveform = Waveform::SineMagnitude;  ///< of the intensity
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
   bool operator==(const EmitSettings&) const = default;
 };
 
@@ -68,6 +86,11 @@ struct EmitStats {
   std::int64_t dropped_paths = 0;  ///< paths beyond the number of focal points, not drawn
   double max_focus_step = 0.0;     ///< between samples while intensity > 1 % [m]
 };
+
+/// Share of laps that were not cut short; 1 without laps.
+double laps_completed(const EmitStats& stats);
+template <>
+std::span<const Quantity<EmitStats>> quantities<EmitStats>();
 
 /// Turns plans into samples. submit() and lose() belong to one thread, fill() to another; neither
 /// waits.

@@ -163,32 +163,33 @@ void draw_step_panels(Canvas& canvas, const PlanFigure& f, double top) {
   }
 }
 
-struct MetricColumn {
-  const char* name;
-  double Metrics::*value;
-  bool less_is_better;
-};
-constexpr std::array<MetricColumn, 7> kColumns{{{"RMSE ↓", &Metrics::rmse, true},
-                                                {"correlation ↑", &Metrics::correlation, false},
-                                                {"coverage ↑", &Metrics::coverage, false},
-                                                {"skill S₀ ↑", &Metrics::skill_0, false},
-                                                {"skill S₈.₅ ↑", &Metrics::skill_8, false},
-                                                {"overlap ↑", &Metrics::overlap, false},
-                                                {"spill ↓", &Metrics::spill, true}}};
-
 struct TableRow {
   std::string name;
   const Metrics* metrics;
   bool is_control;
 };
 
+/// The metrics that some row knows.
+std::vector<Quantity<Metrics>> columns_of(const std::vector<TableRow>& rows) {
+  std::vector<Quantity<Metrics>> columns;
+  for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
+    const auto knows = [&](const TableRow& row) {
+      return std::isfinite(value_of(metric, *row.metrics));
+    };
+    if (std::any_of(rows.begin(), rows.end(), knows)) columns.push_back(metric);
+  }
+  return columns;
+}
+
 /// One row; where a control does not lose to `own`, in the colour of a warning.
-void draw_row(Canvas& canvas, const TableRow& row, const Metrics& own, double y) {
+void draw_row(Canvas& canvas, const TableRow& row, const std::vector<Quantity<Metrics>>& columns,
+              const Metrics& own, double y) {
   const bool bold = !row.is_control;
   canvas.text(Vec2(kLeft - 24.0, y), row.name, {.size = 12.0, .bold = bold});
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    const double value = row.metrics->*kColumns[c].value, best = own.*kColumns[c].value;
-    const bool wins = row.is_control && (kColumns[c].less_is_better ? value < best : value > best);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const double value = value_of(columns[c], *row.metrics), best = value_of(columns[c], own);
+    const bool known = row.is_control && std::isfinite(value) && std::isfinite(best);
+    const bool wins = known && (columns[c].better == Better::Less ? value < best : value > best);
     canvas.text(Vec2(kFirstColumn + kColumnStep * (static_cast<double>(c) + 0.5), y),
                 std::isfinite(value) ? figure::number_text(value, 3) : "–",
                 {.size = 12.0,
@@ -200,20 +201,23 @@ void draw_row(Canvas& canvas, const TableRow& row, const Metrics& own, double y)
 
 /// The plan's metrics above those of what it is compared with.
 void draw_table(Canvas& canvas, const std::vector<TableRow>& rows, double top) {
-  const double right = kFirstColumn + kColumnStep * (static_cast<double>(kColumns.size()) - 0.15);
+  const std::vector<Quantity<Metrics>> columns = columns_of(rows);
+  const double right = kFirstColumn + kColumnStep * (static_cast<double>(columns.size()) - 0.15);
   const auto rule = [&](double y, double width) {
     const std::array<Vec2, 2> ends{Vec2(kLeft - 30.0, y), Vec2(right, y)};
     canvas.line(ends, false, figure::kInk, width);
   };
   rule(top, 1.2);
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const char* arrow = columns[c].better == Better::Less ? " ↓" : " ↑";
     canvas.text(Vec2(kFirstColumn + kColumnStep * (static_cast<double>(c) + 0.5), top + 16.0),
-                kColumns[c].name,
+                columns[c].label + std::string(arrow),
                 {.size = 11.5, .colour = figure::kFaintInk, .align = Align::Right});
   }
   rule(top + 23.0, 0.6);
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    draw_row(canvas, rows[r], *rows[0].metrics, top + 40.0 + kRowHeight * static_cast<double>(r));
+    draw_row(canvas, rows[r], columns, *rows[0].metrics,
+             top + 40.0 + kRowHeight * static_cast<double>(r));
   }
   rule(top + 26.0 + kRowHeight * static_cast<double>(rows.size()), 1.2);
 }

@@ -41,20 +41,20 @@ GridShape grid_shape(const FluidSettings& settings) {
   return grid;
 }
 
-/// The scene with its jets at `factor` times their speed.
-Scene blown(Scene scene, double factor) {
-  for (SmokeJet& jet : scene.jets) jet.speed *= factor;
-  return scene;
+/// The inflow with its jets at `factor` times their speed.
+SmokeInflow blown(SmokeInflow inflow, double factor) {
+  for (SmokeJet& jet : inflow.jets) jet.speed *= factor;
+  return inflow;
 }
 
 }  // namespace
 
-Fluid::State::State(const FluidSettings& s, const Scene& scene, WorkerPool& workers)
+Fluid::State::State(const FluidSettings& s, const SmokeInflow& inflow, WorkerPool& workers)
     : settings(s),
       pool(workers),
       grid(grid_shape(s)),
       padded{s.cells},
-      surroundings(grid, blown(scene, s.jet_speed)),
+      surroundings(grid, blown(inflow, s.jet_speed)),
       velocity{Field(padded), Field(padded), Field(padded)},
       smoke(padded),
       obstacle(s.cells, workers),
@@ -272,7 +272,7 @@ void Fluid::State::solve() {
   divergence_before = 0.0;
   for (const PlaneSums& sum : sums) divergence_before += sum.divergence.squares;
 
-  if (settings.solver == "multigrid") {
+  if (settings.solver == PressureMethod::Multigrid) {
     solver.v_cycles(settings.cycles);
   } else {
     solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
@@ -353,8 +353,8 @@ void Fluid::State::measure() {
   stats.divergence_rms = divergence_before > 0.0 ? std::sqrt(after / divergence_before) : 0.0;
 }
 
-Fluid::Fluid(const FluidSettings& settings, const Scene& scene, WorkerPool& pool)
-    : state_(std::make_unique<State>(settings, scene, pool)) {}
+Fluid::Fluid(const FluidSettings& settings, const SmokeInflow& inflow, WorkerPool& pool)
+    : state_(std::make_unique<State>(settings, inflow, pool)) {}
 Fluid::~Fluid() = default;
 
 const GridShape& Fluid::grid() const {

@@ -2,10 +2,11 @@
 /// The smoke: incompressible Euler on a MAC grid with moving hands in it (the paper's section IV-A,
 /// and ref. [4]).
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "prostm/core/geometry.hpp"
@@ -22,24 +23,22 @@ struct SmokeJet {
   double speed = 0.0;   ///< on the axis [m/s]
 };
 
-/// A named arrangement of jets and the pressure that counts as full output there.
-struct Scene {
-  std::string name;
+/// What comes in through the floor.
+struct SmokeInflow {
   std::vector<SmokeJet> jets;
-  double full_scale_pressure = 0.0;  ///< target pressure that maps to full output [Pa]
   double vent_speed = 0.0;  ///< of clean air let in through the whole floor, so that jets side by
                             ///< side need not draw each other in [m/s]
 };
 
-/// "one-plume" (wide), "two-plumes", "three-plumes", "four-plumes" (thin), "still-air".
-/// @throws std::invalid_argument that lists the names for any other.
-Scene scene_from_name(const std::string& name);
+/// How the pressure is solved for: warm-started V-cycles, or the paper's sweeps.
+enum class PressureMethod : std::uint8_t { Multigrid, Jacobi };
+template <>
+inline constexpr std::array<std::string_view, 2> kNames<PressureMethod> = {"multigrid", "jacobi"};
 
 struct FluidSettings {
   int cells = 64;       ///< along each edge of the box; a multiple of 16, 32..128
   double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred
-  std::string solver =
-      "multigrid";           ///< "multigrid" (warm-started V-cycles), or "jacobi" (the paper's)
+  PressureMethod solver = PressureMethod::Multigrid;
   int cycles = 2;            ///< V-cycles a step
   int jacobi_sweeps = 40;    ///< sweeps a step of the paper's solver
   bool jacobi_warm = false;  ///< start from the last pressure
@@ -49,7 +48,8 @@ struct FluidSettings {
   double density = 1.2;      ///< of air ρ [kg/m³]
   double dissipation = 0.0;  ///< decay rate of the smoke's density [1/s]
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
   bool operator==(const FluidSettings&) const = default;
 };
 
@@ -70,7 +70,7 @@ struct FluidStats {
 class Fluid {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
-  Fluid(const FluidSettings& settings, const Scene& scene, WorkerPool& pool);
+  Fluid(const FluidSettings& settings, const SmokeInflow& inflow, WorkerPool& pool);
   ~Fluid();
 
   const GridShape& grid() const;

@@ -3,19 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/core/require.hpp"
-
 namespace prostm {
 
-void FluidPressureSettings::visit(SettingsVisitor& v) {
-  v.field("offset_cells", offset_cells);
-  v.field("time_constant", time_constant);
+namespace {
+
+template <class Settings, class Visitor>
+void list(Settings& s, Visitor& v) {
+  v.field({"offset_cells", "cells", 0.5, 4, "outside the skin, where the pressure is read"},
+          s.offset_cells);
+  v.field({"time_constant", "s", 0, 10, "of a smoothing of the pressure over time; 0: none"},
+          s.time_constant);
+}
+
+}  // namespace
+
+void FluidPressureSettings::visit(SettingsReader& v) const {
+  list(*this, v);
+}
+void FluidPressureSettings::visit(SettingsWriter& v) {
+  list(*this, v);
 }
 
 FluidPressure::FluidPressure(const FluidPressureSettings& settings, const GridShape& grid)
     : settings_(settings), grid_(grid) {
-  require_between("offset_cells", settings.offset_cells, 0.5, 4.0);
-  require_between("time_constant", settings.time_constant, 0.0, 10.0, "s");
+  require_bounds(settings);
   if (settings.time_constant == 0.0) return;
   smoothed_.assign(grid.cell_count(), 0.0F);
   was_fluid_.assign(grid.cell_count(), 0);

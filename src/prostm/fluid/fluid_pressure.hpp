@@ -16,7 +16,8 @@ struct FluidPressureSettings {
   double time_constant =
       0.0;  ///< of an exponential smoothing of the fluid's pressure on the skin [s]; 0 = none
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
   bool operator==(const FluidPressureSettings&) const = default;
 };
 

@@ -5,6 +5,8 @@
 #include "prostm/core/json.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/io/detail/raster_json.hpp"
+#include "prostm/io/quantity_json.hpp"
+#include "prostm/io/settings_file.hpp"
 
 namespace prostm {
 namespace {
@@ -26,10 +28,7 @@ Json matrix(const TargetField& raster, const std::vector<double>& values) {
 }
 
 Json metrics_or_null(const Metrics* m) {
-  if (m == nullptr) return nullptr;
-  return {{"rmse", m->rmse},       {"correlation", m->correlation}, {"coverage", m->coverage},
-          {"skill_0", m->skill_0}, {"skill_8", m->skill_8},         {"overlap", m->overlap},
-          {"spill", m->spill}};
+  return m == nullptr ? Json(nullptr) : quantities_to_json(*m);
 }
 
 Json loop_json(const LoopSamples& loop) {
@@ -102,7 +101,7 @@ std::string physical_to_json(const PhysicalReport& report) {
   document["felt_um"] = report.felt != nullptr
                             ? matrix(*report.raster, in_micrometres(report.felt->percept))
                             : Json();
-  document["settings"] = Json::parse(report.settings_json);
+  document["settings"] = settings_to_json(report.settings);
   return to_text(document);
 }
 

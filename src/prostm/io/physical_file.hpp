@@ -2,8 +2,10 @@
 /// What an array puts on the skin, in files: prostm-physical/1.
 
 #include <string>
+#include <vector>
 
 #include "prostm/acoustics/array.hpp"
+#include "prostm/core/settings.hpp"
 #include "prostm/score/felt.hpp"
 
 namespace prostm {
@@ -22,7 +24,7 @@ struct PhysicalReport {
   const FeltField* felt = nullptr;        ///< null for loops that are not felt
   const Metrics* felt_metrics = nullptr;  ///< null without a target, too
   const Ghosts* ghosts = nullptr;         ///< the same
-  std::string settings_json;              ///< of every stage, an object as text
+  std::vector<SettingsGroup> settings;    ///< of every stage
 };
 std::string physical_to_json(const PhysicalReport& report);
 

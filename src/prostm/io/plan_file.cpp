@@ -7,6 +7,8 @@
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/raster_json.hpp"
+#include "prostm/io/quantity_json.hpp"
+#include "prostm/io/settings_file.hpp"
 
 namespace prostm {
 namespace {
@@ -31,37 +33,15 @@ Json focus_json(const FocalPoint& focus) {
           {"pressure", focus.pressure}};
 }
 
-Json stage_json(const PlanStats& s) {
-  const auto us = [](double seconds) { return 1e6 * seconds; };
-  return {{"init", us(s.init)},   {"kmeans", us(s.kmeans)},     {"tour", us(s.tour)},
-          {"split", us(s.split)}, {"resample", us(s.resample)}, {"refine", us(s.refine)},
-          {"total", us(s.total)}};
-}
-
-Json count_json(const PlanStats& s) {
-  return {{"clusters", s.clusters},
-          {"lloyd_iterations", s.lloyd_iterations},
-          {"refine_iterations", s.refine_iterations},
-          {"cost_evaluations", s.cost_evaluations},
-          {"leaves", s.leaves},
-          {"cost", s.cost}};
-}
-
-Json metrics_json(const Metrics& m) {
-  return {{"rmse", m.rmse},       {"correlation", m.correlation}, {"coverage", m.coverage},
-          {"skill_0", m.skill_0}, {"skill_8", m.skill_8},         {"overlap", m.overlap},
-          {"spill", m.spill}};
-}
-
 void write_quality(const PlanQuality& quality, Json& document) {
   document["sigma_mm"] = to_milli(quality.sigma);
   document["full_scale_pressure"] = quality.full_scale_pressure;
-  document["metrics"] = metrics_json(quality.played);
-  document["planned_metrics"] = metrics_json(quality.planned);
+  document["metrics"] = quantities_to_json(quality.played);
+  document["planned_metrics"] = quantities_to_json(quality.planned);
   if (quality.at.empty()) return;
   Json& list = document["metrics_at"] = Json::array();
   for (const PlanQuality::At& at : quality.at) {
-    list.push_back({{"sigma_mm", to_milli(at.sigma)}, {"metrics", metrics_json(at.played)}});
+    list.push_back({{"sigma_mm", to_milli(at.sigma)}, {"metrics", quantities_to_json(at.played)}});
   }
 }
 
@@ -133,9 +113,9 @@ void read_list(const JsonNode& node, const char* what, const Read& read, List& o
 }  // namespace
 
 std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanFileExtras& extras,
-                         const std::string& settings_json) {
-  Json document = {{"format", "prostm-plan/1"}, {"method", to_string(extras.method)}};
-  if (!extras.preset.empty()) document["preset"] = extras.preset;
+                         const std::vector<SettingsGroup>& settings) {
+  Json document = {{"format", "prostm-plan/1"}, {"method", name_of(extras.method)}};
+  if (extras.preset) document["preset"] = name_of(*extras.preset);
   Json& list = document[extras.method == Method::Am ? "foci" : "paths"] = Json::array();
   for (const FocalPath& path : plan.paths) list.push_back(path_json(path));
   for (const FocalPoint& focus : plan.foci) list.push_back(focus_json(focus));
@@ -148,18 +128,15 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
 
   // how it came about and how good it is
   if (extras.stats != nullptr) {
-    document["stage_us"] = stage_json(*extras.stats);
-    document["counts"] = count_json(*extras.stats);
-    document["violations"] = {{"long_paths", extras.stats->long_paths},
-                              {"crossings", extras.stats->crossings}};
+    document.update(quantities_to_json(*extras.stats));
   }
-  if (extras.metrics != nullptr) document["metrics"] = metrics_json(*extras.metrics);
+  if (extras.metrics != nullptr) document["metrics"] = quantities_to_json(*extras.metrics);
   if (extras.quality != nullptr) write_quality(*extras.quality, document);
   if (extras.controls != nullptr) {
     document["controls"] = Json::array();
     for (const Control& control : *extras.controls) {
       document["controls"].push_back(
-          {{"name", control.name}, {"metrics", metrics_json(control.metrics)}});
+          {{"name", control.name}, {"metrics", quantities_to_json(control.metrics)}});
     }
   }
 
@@ -169,7 +146,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
   write_raster(target, raster);
   raster["height_mm"] = heights_json(target);
   document["raster"] = std::move(raster);
-  if (!settings_json.empty()) document["settings"] = Json::parse(settings_json);
+  if (!settings.empty()) document["settings"] = settings_to_json(settings);
   return to_text(document);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Plans in files: prostm-plan/1.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,7 +34,7 @@ struct PlanQuality {
 /// What a plan file says besides the paths or foci.
 struct PlanFileExtras {
   Method method = Method::ProStm;    ///< am: the plan holds foci, and they are written
-  std::string preset;                ///< writes "preset", when given
+  std::optional<Preset> preset;      ///< writes "preset", when given
   const PlanStats* stats = nullptr;  ///< writes "stage_us" and the counts, when given
   const Metrics* metrics = nullptr;  ///< writes "metrics", when given, and nothing on what they are
   const PlanQuality* quality = nullptr;  ///< writes "metrics" and all that they depend on
@@ -42,9 +43,9 @@ struct PlanFileExtras {
 };
 
 /// @param target the field that was planned: its plane and heights are repeated in the file.
-/// @param settings_json the settings, an object as text; empty: none are written.
+/// @param settings empty: none are written.
 std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanFileExtras& extras,
-                         const std::string& settings_json);
+                         const std::vector<SettingsGroup>& settings);
 
 struct PlanFile {
   Method method = Method::ProStm;  ///< am where the file has foci

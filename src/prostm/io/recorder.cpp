@@ -16,9 +16,11 @@
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/json.hpp"
 #include "prostm/io/detail/hdf5.hpp"
 #include "prostm/io/detail/hdf5_disk.hpp"
 #include "prostm/io/detail/recording_layout.hpp"
+#include "prostm/io/settings_file.hpp"
 
 namespace prostm {
 namespace {
@@ -219,15 +221,15 @@ void Recorder::Impl::append_plan(const Plan* p, const PlanStats* stats) {
   plan.append("period", period, 1);
   append_foci(p);
 
-  const PlanStats s = stats == nullptr ? PlanStats{} : *stats;
-  std::vector<double> stage{s.init, s.kmeans, s.tour, s.split, s.resample, s.refine, s.total};
-  if (stats == nullptr) stage.assign(stage.size(), kNan);
+  std::vector<double> stage;
+  std::vector<std::int32_t> counts;
+  for (const Quantity<PlanStats>* quantity : recording::stage_times())
+    stage.push_back(stats == nullptr ? kNan : value_of(*quantity, *stats));
+  for (const Quantity<PlanStats>* quantity : recording::plan_counts())
+    counts.push_back(stats == nullptr ? 0 : static_cast<std::int32_t>(value_of(*quantity, *stats)));
   plan.append("stage_time", stage, 1);
-  plan.append("counts",
-              std::vector<std::int32_t>{s.clusters, s.lloyd_iterations, s.refine_iterations,
-                                        s.cost_evaluations, s.leaves, s.long_paths, s.crossings},
-              1);
-  plan.append("cost", stats == nullptr ? kNan : s.cost);
+  plan.append("counts", counts, 1);
+  plan.append("cost", stats == nullptr ? kNan : stats->cost);
 }
 
 void Recorder::Impl::append_foci(const Plan* p) {
@@ -269,7 +271,7 @@ void Recorder::Impl::give_up() {
                                error != 0 ? reason(error) : "libhdf5 failed", rest));
 }
 
-Recorder::Recorder(const std::string& path, const std::string& settings_json)
+Recorder::Recorder(const std::string& path, const std::vector<SettingsGroup>& settings)
     : impl_(std::make_unique<Impl>()) {
   const h5::Quiet quiet;
   Impl& r = *impl_;
@@ -279,7 +281,7 @@ Recorder::Recorder(const std::string& path, const std::string& settings_json)
   r.file = h5::create_file(r.part, r.error);
   const hid_t file = r.file.get();
   const bool ok = r.file.valid() && h5::write_text(file, "format", "prostm-recording/1") &&
-                  h5::write_text(file, "settings", settings_json) &&
+                  h5::write_text(file, "settings", to_text(settings_to_json(settings))) &&
                   r.frame.create(file, "frame", recording::frame_columns()) &&
                   r.target.create(file, "target", recording::target_columns()) &&
                   r.hand.create(file, "hand", recording::hand_columns()) &&

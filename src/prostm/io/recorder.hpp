@@ -19,8 +19,8 @@ void check_recording(const std::string& path);
 /// The layout, units and attributes are in docs/recordings.md.
 class Recorder {
  public:
-  /// @param settings_json kept as an attribute. @throws InputError as check_recording.
-  Recorder(const std::string& path, const std::string& settings_json);
+  /// @param settings kept as an attribute. @throws InputError as check_recording.
+  Recorder(const std::string& path, const std::vector<SettingsGroup>& settings);
   ~Recorder();  ///< closes like close(), but keeps quiet about errors
 
   /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when

@@ -10,57 +10,68 @@
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/json.hpp"
 #include "prostm/core/nearest_name.hpp"
 
 namespace prostm {
 namespace {
 
 /// Lists the names of a group's fields.
-class NameCollector : public SettingsVisitor {
+class NameCollector : public SettingsReader {
  public:
-  void field(const char* name, double&) override { names.emplace_back(name); }
-  void field(const char* name, int&) override { names.emplace_back(name); }
-  void field(const char* name, bool&) override { names.emplace_back(name); }
-  void field(const char* name, std::string&) override { names.emplace_back(name); }
+  void field(const Setting& s, const double&) override { names.emplace_back(s.name); }
+  void field(const Setting& s, const int&) override { names.emplace_back(s.name); }
+  void field(const Setting& s, const bool&) override { names.emplace_back(s.name); }
+  void field(const Setting& s, const std::string&) override { names.emplace_back(s.name); }
+  void choice(const Setting& s, std::span<const std::string_view>, int) override {
+    names.emplace_back(s.name);
+  }
   std::vector<std::string> names;
 };
 
 /// Sets the fields that a table gives.
-class TomlReader : public SettingsVisitor {
+class TomlReader : public SettingsWriter {
  public:
   TomlReader(const toml::table& table, const std::string& file, const std::string& group)
       : table_(table), file_(file), group_(group) {}
 
-  void field(const char* name, double& value) override {
-    const toml::node* node = table_.get(name);
+  void field(const Setting& s, double& value) override {
+    const toml::node* node = table_.get(s.name);
     if (node == nullptr) return;
-    if (!node->is_number()) fail(name, *node, "must be a number");
+    if (!node->is_number()) fail(s.name, *node, "must be a number");
     const double x = *node->value<double>();
-    if (!std::isfinite(x)) fail(name, *node, "must be finite");
+    if (!std::isfinite(x)) fail(s.name, *node, "must be finite");
     value = x;
   }
-  void field(const char* name, int& value) override {
-    const toml::node* node = table_.get(name);
+  void field(const Setting& s, int& value) override {
+    const toml::node* node = table_.get(s.name);
     if (node == nullptr) return;
-    if (!node->is_integer()) fail(name, *node, "must be a whole number");
+    if (!node->is_integer()) fail(s.name, *node, "must be a whole number");
     const std::int64_t x = node->as_integer()->get();
     if (x < std::numeric_limits<int>::min() || x > std::numeric_limits<int>::max()) {
-      fail(name, *node, "must lie within 32 bits");
+      fail(s.name, *node, "must lie within 32 bits");
     }
     value = static_cast<int>(x);
   }
-  void field(const char* name, bool& value) override {
-    const toml::node* node = table_.get(name);
+  void field(const Setting& s, bool& value) override {
+    const toml::node* node = table_.get(s.name);
     if (node == nullptr) return;
-    if (!node->is_boolean()) fail(name, *node, "must be true or false");
+    if (!node->is_boolean()) fail(s.name, *node, "must be true or false");
     value = node->as_boolean()->get();
   }
-  void field(const char* name, std::string& value) override {
-    const toml::node* node = table_.get(name);
+  void field(const Setting& s, std::string& value) override {
+    const toml::node* node = table_.get(s.name);
     if (node == nullptr) return;
-    if (!node->is_string()) fail(name, *node, "must be a text in quotes");
+    if (!node->is_string()) fail(s.name, *node, "must be a text in quotes");
     value = node->as_string()->get();
+  }
+
+  void choice(const Setting& s, std::span<const std::string_view> names, int& index) override {
+    std::string name(names[static_cast<std::size_t>(index)]);
+    field(s, name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      fail(s.name, *table_.get(s.name), ("must be " + one_of(names)).c_str());
+    index = static_cast<int>(found - names.begin());
   }
 
  private:
@@ -75,13 +86,16 @@ class TomlReader : public SettingsVisitor {
 };
 
 /// Writes the fields of a group.
-class JsonWriter : public SettingsVisitor {
+class JsonWriter : public SettingsReader {
  public:
   explicit JsonWriter(nlohmann::ordered_json& object) : object_(object) {}
-  void field(const char* name, double& value) override { object_[name] = value; }
-  void field(const char* name, int& value) override { object_[name] = value; }
-  void field(const char* name, bool& value) override { object_[name] = value; }
-  void field(const char* name, std::string& value) override { object_[name] = value; }
+  void field(const Setting& s, const double& value) override { object_[s.name] = value; }
+  void field(const Setting& s, const int& value) override { object_[s.name] = value; }
+  void field(const Setting& s, const bool& value) override { object_[s.name] = value; }
+  void field(const Setting& s, const std::string& value) override { object_[s.name] = value; }
+  void choice(const Setting& s, std::span<const std::string_view> names, int index) override {
+    object_[s.name] = names[static_cast<std::size_t>(index)];
+  }
 
  private:
   nlohmann::ordered_json& object_;
@@ -99,7 +113,7 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
 void read_group(const toml::table& table, const SettingsGroup& group, const std::string& file,
                 std::vector<std::string>& given) {
   NameCollector known;
-  group.visit(known);
+  group.read(known);
   for (const auto& [key, node] : table) {
     if (std::find(known.names.begin(), known.names.end(), key.str()) == known.names.end()) {
       throw InputError(fmt::format("{}, line {}: {} has no setting \"{}\"; {}", file,
@@ -109,7 +123,7 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
     given.push_back(group.name + "." + std::string(key.str()));
   }
   TomlReader reader(table, file, group.name);
-  group.visit(reader);
+  group.write(reader);
 }
 
 }  // namespace
@@ -145,14 +159,14 @@ std::vector<std::string> settings_from_toml(std::string_view text, const std::st
   return given;
 }
 
-std::string settings_to_json(const std::vector<SettingsGroup>& groups) {
+nlohmann::ordered_json settings_to_json(const std::vector<SettingsGroup>& groups) {
   auto document = nlohmann::ordered_json::object();
   for (const SettingsGroup& group : groups) {
     nlohmann::ordered_json& object = document[group.name] = nlohmann::ordered_json::object();
     JsonWriter writer(object);
-    group.visit(writer);
+    group.read(writer);
   }
-  return to_text(document);
+  return document;
 }
 
 }  // namespace prostm

@@ -1,31 +1,42 @@
 #include "prostm/pipeline/controls.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/names.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/pipeline/scene.hpp"
 
 namespace prostm {
 namespace {
 
 // ---- lists of choices ----
 
-constexpr ControlChoice kScenes[] = {{"one-plume", "One wide plume"},
-                                     {"two-plumes", "Two thin plumes"},
-                                     {"three-plumes", "Three thin plumes"},
-                                     {"four-plumes", "Four thin plumes"},
-                                     {"still-air", "Still air"}};
+/// Of an enum: its names, with a label for each.
+template <class E, std::size_t N>
+std::array<ControlChoice, N> choices_of(const std::array<std::string_view, N>& labels) {
+  std::array<ControlChoice, N> choices;
+  for (std::size_t i = 0; i < N; ++i) choices[i] = {kNames<E>[i], labels[i]};
+  return choices;
+}
+
+std::vector<ControlChoice> scene_choices() {
+  std::vector<ControlChoice> choices;
+  for (const Scene& scene : scenes()) choices.push_back({scene.name, scene.label});
+  return choices;
+}
+
+const std::vector<ControlChoice> kScenes = scene_choices();
 // the same scenes by their plumes
 constexpr std::string_view kScenesByPlumes[] = {"still-air", "one-plume", "two-plumes",
                                                 "three-plumes", "four-plumes"};
-constexpr ControlChoice kMethods[] = {{"pro-stm", "PRO-STM"}, {"am", "AM"}};
-constexpr ControlChoice kPresets[] = {
-    {"best", "Best"}, {"fast", "Fast"}, {"paper", "Paper"}, {"paper-valid", "Paper, made valid"}};
-constexpr ControlChoice kSwitches[] = {{"lap", "At lap ends"}, {"now", "At once"}};
-constexpr ControlChoice kWaveforms[] = {{"sine-magnitude", "|sin|"},
-                                        {"raised-cosine", "Raised cosine"}};
+const auto kMethods = choices_of<Method, 2>({"PRO-STM", "AM"});
+const auto kPresets = choices_of<Preset, 4>({"Paper", "Paper, made valid", "Best", "Fast"});
+const auto kSwitches = choices_of<SwitchAt, 2>({"At lap ends", "At once"});
+const auto kWaveforms = choices_of<Waveform, 2>({"Raised cosine", "|sin|"});
 constexpr ControlChoice kSources[] = {{"scripted", "Scripted"},
                                       {"recording", "Recording"},
                                       {"leap", "Leap tracker"},
@@ -33,15 +44,13 @@ constexpr ControlChoice kSources[] = {{"scripted", "Scripted"},
                                       {"page", "None: only the page's"}};
 
 /// Place of a value in a list of choices; 0 when it is not there.
-template <std::size_t N>
-double place(const ControlChoice (&choices)[N], const std::string& value) {
-  for (std::size_t i = 0; i < N; ++i)
+double place(std::span<const ControlChoice> choices, std::string_view value) {
+  for (std::size_t i = 0; i < choices.size(); ++i)
     if (choices[i].value == value) return static_cast<double>(i);
   return 0.0;
 }
 
-template <std::size_t N>
-std::string chosen(const ControlChoice (&choices)[N], double value) {
+std::string chosen(std::span<const ControlChoice> choices, double value) {
   return std::string(choices[static_cast<std::size_t>(value)].value);
 }
 
@@ -51,13 +60,14 @@ bool always(const LiveSettings&) {
   return true;
 }
 bool is_am(const LiveSettings& s) {
-  return s.pipeline.method == "am";
+  return s.pipeline.method == Method::Am;
 }
 bool is_pro_stm(const LiveSettings& s) {
   return !is_am(s);
 }
 bool is_fitted(const LiveSettings& s) {
-  return is_pro_stm(s) && (s.pipeline.plan.preset == "best" || s.pipeline.plan.preset == "fast");
+  return is_pro_stm(s) &&
+         (s.pipeline.plan.preset == Preset::Best || s.pipeline.plan.preset == Preset::Fast);
 }
 bool has_jets(const LiveSettings& s) {
   return s.pipeline.scene != "still-air";
@@ -77,8 +87,8 @@ double plumes(const LiveSettings& s) {
 /// A clock runs: preset best gets a share of an update, and no other preset takes a budget.
 void set_preset(LiveSettings& s, double value) {
   PlanSettings& plan = s.pipeline.plan;
-  plan.preset = chosen(kPresets, value);
-  plan.budget = plan.preset == "best" ? kLiveBudget : 0.0;
+  plan.preset = static_cast<Preset>(value);
+  plan.budget = plan.preset == Preset::Best ? kLiveBudget : 0.0;
 }
 
 void set_paths(LiveSettings& s, double value) {
@@ -165,12 +175,13 @@ std::vector<RunControl> make_controls() {
 
   choice(
       "Plan", "method", "Method", kMethods,
-      [](const S& s) { return place(kMethods, s.pipeline.method); },
-      [](S& s, double v) { s.pipeline.method = chosen(kMethods, v); }, always,
+      [](const S& s) { return static_cast<double>(s.pipeline.method); },
+      [](S& s, double v) { s.pipeline.method = static_cast<Method>(v); }, always,
       "PRO-STM moves focal points along closed paths; AM holds them still and modulates them.");
   choice(
       "Plan", "preset", "Preset", kPresets,
-      [](const S& s) { return place(kPresets, s.pipeline.plan.preset); }, set_preset, is_pro_stm,
+      [](const S& s) { return static_cast<double>(s.pipeline.plan.preset); }, set_preset,
+      is_pro_stm,
       "How paths are planned: the nearest field, a short search, or the paper's own method.");
   number(
       "Plan", "paths", "Paths", "", 1, kMaxPaths, 1,
@@ -203,8 +214,8 @@ std::vector<RunControl> make_controls() {
 
   choice(
       "Output", "switch", "Take over", kSwitches,
-      [](const S& s) { return place(kSwitches, s.pipeline.emit.switch_at); },
-      [](S& s, double v) { s.pipeline.emit.switch_at = chosen(kSwitches, v); }, is_pro_stm,
+      [](const S& s) { return static_cast<double>(s.pipeline.emit.switch_at); },
+      [](S& s, double v) { s.pipeline.emit.switch_at = static_cast<SwitchAt>(v); }, is_pro_stm,
       "Whether a new plan waits for the end of each path's lap, or cuts it short.");
   number(
       "Output", "tilt", "Tilt compensation", "×", 1, 4, 0.1,
@@ -218,8 +229,8 @@ std::vector<RunControl> make_controls() {
       "Of the intensity of AM's focal points.");
   choice(
       "Output", "am_waveform", "Waveform", kWaveforms,
-      [](const S& s) { return place(kWaveforms, s.pipeline.emit.am_waveform); },
-      [](S& s, double v) { s.pipeline.emit.am_waveform = chosen(kWaveforms, v); }, is_am,
+      [](const S& s) { return static_cast<double>(s.pipeline.emit.am_waveform); },
+      [](S& s, double v) { s.pipeline.emit.am_waveform = static_cast<Waveform>(v); }, is_am,
       "Of the modulation.");
 
   choice(

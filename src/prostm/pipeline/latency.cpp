@@ -6,13 +6,12 @@ namespace prostm {
 
 const char* latency_part_name(int part) {
   constexpr std::array<const char*, kLatencyParts> kNames = {
-      "frame", "late", "hand",  "fluid", "contact", "hand_over",
+      "frame", "late", "hand",  "world", "contact", "hand_over",
       "plan",  "lift", "block", "lap",   "queue"};
   return kNames[static_cast<std::size_t>(part)];
 }
 
-void LatencyLog::plan(const ContactFrame& contact, const PlanFrame& plan,
-                      double run_start) noexcept {
+void LatencyLog::plan(const WorldFrame& contact, const PlanFrame& plan, double run_start) noexcept {
   Plan& entry = plans_[static_cast<std::size_t>(plan.id) % plans_.size()];
   entry.arrival = run_start + contact.arrival;
   auto& part = entry.latency.part;
@@ -23,10 +22,10 @@ void LatencyLog::plan(const ContactFrame& contact, const PlanFrame& plan,
   if (!realtime_) return;
 
   part[kHandPart] = contact.track_time + contact.hand_time;
-  part[kFluidPart] = contact.meet_time;
+  part[kWorldPart] = contact.meet_time;
   part[kContactPart] = contact.contact_time;
   part[kHandOver] =
-      plan.start - contact.taken - part[kHandPart] - part[kFluidPart] - part[kContactPart];
+      plan.start - contact.taken - part[kHandPart] - part[kWorldPart] - part[kContactPart];
   part[kPlanPart] = plan.plan_time;
   part[kLiftPart] = plan.lift_time;
   entry.submitted = run_start + plan.start + plan.plan_time + plan.lift_time;

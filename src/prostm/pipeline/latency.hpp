@@ -19,7 +19,7 @@ enum LatencyPart : int {
   kFrameWait,  ///< the tracker's frame is there, the step that takes it is not due yet
   kLateStart,  ///< the step is due, and has not taken the hands
   kHandPart,   ///< the hands are filtered and drawn on the grid
-  kFluidPart,  ///< the fluid meets the hands
+  kWorldPart,  ///< the world meets the hands
   kContactPart,
   kHandOver,  ///< until the planner's thread begins
   kPlanPart,
@@ -47,7 +47,7 @@ class LatencyLog {
 
   /// A plan was handed to the emitter. @param run_start what the device's clock shows at run time 0
   /// [s].
-  void plan(const ContactFrame& contact, const PlanFrame& plan, double run_start) noexcept;
+  void plan(const WorldFrame& contact, const PlanFrame& plan, double run_start) noexcept;
   /// The emitter reports on a plan.
   void follow(const TakeOver& event, const Device& device) noexcept;
 

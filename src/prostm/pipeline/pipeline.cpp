@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "prostm/core/require.hpp"
+#include "prostm/core/settings.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/emit/compensation.hpp"
@@ -15,9 +15,7 @@ namespace prostm {
 namespace {
 
 const PipelineSettings& checked(const PipelineSettings& settings) {
-  require_between("fluid_rate", settings.fluid_rate, 10.0, 1000.0, "Hz");
-  require_between("fluid_steps_per_plan", settings.fluid_steps_per_plan, 0, 100);
-  require_between("frame_wait", settings.frame_wait, 0.0, 0.1, "s");
+  require_bounds(settings);
   if (!settings.X_DT.matrix().allFinite() || !settings.X_DT.linear().isUnitary(1e-6) ||
       settings.X_DT.linear().determinant() < 0.0) {
     throw std::invalid_argument(
@@ -35,8 +33,8 @@ void put_back(double time, HandFrame& frame) {
   }
 }
 
-/// Whether the smoke's stage is built from the same.
-bool same_smoke(const PipelineSettings& a, const PipelineSettings& b) {
+/// Whether the world's stage is built from the same.
+bool same_world(const PipelineSettings& a, const PipelineSettings& b) {
   return a.track == b.track && a.fluid == b.fluid && a.fluid_pressure == b.fluid_pressure &&
          a.contact == b.contact && a.scene == b.scene;
 }
@@ -45,19 +43,6 @@ bool same_smoke(const PipelineSettings& a, const PipelineSettings& b) {
 bool same_plans(const PipelineSettings& a, const PipelineSettings& b) {
   return a.plan == b.plan && a.am == b.am && a.emit == b.emit && a.scene == b.scene &&
          a.method == b.method && a.array_width == b.array_width;
-}
-
-void add(const EmitStats& more, EmitStats& sum) {
-  sum.samples += more.samples;
-  sum.saturated += more.saturated;
-  sum.limited += more.limited;
-  sum.faded += more.faded;
-  sum.laps_started += more.laps_started;
-  sum.laps_cut += more.laps_cut;
-  sum.stalls += more.stalls;
-  sum.refused_plans += more.refused_plans;
-  sum.dropped_paths += more.dropped_paths;
-  sum.max_focus_step = std::max(sum.max_focus_step, more.max_focus_step);
 }
 
 /// The device that the settings name, or one of the caller's own.
@@ -70,7 +55,7 @@ std::unique_ptr<Device> device_of(const PipelineSettings& settings, std::unique_
 std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
                                               std::size_t max_cells, double scene_full_scale,
                                               double emission_rate) {
-  if (method_from_name(settings.method) == Method::Am) return AmPlanner(settings.am, max_cells);
+  if (settings.method == Method::Am) return AmPlanner(settings.am, max_cells);
   PlanSettings plan = plan_settings(settings, emission_rate);
   if (plan.full_scale_pressure == 0.0)
     plan.full_scale_pressure = emit_settings(settings, scene_full_scale).full_scale_pressure;
@@ -79,7 +64,7 @@ std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
 
 }  // namespace
 
-SmokeStage::SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+WorldStage::WorldStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
                        std::unique_ptr<World> world)
     : hands_(std::move(hands)),
       filter_(checked(settings).track),
@@ -91,29 +76,29 @@ SmokeStage::SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSou
       steps_per_plan_(settings.steps_per_plan()),
       side_view_(settings.side_view) {}
 
-void SmokeStage::adopt(SmokeStage& other) {
+void WorldStage::adopt(WorldStage& other) {
   hands_ = std::move(other.hands_);
   mute_ = other.mute_;
   X_DT_ = other.X_DT_;
   world_->go_on_from(*other.world_);
 }
 
-void SmokeStage::run(std::int64_t step, double time, double dt, ContactFrame& out) {
+void WorldStage::run(std::int64_t step, double time, double dt, WorldFrame& out) {
   prepare(dt);
   take(time, out);
   meet(step, time, dt, out);
   settle();
 }
 
-void SmokeStage::prepare(double dt) {
+void WorldStage::prepare(double dt) {
   const StageTimer timer;
   world_->prepare(dt);
   const double time = timer.seconds();
-  fluid_time_ += time;
+  world_time_ += time;
   since_taken_ += time;
 }
 
-void SmokeStage::take(double time, ContactFrame& out) {
+void WorldStage::take(double time, WorldFrame& out) {
   hands_->sample(time, out.hands);
   if (mute_) mute_->set(MuteReason::NoHand, out.hands.hands.empty());
   out.taken = time;
@@ -121,7 +106,7 @@ void SmokeStage::take(double time, ContactFrame& out) {
   since_taken_ = 0.0;
 }
 
-void SmokeStage::meet(std::int64_t step, double due, double dt, ContactFrame& out) {
+void WorldStage::meet(std::int64_t step, double due, double dt, WorldFrame& out) {
   StageTimer timer;
   out.step = step;
   out.due = due;
@@ -136,25 +121,25 @@ void SmokeStage::meet(std::int64_t step, double due, double dt, ContactFrame& ou
   world_->meet(rasteriser_.raster());
   const double meeting = timer.lap();
   out.meet_time = since_taken_ + meeting;
-  out.fluid_time = fluid_time_ + meeting;
-  fluid_time_ = 0.0;
+  out.world_time = world_time_ + meeting;
+  world_time_ = 0.0;
 
   out.targeted = targets(step);
   if (out.targeted) {
     const PressureSource& pressure = world_->pressure(dt * steps_per_plan_);
-    out.contact = contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target);
+    out.contact_stats = contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target);
   }
   out.contact_time = timer.lap();
   if (out.targeted && side_view_) view_from_side(out.side);
 }
 
-void SmokeStage::settle() {
+void WorldStage::settle() {
   const StageTimer timer;
-  fluid_stats_ = world_->settle();
-  fluid_time_ += timer.seconds();
+  world_stats_ = world_->settle();
+  world_time_ += timer.seconds();
 }
 
-void SmokeStage::view_from_side(SideView& out) const {
+void WorldStage::view_from_side(SideView& out) const {
   const GridShape& g = world_->grid();
   const std::size_t size = static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.nz);
   out.smoke.assign(size, 0.0F);
@@ -180,10 +165,10 @@ PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, do
     : planner_(make_planner(settings, max_cells, full_scale, device.emission_rate())),
       emit_settings_(emit_settings(settings, full_scale)),
       emission_rate_(device.emission_rate()),
-      emitter_(make_emitter(method_from_name(settings.method), emit_settings_, emission_rate_)),
+      emitter_(make_emitter(settings.method, emit_settings_, emission_rate_)),
       samples_(make_sample_chain(*emitter_, device, {.power = emit_settings_.power_limit})) {}
 
-void PlanStage::run(const ContactFrame& contact, PlanFrame& out) {
+void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
   StageTimer timer;
   out.id = ++updates_;
   out.start = contact.taken;
@@ -220,11 +205,12 @@ Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource>
     : settings_(settings),
       mute_(std::move(mute)),
       own_world_(world != nullptr),
-      smoke_(std::make_unique<SmokeStage>(settings, std::move(hands), std::move(world))),
+      world_stage_(std::make_unique<WorldStage>(settings, std::move(hands), std::move(world))),
       device_(device_of(settings, std::move(device))),
-      plans_(std::make_unique<PlanStage>(settings, smoke_->max_cells(),
-                                         smoke_->world().full_scale_pressure(), device_->info())) {
-  if (device_->info().keeps_time) smoke_->tell(mute_);
+      plans_(std::make_unique<PlanStage>(settings, world_stage_->max_cells(),
+                                         world_stage_->world().full_scale_pressure(),
+                                         device_->info())) {
+  if (device_->info().keeps_time) world_stage_->tell(mute_);
   plans_->emitter().obey(mute_);
   if (device_->start(plans_->samples()) != DeviceStatus::Running)
     throw std::invalid_argument(device_->problem());
@@ -235,12 +221,12 @@ Pipeline::~Pipeline() {
 }
 
 void Pipeline::reconfigure(const PipelineSettings& settings) {
-  std::unique_ptr<SmokeStage> smoke;
-  if (!own_world_ && !same_smoke(settings, settings_))
-    smoke = std::make_unique<SmokeStage>(settings, nullptr);
-  const SmokeStage& next = smoke ? *smoke : *smoke_;
+  std::unique_ptr<WorldStage> stage;
+  if (!own_world_ && !same_world(settings, settings_))
+    stage = std::make_unique<WorldStage>(settings, nullptr);
+  const WorldStage& next = stage ? *stage : *world_stage_;
   std::unique_ptr<PlanStage> plans;
-  if (!same_plans(settings, settings_) || next.max_cells() != smoke_->max_cells()) {
+  if (!same_plans(settings, settings_) || next.max_cells() != world_stage_->max_cells()) {
     plans = std::make_unique<PlanStage>(settings, next.max_cells(),
                                         next.world().full_scale_pressure(), device_->info());
     plans->continue_from(*plans_);
@@ -249,12 +235,12 @@ void Pipeline::reconfigure(const PipelineSettings& settings) {
     if (!problem.empty()) throw std::invalid_argument(problem);
   }
   // nothing fails from here on
-  if (smoke) {
-    smoke->adopt(*smoke_);
-    smoke_ = std::move(smoke);
+  if (stage) {
+    stage->adopt(*world_stage_);
+    world_stage_ = std::move(stage);
   }
   if (plans) plans_ = std::move(plans);
-  smoke_->set_steps_per_plan(settings.steps_per_plan());
+  world_stage_->set_steps_per_plan(settings.steps_per_plan());
   settings_ = settings;
 }
 
@@ -262,7 +248,7 @@ std::string Pipeline::restart(PlanStage& plans) {
   silence();
   device_before_ = device_stats();
   if (device_->start(plans.samples()) == DeviceStatus::Running) {
-    add(plans_->emitter().stats(), emit_before_);
+    merge(plans_->emitter().stats(), emit_before_);
     limited_before_ += plans_->samples().limited();
     return {};
   }
@@ -282,9 +268,8 @@ void Pipeline::fade_out() {
   const DeviceInfo& device = device_->info();
   if (!device.keeps_time) return;
   plans_->emitter().lose();
-  const double fade = method_from_name(settings_.method) == Method::Am
-                          ? 1.0 / settings_.emit.am_frequency
-                          : settings_.emit.stall_fade_time;
+  const double fade = settings_.method == Method::Am ? 1.0 / settings_.emit.am_frequency
+                                                     : settings_.emit.stall_fade_time;
   // the block that is being filled has not heard of it
   const std::int64_t silent =
       device_->stats().blocks + 2 +
@@ -299,16 +284,14 @@ void Pipeline::fade_out() {
 }
 
 DeviceStats Pipeline::device_stats() const {
-  DeviceStats sum = device_->stats();
-  sum.blocks += device_before_.blocks;
-  sum.late_blocks += device_before_.late_blocks;
-  sum.missed_blocks += device_before_.missed_blocks;
+  DeviceStats sum = device_before_;
+  merge(device_->stats(), sum);
   return sum;
 }
 
 EmitStats Pipeline::emit_stats() const {
   EmitStats sum = emit_before_;
-  add(plans_->emitter().stats(), sum);
+  merge(plans_->emitter().stats(), sum);
   return sum;
 }
 
@@ -321,7 +304,7 @@ bool Pipeline::step(double dt) {
   time_ += dt;
   // what was planned before plays up to the moment that these hands were seen
   play_until(*device_, time_);
-  smoke_->run(steps_, time_, dt, contact_frame_);
+  world_stage_->run(steps_, time_, dt, contact_frame_);
   if (contact_frame_.targeted) plans_->run(contact_frame_, plan_frame_);
   return contact_frame_.targeted;
 }

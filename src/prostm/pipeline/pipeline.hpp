@@ -1,5 +1,5 @@
 #pragma once
-/// The one place that knows all stages: hand → fluid → contact → plan → emit → device.
+/// The one place that knows all stages: hand → world → contact → plan → emit → device.
 
 #include <cstdint>
 #include <memory>
@@ -26,9 +26,9 @@ struct SideView {
   std::vector<std::uint8_t> hand;  ///< nx·nz, 1 where there is a hand
 };
 
-/// What one fluid step left behind: everything that a plan, a recording or a picture needs.
-struct ContactFrame {
-  std::int64_t step = 0;  ///< fluid steps so far, from 1
+/// What one step of the world left behind: everything that a plan, a recording or a picture needs.
+struct WorldFrame {
+  std::int64_t step = 0;  ///< steps so far, from 1
   double arrival = 0.0;   ///< of the tracker's frame; run time [s]
   double due = 0.0;       ///< when the step was to take the hands; run time [s]
   double taken = 0.0;     ///< when it took them; run time [s]
@@ -36,39 +36,39 @@ struct ContactFrame {
   bool targeted = false;  ///< a plan update follows this step: `target` and `contact` are of now
   TargetFrame target;
   SideView side;  ///< when settings.side_view
-  ContactStats contact;
+  ContactStats contact_stats;
   double track_time = 0, hand_time = 0, meet_time = 0, contact_time = 0;  ///< [s]
-  double fluid_time = 0;  ///< of the whole fluid step; meet_time is what came after the hands [s]
+  double world_time = 0;  ///< of the whole step; meet_time is what came after the hands [s]
 };
 
-/// Hand, smoke and skin: the stages that run at the fluid's rate.
-class SmokeStage {
+/// Hand, world and skin: the stages that run at the world's rate.
+class WorldStage {
  public:
   /// @param world that the hands meet; null: the smoke of the settings.
   /// @throws std::invalid_argument with a sentence.
-  SmokeStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
+  WorldStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
              std::unique_ptr<World> world = nullptr);
 
-  /// Fluid step `step` (from 1) with the hands at run time `time` [s], dt after the last one; makes
+  /// Step `step` (from 1) with the hands at run time `time` [s], dt after the last one; makes
   /// targets on every `steps_per_plan`th. Writes `due` = `taken` = time.
-  void run(std::int64_t step, double time, double dt, ContactFrame& out);
+  void run(std::int64_t step, double time, double dt, WorldFrame& out);
 
   /// The same in parts, to the bit: what needs no hands; the hands as they are at run time `time`
   /// [s], which may be taken again while newer ones are hoped for; from the hands to the targets,
   /// where the hands are put back along their velocities to where they were when the step was due,
-  /// so that the fluid's steps stay even; and what nobody waits for. @pre called in this order, or
+  /// so that the world's steps stay even; and what nobody waits for. @pre called in this order, or
   /// take() before prepare(); dt the same.
   void prepare(double dt);
-  void take(double time, ContactFrame& out);
-  void meet(std::int64_t step, double due, double dt, ContactFrame& out);
+  void take(double time, WorldFrame& out);
+  void meet(std::int64_t step, double due, double dt, WorldFrame& out);
   void settle();
 
   /// Whether a step makes targets.
   bool targets(std::int64_t step) const { return step % steps_per_plan_ == 0; }
 
   // between steps of a run that is steered
-  /// Goes on with the hands of another stage, and with its smoke where the boxes are alike.
-  void adopt(SmokeStage& other);
+  /// Goes on with the hands of another stage, and with its world as far as the two are alike.
+  void adopt(WorldStage& other);
   void set_hands(std::unique_ptr<HandSource> hands) { hands_ = std::move(hands); }
   void set_tracker_pose(const Pose& X_DT) { X_DT_ = X_DT; }
   const Pose& tracker_pose() const { return X_DT_; }
@@ -76,7 +76,7 @@ class SmokeStage {
   /// From now on take() says there whether hands are there (MuteReason::NoHand).
   void tell(std::shared_ptr<Mute> mute) { mute_ = std::move(mute); }
 
-  const FluidStats& fluid_stats() const { return fluid_stats_; }  ///< of the last whole step
+  const WorldStats& world_stats() const { return world_stats_; }  ///< of the last whole step
   const World& world() const { return *world_; }
   std::size_t max_cells() const { return contact_.max_cells(); }
   HandSource& hands() { return *hands_; }
@@ -91,9 +91,9 @@ class SmokeStage {
   std::unique_ptr<World> world_;
   HandRasteriser rasteriser_;
   SkinContact contact_;
-  FluidStats fluid_stats_;
-  double fluid_time_ = 0.0;   // of the fluid, since the last meet() [s]
-  double since_taken_ = 0.0;  // of the fluid, since the hands were taken [s]
+  WorldStats world_stats_;
+  double world_time_ = 0.0;   // of the world, since the last meet() [s]
+  double since_taken_ = 0.0;  // of the world, since the hands were taken [s]
   void view_from_side(SideView& out) const;
   int steps_per_plan_;
   bool side_view_;
@@ -123,7 +123,7 @@ class PlanStage {
 
   /// Plans a target and hands the result to the emitter; without a plan the output fades. Writes
   /// `start` = `taken` of the target.
-  void run(const ContactFrame& contact, PlanFrame& out);
+  void run(const WorldFrame& contact, PlanFrame& out);
 
   /// Counts on from the updates of a stage that this one stands in for.
   void continue_from(const PlanStage& other) { updates_ = other.updates_; }
@@ -163,17 +163,17 @@ class Pipeline {
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
-  /// One fluid step of dt [s]: the device plays up to it, then the line runs top to bottom. True
+  /// One step of dt [s]: the device plays up to it, then the line runs top to bottom. True
   /// when a plan update came with it: see plan(). @pre the device keeps no time of its own.
   bool step(double dt);
 
-  const ContactFrame& contact() const { return contact_frame_; }
+  const WorldFrame& contact() const { return contact_frame_; }
   const PlanFrame& plan() const { return plan_frame_; }
   double time() const { return time_; }  ///< run time [s]
 
   /// Takes other settings between two steps, and rebuilds what they concern: hands stay, and so
   /// does the smoke where the box is the same. Where plans or their emission change the device
-  /// starts anew, so that its samples count from 0. Not taken: another fluid_rate, array or device,
+  /// starts anew, so that its samples count from 0. Not taken: another world_rate, array or device,
   /// and nothing of hands, smoke and contact where the world is the caller's own.
   /// @throws std::invalid_argument with a sentence; then everything is as it was.
   void reconfigure(const PipelineSettings& settings);
@@ -181,7 +181,7 @@ class Pipeline {
   /// Fades the output out and stops the device. @pre no other thread uses the pipeline.
   void silence();
 
-  SmokeStage& smoke() { return *smoke_; }
+  WorldStage& world_stage() { return *world_stage_; }
   PlanStage& plans() { return *plans_; }
   Device& device() { return *device_; }
   DeviceStats device_stats() const;      ///< over all starts of the device
@@ -198,13 +198,13 @@ class Pipeline {
   PipelineSettings settings_;
   std::shared_ptr<Mute> mute_;
   const bool own_world_;  // the caller's
-  std::unique_ptr<SmokeStage> smoke_;
+  std::unique_ptr<WorldStage> world_stage_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<PlanStage> plans_;
   DeviceStats device_before_;
   EmitStats emit_before_;
   std::int64_t limited_before_ = 0;
-  ContactFrame contact_frame_;
+  WorldFrame contact_frame_;
   PlanFrame plan_frame_;
   std::int64_t steps_ = 0;
   double time_ = 0.0;

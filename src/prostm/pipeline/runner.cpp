@@ -24,9 +24,9 @@ class Run {
         pace_(settings, options),
         pause_kept_(options.pause_kept),
         stall_time_(settings.emit.stall_time),
-        fluid_(pipeline, pace_, shared_),
+        world_(pipeline, pace_, shared_),
         plans_(pipeline, pace_, shared_) {
-    if (pace_.realtime) fluid_.set_clock();
+    if (pace_.realtime) world_.set_clock();
     if (options.live == nullptr) return;
     steering_.emplace(*options.live, pipeline);
     shared_.snapshots = &steering_->snapshots();
@@ -36,7 +36,7 @@ class Run {
     shared_.end.guard([this] {
       for (std::int64_t n = 1; n <= pace_.steps && !over(); ++n) {
         const bool planned = pipeline_.step(pace_.dt);
-        fluid_.count(pipeline_.contact());
+        world_.count(pipeline_.contact());
         if (planned) {
           plans_.count(pipeline_.contact(), pipeline_.plan());
           observe(pipeline_.contact(), pipeline_.plan());
@@ -83,7 +83,7 @@ class Run {
     }
     progress(shared_.run_time.load(std::memory_order_relaxed));
   }
-  void observe(const ContactFrame& contact, const PlanFrame& plan) {
+  void observe(const WorldFrame& contact, const PlanFrame& plan) {
     if (!observer_.on_plan(contact, plan)) shared_.end.stop();
   }
   void progress(double time) {
@@ -99,7 +99,7 @@ class Run {
   const RunPace pace_;
   const double pause_kept_, stall_time_;  // [s]
   RunShared shared_;
-  FluidSide fluid_;
+  WorldSide world_;
   PlanSide plans_;
   std::optional<Steering> steering_;
   std::optional<RunSummary> summary_;  // once the run's seconds are over
@@ -109,11 +109,11 @@ class Run {
 
 /// The threads from one change that an onlooker asks for to the next.
 void Run::segment() {
-  shared_.halt = shared_.smoke_ended = shared_.plan_ended = false;
-  std::jthread fluid, plans;
+  shared_.halt = shared_.world_ended = shared_.plan_ended = false;
+  std::jthread world, plans;
   // whatever fails here tells the threads to end before they are waited for
   shared_.end.guard([&] {
-    fluid = std::jthread([this] { fluid_.run(); });
+    world = std::jthread([this] { world_.run(); });
     plans = std::jthread([this] { plans_.run(); });
     while (!shared_.plan_ended.load(std::memory_order_acquire)) {
       drain_updates();
@@ -122,7 +122,7 @@ void Run::segment() {
       std::this_thread::sleep_for(kLook);
     }
   });
-  if (fluid.joinable()) fluid.join();
+  if (world.joinable()) world.join();
   if (plans.joinable()) plans.join();
   if (!shared_.end.failed()) drain_updates();
 }
@@ -130,8 +130,8 @@ void Run::segment() {
 /// What is done while no other thread runs. False at the end.
 bool Run::goes_on() {
   plans_.follow();
-  if (!pace_.realtime || over() || (fluid_.done() && !pace_.stay)) return false;
-  if (fluid_.done() && !summary_) {
+  if (!pace_.realtime || over() || (world_.done() && !pace_.stay)) return false;
+  if (world_.done() && !summary_) {
     summary_ = summary();
     summary_waits_ = shared_.endless = true;
   }
@@ -139,7 +139,7 @@ bool Run::goes_on() {
     steering_->attend();
     stand();
   }
-  fluid_.set_clock();
+  world_.set_clock();
   return !over();
 }
 
@@ -148,7 +148,7 @@ void Run::stand() {
   alone_since_ = steady_now();
   while (!steering_->playing() && !over()) {
     if (steering_->next_update()) {
-      fluid_.run_to_target();
+      world_.run_to_target();
       plans_.plan_newest();
       drain_updates();
     } else {
@@ -180,26 +180,26 @@ void Run::look() {
 /// A pause belongs to those who look: somebody who has just come sees the smoke, and when nobody
 /// has been there for a while the run goes on.
 void Run::keep_the_pause(bool watched) {
-  if (watched && !watched_) steering_->snapshots().smoke(pipeline_.smoke().world());
+  if (watched && !watched_) steering_->snapshots().smoke(pipeline_.world_stage().world());
   const double now = steady_now();
   if (watched) alone_since_ = now;
   if (now - alone_since_ < pause_kept_) return;
   steering_->play();
-  observer_.on_abandoned_pause(fluid_.time());
+  observer_.on_abandoned_pause(world_.time());
 }
 
 RunSummary Run::summary() {
   RunSummary s;
   plans_.follow();
-  fluid_.log().write(s);
+  world_.log().write(s);
   plans_.log().write(s);
   s.device = pipeline_.device_stats();
   s.emit = pipeline_.emit_stats();
   s.limited_samples = pipeline_.limited_samples();
   s.stopped = over();
   s.seconds =
-      pace_.realtime ? shared_.run_time.load() : static_cast<double>(s.fluid_steps) * pace_.dt;
-  if (pace_.realtime) s.skipped_updates = fluid_.published() - s.plans - s.empty_updates;
+      pace_.realtime ? shared_.run_time.load() : static_cast<double>(s.world_steps) * pace_.dt;
+  if (pace_.realtime) s.skipped_updates = world_.published() - s.plans - s.empty_updates;
   s.unobserved = plans_.unobserved();
   s.full_scale_pressure = pipeline_.plans().full_scale_pressure();
   return s;

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <exception>
+#include <span>
 
 #include "prostm/core/distribution.hpp"
+#include "prostm/core/quantity.hpp"
 #include "prostm/pipeline/latency.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
@@ -14,9 +16,9 @@ namespace prostm {
 struct LiveLink;
 
 enum class RunMode : std::uint8_t {
-  RealTime,  ///< fluid, planner and device on threads, paced by the clock; what cannot be kept up
+  RealTime,  ///< world, planner and device on threads, paced by the clock; what cannot be kept up
              ///< with is skipped and counted
-  AsFastAsPossible,  ///< fluid and planner on threads without a clock; nothing is dropped
+  AsFastAsPossible,  ///< world and planner on threads without a clock; nothing is dropped
   Stepped  ///< Pipeline::step on the caller's thread; the same plans as AsFastAsPossible, to the
            ///< bit
 };
@@ -24,7 +26,7 @@ enum class RunMode : std::uint8_t {
 struct RunOptions {
   double seconds = 60.0;  ///< of run time
   RunMode mode = RunMode::RealTime;
-  /// In real time, what a fluid step does without the hands is done before they are taken; false:
+  /// In real time, what a step does without the hands is done before they are taken; false:
   /// after that, as the paper does, to compare.
   bool prepare_early = true;
   LiveLink* live = nullptr;  ///< lets onlookers see and steer a run in real time
@@ -40,24 +42,33 @@ struct RunSummary {
   /// What ended the run, null where nothing failed: what an observer, the hands, a stage or the
   /// device's end threw. Of several the first.
   std::exception_ptr failure;
-  std::int64_t fluid_steps = 0, skipped_fluid_steps = 0, plans = 0, empty_updates = 0,
+  std::int64_t world_steps = 0, skipped_world_steps = 0, plans = 0, empty_updates = 0,
                skipped_updates = 0;
   std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
   std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
-  std::int64_t joints_outside = 0;             ///< joint-updates outside the fluid's box
-  std::int64_t skin_cells = 0, steep_cells = 0;  ///< of ContactStats, of all updates
+  ContactStats contact_stats;                  ///< of all updates
   DeviceStats device;
   EmitStats emit;
   std::int64_t limited_samples = 0;  ///< that the limiter before the device had to change
   double max_path_length = 0, max_skin_length = 0;
-  double mean_divergence = 0;  ///< FluidStats::divergence_rms over the steps
-  std::int64_t fluid_resets = 0;
+  double mean_divergence = 0;  ///< WorldStats::divergence over the steps
+  std::int64_t world_resets = 0;
   double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
   Summary latency, redraw;
   std::array<Summary, kLatencyParts> latency_parts;  ///< by LatencyPart; their means add up to the
                                                      ///< mean latency
-  Summary track, hand, fluid, contact, plan, lift;   ///< of the stages
+  Summary track, hand, world, contact, plan, lift;   ///< of the stages
 };
+
+template <>
+std::span<const Quantity<RunSummary>> quantities<RunSummary>();
+
+/// A stage's times in a summary.
+struct StageSummary {
+  const char* name;
+  Summary RunSummary::*times;
+};
+std::span<const StageSummary> stage_summaries();
 
 /// Sees every plan update on the thread that called run(). Slow observers delay nothing in real
 /// time: what they miss is counted in RunSummary::unobserved. What an observer throws ends the run.
@@ -65,7 +76,7 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   /// @return false to stop the run.
-  virtual bool on_plan(const ContactFrame& contact, const PlanFrame& plan) = 0;
+  virtual bool on_plan(const WorldFrame& contact, const PlanFrame& plan) = 0;
   /// Now and then, with the run time so far [s]. @return false to stop the run.
   virtual bool on_progress(double time) = 0;
   /// The run's seconds are over, and it goes on (RunOptions::stay).

@@ -6,24 +6,42 @@
 #include "prostm/emit/played.hpp"
 
 namespace prostm {
+namespace {
 
-void PipelineSettings::visit(SettingsVisitor& v) {
-  v.field("scene", scene);
-  v.field("method", method);
-  v.field("device", device);
-  v.field("array", array);
-  v.field("array_width", array_width);
-  v.field("tracker", tracker);
-  v.field("fluid_rate", fluid_rate);
-  v.field("fluid_steps_per_plan", fluid_steps_per_plan);
-  v.field("frame_wait", frame_wait);
-  v.field("side_view", side_view);
-  v.field("threads", threads);
+template <class Settings, class Visitor>
+void list(Settings& s, Visitor& v) {
+  v.field({.name = "scene", .help = "what the hand is held into"}, s.scene);
+  v.field({.name = "method", .help = "how fields are rendered"}, s.method);
+  v.field({.name = "device", .help = "what plays"}, s.device);
+  v.field({.name = "array", .help = "the transducers: usx, autd3 or a file"}, s.array);
+  v.field({.name = "array_width",
+           .help = "whether best and fast count on the width of the array's "
+                   "focus, not on sigma"},
+          s.array_width);
+  v.field({.name = "tracker", .help = "where the tracker is: centre, ultraleap-kit or a file"},
+          s.tracker);
+  v.field({"world_rate", "Hz", 10, 1000, "steps of the world"}, s.world_rate);
+  v.field({"world_steps_per_plan", "", 0, 100, "a plan every so many; 0: as the method asks"},
+          s.world_steps_per_plan);
+  v.field({"frame_wait", "s", 0, 0.1, "a step waits so long for a late frame of the tracker"},
+          s.frame_wait);
+  v.field({.name = "side_view", .help = "whether plan updates keep a picture from the side"},
+          s.side_view);
+  v.field({"threads", "", 1, 256, "of the world"}, s.threads);
+}
+
+}  // namespace
+
+void PipelineSettings::visit(SettingsReader& v) const {
+  list(*this, v);
+}
+void PipelineSettings::visit(SettingsWriter& v) {
+  list(*this, v);
 }
 
 int PipelineSettings::steps_per_plan() const {
-  if (fluid_steps_per_plan > 0) return fluid_steps_per_plan;
-  return method_from_name(method) == Method::Am ? 1 : 2;
+  if (world_steps_per_plan > 0) return world_steps_per_plan;
+  return method == Method::Am ? 1 : 2;
 }
 
 double PipelineSettings::emission_rate() const {
@@ -31,7 +49,7 @@ double PipelineSettings::emission_rate() const {
 }
 
 double PipelineSettings::sigma() const {
-  return method_from_name(method) == Method::Am ? am.sigma : plan.sigma;
+  return method == Method::Am ? am.sigma : plan.sigma;
 }
 
 PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate) {
@@ -66,22 +84,28 @@ EmitSettings emit_settings(const PipelineSettings& settings, double largest) {
   return emit;
 }
 
-std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(
-    PipelineSettings& settings) {
-  const auto group = [](auto& stage) { return [&stage](SettingsVisitor& v) { stage.visit(v); }; };
-  const auto contact = [&settings](SettingsVisitor& v) {
-    settings.fluid_pressure.visit(v);
-    settings.contact.visit(v);
-  };
-  return {{"pipeline", group(settings)},
-          {"track", group(settings.track)},
-          {"scripted_hand", group(settings.scripted_hand)},
-          {"fluid", group(settings.fluid)},
-          {"contact", contact},
-          {"plan", group(settings.plan)},
-          {"am", group(settings.am)},
-          {"emit", group(settings.emit)},
-          {"simulated_array", group(settings.simulated_array)}};
+namespace {
+
+template <class Settings>
+std::vector<SettingsGroup> groups_of(Settings& s) {
+  return {group_of("pipeline", s),
+          group_of("track", s.track),
+          group_of("scripted_hand", s.scripted_hand),
+          group_of("fluid", s.fluid),
+          group_of("contact", s.fluid_pressure, s.contact),
+          group_of("plan", s.plan),
+          group_of("am", s.am),
+          group_of("emit", s.emit),
+          group_of("simulated_array", s.simulated_array)};
+}
+
+}  // namespace
+
+std::vector<SettingsGroup> settings_groups(PipelineSettings& settings) {
+  return groups_of(settings);
+}
+std::vector<SettingsGroup> settings_groups(const PipelineSettings& settings) {
+  return groups_of(settings);
 }
 
 }  // namespace prostm

@@ -1,9 +1,7 @@
 #pragma once
 /// The settings of every stage, in one place.
 
-#include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "prostm/am/am_planner.hpp"
@@ -13,6 +11,7 @@
 #include "prostm/emit/emitter.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/plan/method.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/track/hand_source.hpp"
 
@@ -21,21 +20,21 @@ namespace prostm {
 inline constexpr double kLiveBudget = 2e-3;  ///< for a plan of preset best in real time [s]
 
 struct PipelineSettings {
-  std::string scene = "one-plume";  ///< see scene_from_name
-  std::string method = "pro-stm";   ///< see method_from_name
-  std::string device = "sim";       ///< what plays, see device_kinds
-  std::string array = "usx";        ///< what `transducers` are, by name: usx, autd3 or a file
+  std::string scene = "one-plume";  ///< see scenes()
+  Method method = Method::ProStm;
+  std::string device = "sim";  ///< what plays, see device_kinds
+  std::string array = "usx";   ///< what `transducers` are, by name: usx, autd3 or a file
   /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
   bool array_width = false;
   std::string tracker = "centre";  ///< what `X_DT` is, by name: centre, ultraleap-kit or a file
-  double fluid_rate = 50.0;        ///< fluid steps a second [Hz]
-  int fluid_steps_per_plan = 0;    ///< a plan every so many fluid steps; 0: as the method asks, 2
+  double world_rate = 50.0;        ///< steps of the world a second [Hz]
+  int world_steps_per_plan = 0;    ///< a plan every so many of them; 0: as the method asks, 2
                                    ///< (25 Hz) of pro-stm, 1 (50 Hz) of am
   /// In real time, a step that makes targets waits so long at most for a tracker's frame that comes
   /// in after the step was due [s]; 0 to 0.1, at most half a step.
   double frame_wait = 0.010;
   bool side_view = false;  ///< keep a picture of the box from the side with every plan update
-  int threads = 2;         ///< of the fluid, the stepping thread included
+  int threads = 2;         ///< of the world, the stepping thread included
 
   TrackSettings track;
   ScriptedHandSettings scripted_hand;
@@ -49,8 +48,7 @@ struct PipelineSettings {
   TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
   Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
-  /// fluid_steps_per_plan, where 0 stands for what the method asks. @throws std::invalid_argument
-  /// for a method that is unknown.
+  /// world_steps_per_plan, where 0 stands for what the method asks.
   int steps_per_plan() const;
 
   /// What `device` is made from.
@@ -62,7 +60,8 @@ struct PipelineSettings {
   /// The fall-off of a focal point that the method counts on [m].
   double sigma() const;
   /// The fields of this struct that belong to no stage.
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
 };
 
 /// The planner's settings with what an emission of so many samples a second can play, (P18).
@@ -76,7 +75,8 @@ PlanSettings plan_settings(const PipelineSettings& settings, double emission_rat
 EmitSettings emit_settings(const PipelineSettings& settings, double largest);
 
 /// Every stage's settings under its name in files: "pipeline", "track", "scripted_hand", "fluid", …
-std::vector<std::pair<std::string, std::function<void(SettingsVisitor&)>>> settings_groups(
-    PipelineSettings& settings);
+std::vector<SettingsGroup> settings_groups(PipelineSettings& settings);
+/// The same to read alone.
+std::vector<SettingsGroup> settings_groups(const PipelineSettings& settings);
 
 }  // namespace prostm

@@ -12,7 +12,7 @@ namespace {
 
 /// σ that a patch was planned with [m].
 double sigma_of(const PipelineSettings& settings, const TargetField& target) {
-  const bool by_place = settings.array_width && method_from_name(settings.method) != Method::Am;
+  const bool by_place = settings.array_width && settings.method != Method::Am;
   return by_place ? settings.plan.sigma_on(target) : settings.sigma();
 }
 
@@ -73,7 +73,7 @@ void view_smoke(const Fluid& fluid, SmokeView& out) {
   }
 }
 
-void Snapshots::step(const ContactFrame& frame, const SmokeStage& stage) {
+void Snapshots::step(const WorldFrame& frame, const WorldStage& stage) {
   StepSnapshot& s = step_.draft();
   s.step = frame.step;
   s.time = frame.taken;
@@ -82,7 +82,7 @@ void Snapshots::step(const ContactFrame& frame, const SmokeStage& stage) {
   s.recording_time = stage.hands().recording_time();
   s.track_time = frame.track_time;
   s.hand_time = frame.hand_time;
-  s.fluid_time = frame.fluid_time;
+  s.world_time = frame.world_time;
   step_.publish();
 }
 
@@ -92,7 +92,7 @@ void Snapshots::smoke(const World& world) {
   smoke_.publish();
 }
 
-void Snapshots::plan(const ContactFrame& contact, const PlanFrame& plan, double latency) {
+void Snapshots::plan(const WorldFrame& contact, const PlanFrame& plan, double latency) {
   PlanSnapshot& s = plan_.draft();
   s.id = plan.id;
   s.planned = plan.status == PlanStatus::Planned;
@@ -132,6 +132,7 @@ void render(const PlanSnapshot& plan, RenderedPlan& out) {
     if (!(pressure > most)) continue;
     most = pressure;
     out.sigma = sigma;
+    out.patch = patch;
     out.metrics = score_field(target, out.field[i], plan_coverage(target, plan.plan, patch, sigma));
     const double setting = plan.settings->sigma();
     out.metrics_at_setting = setting == sigma

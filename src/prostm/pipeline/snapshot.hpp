@@ -30,14 +30,14 @@ struct SmokeView {
 /// Averages the smoke of `fluid` over blocks of cells. Allocates only while `out` grows.
 void view_smoke(const Fluid& fluid, SmokeView& out);
 
-/// One fluid step.
+/// One step of the world.
 struct StepSnapshot {
   std::int64_t step = 0;
   double time = 0.0;                                                 ///< of its hands, run time [s]
   HandFrame hands;                                                   ///< filtered, in D
   Pose X_DT = Pose::Identity();                                      ///< that put them there
   double recording_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN without one [s]
-  double track_time = 0, hand_time = 0, fluid_time = 0;              ///< [s]
+  double track_time = 0, hand_time = 0, world_time = 0;              ///< [s]
 };
 
 /// One plan update.
@@ -57,7 +57,7 @@ struct PlanSnapshot {
 /// Counters, and what holds between steps, a few dozen times a second.
 struct RunSnapshot {
   double time = 0.0;                         ///< run time [s]
-  double fluid_rate = 0.0, plan_rate = 0.0;  ///< over the last second [Hz]
+  double world_rate = 0.0, plan_rate = 0.0;  ///< over the last second [Hz]
   bool paused = false, page_hand = false, fading = false;
   DeviceStats device;  ///< since the start of the run, as are the next
   EmitStats emit;
@@ -68,15 +68,15 @@ struct RunSnapshot {
 /// The hand-off. Each function says whose it is.
 class Snapshots {
  public:
-  // ---- the fluid's thread ----
+  // ---- the world's thread ----
   /// A step has met its hands.
-  void step(const ContactFrame& frame, const SmokeStage& stage);
-  /// The fluid has settled: its smoke, while somebody looks.
+  void step(const WorldFrame& frame, const WorldStage& stage);
+  /// The world has settled: its smoke, while somebody looks.
   void smoke(const World& world);
 
   // ---- the planner's thread ----
   /// Publishes an update. @param latency of the last plan that was emitted, NaN without one [s].
-  void plan(const ContactFrame& contact, const PlanFrame& plan, double latency);
+  void plan(const WorldFrame& contact, const PlanFrame& plan, double latency);
 
   // ---- the thread that called run() ----
   /// Settings that plans are made with from now on, with the widths of the array's focus where
@@ -114,6 +114,7 @@ class Snapshots {
 struct RenderedPlan {
   std::array<std::vector<double>, kMaxPatches> field;  ///< of each patch, unit of the target
   Metrics metrics;                                     ///< of the patch with the most pressure
+  int patch = 0;                                       ///< that one
   double sigma = 0.0;                                  ///< that they are at [m]
   Metrics metrics_at_setting;                          ///< the same at [plan] sigma
   double max_target = 0.0;                             ///< over all patches [Pa]

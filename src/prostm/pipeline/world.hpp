@@ -10,6 +10,12 @@
 
 namespace prostm {
 
+/// How a step went.
+struct WorldStats {
+  double divergence = 0.0;  ///< of a fluid: rms that is left, over that before its pressure solve
+  bool reset = false;       ///< it went wrong (a number was not finite), and began anew at rest
+};
+
 /// Steps in three parts, so that the hands may come late: prepare, meet, settle, in this order and
 /// on one thread. Nothing of it throws or allocates once it is made.
 class World {
@@ -26,8 +32,8 @@ class World {
   virtual void meet(const HandRaster& raster) noexcept = 0;
   /// What presses now. @param dt since the last call [s].
   virtual const PressureSource& pressure(double dt) noexcept = 0;
-  /// What nobody waits for. @return how a fluid's step went; zeros where there is none.
-  virtual FluidStats settle() noexcept { return {}; }
+  /// What nobody waits for.
+  virtual WorldStats settle() noexcept { return {}; }
 
   /// Goes on from where another world is, as far as the two are alike. @pre between steps.
   virtual void go_on_from(const World& other) { static_cast<void>(other); }

@@ -1,17 +1,18 @@
 #pragma once
 /// How a field is rendered.
 
+#include <array>
 #include <cstdint>
-#include <string>
+#include <string_view>
+
+#include "prostm/core/names.hpp"
 
 namespace prostm {
 
 /// `pro-stm`: focal points that run round closed paths. `am`: focal points that stand still, their
 /// intensity modulated.
 enum class Method : std::uint8_t { ProStm, Am };
-
-/// @throws std::invalid_argument with a sentence for a name that is unknown.
-Method method_from_name(const std::string& name);
-std::string to_string(Method method);
+template <>
+inline constexpr std::array<std::string_view, 2> kNames<Method> = {"pro-stm", "am"};
 
 }  // namespace prostm

@@ -1,8 +1,9 @@
 #pragma once
 /// The planner's settings.
 
+#include <array>
 #include <cstdint>
-#include <string>
+#include <string_view>
 
 #include "prostm/core/settings.hpp"
 #include "prostm/plan/focus_widths.hpp"
@@ -16,13 +17,13 @@ namespace prostm {
 /// `fast`: one short search of the same kind.
 enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast };
 
-/// @throws std::invalid_argument with a sentence for a name that is unknown.
-Preset preset_from_name(const std::string& name);
-std::string to_string(Preset preset);
+template <>
+inline constexpr std::array<std::string_view, 4> kNames<Preset> = {"paper", "paper-valid", "best",
+                                                                   "fast"};
 
 /// Defaults are the paper's, and docs/design.md section "Planner" where the paper is silent.
 struct PlanSettings {
-  std::string preset = "best";
+  Preset preset = Preset::Best;
   int paths = 4;               ///< at most, 1..8
   int clusters = 50;           ///< k of the weighted k-means, 1..50
   int samples = 20;            ///< N of a path, 8..64; preset best has fit_samples
@@ -70,7 +71,8 @@ struct PlanSettings {
   /// γ of each path by its period.
   GainLaw gain_law() const { return {gain, gain_exponent, draw_rate}; }
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
   bool operator==(const PlanSettings&) const = default;
 };
 

@@ -2,9 +2,11 @@
 /// What a planner says of a call, beside the plan.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "prostm/core/geometry.hpp"
+#include "prostm/core/quantity.hpp"
 
 namespace prostm {
 
@@ -27,6 +29,9 @@ struct PlanStats {
   int long_paths = 0;  ///< paths longer than L + 0.5 mm
   int crossings = 0;   ///< pairs of segments that cross, within and between paths
 };
+
+template <>
+std::span<const Quantity<PlanStats>> quantities<PlanStats>();
 
 /// The intermediate results of the paper's Fig. 2, for figures.
 struct PlanTrace {

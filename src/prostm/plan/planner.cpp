@@ -32,7 +32,7 @@ bool has_counted_pressure(const TargetField& target, double maximum) {
 struct Planner::Scratch {
   Scratch(const PlanSettings& s, std::size_t cells)
       : settings(s),
-        preset(preset_from_name(s.preset)),
+        preset(s.preset),
         max_cells(cells),
         raster(cells),
         kmeans(cells),

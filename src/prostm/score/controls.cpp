@@ -163,20 +163,6 @@ Plan random_foci(const TargetField& target, std::size_t count, double sigma, dou
   return plan;
 }
 
-/// The median of each metric for itself.
-Metrics median(const std::vector<Metrics>& draws) {
-  const auto of = [&](double Metrics::*member) {
-    std::vector<double> values;
-    for (const Metrics& m : draws) values.push_back(m.*member);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  };
-  return {of(&Metrics::rmse),    of(&Metrics::correlation), of(&Metrics::coverage),
-          of(&Metrics::skill_0), of(&Metrics::skill_8),     of(&Metrics::overlap),
-          of(&Metrics::spill)};
-}
-
 }  // namespace
 
 Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,

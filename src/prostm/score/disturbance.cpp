@@ -1,19 +1,10 @@
 #include "prostm/score/disturbance.hpp"
 
-#include <array>
 #include <cmath>
 
 #include "prostm/core/units.hpp"
 
 namespace prostm {
-namespace {
-
-constexpr std::array kMembers{&Metrics::rmse,    &Metrics::correlation, &Metrics::coverage,
-                              &Metrics::skill_0, &Metrics::skill_8,     &Metrics::overlap,
-                              &Metrics::spill};
-
-}  // namespace
-
 std::vector<Disturbance> disturbances(double sigma) {
   constexpr double kFocus = 3.9e-3, kHand = 3e-3, kTracker = 5e-3;  // [m]
   return {{"array's own focus, 3.9 mm", kFocus, 0.0},
@@ -33,14 +24,13 @@ Metrics score_shifted(const TargetField& target, const Plan& plan, int patch, do
 Metrics score_disturbed(const TargetField& target, const Plan& plan, int patch,
                         const Disturbance& d, const GainLaw& gain) {
   if (d.shift == 0.0) return score_plan(target, plan, patch, d.sigma, gain);
-  Metrics mean;
+  std::vector<Metrics> shifted;
   for (int k = 0; k < kShiftDirections; ++k) {
     const double angle = 2.0 * kPi * k / kShiftDirections;
-    const Metrics m = score_shifted(target, plan, patch, d.sigma, gain,
-                                    d.shift * Vec2(std::cos(angle), std::sin(angle)));
-    for (const auto member : kMembers) mean.*member += m.*member / kShiftDirections;
+    shifted.push_back(score_shifted(target, plan, patch, d.sigma, gain,
+                                    d.shift * Vec2(std::cos(angle), std::sin(angle))));
   }
-  return mean;
+  return mean(shifted);
 }
 
 }  // namespace prostm

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "prostm/core/quantity.hpp"
 #include "prostm/plan/gain.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/plan/quasi_static.hpp"
@@ -24,7 +27,17 @@ struct Metrics {
   double skill_8 = 0;  ///< S_8.5: the same after a Gaussian blur of 8.5 mm of both, within the skin
   double overlap = 0;  ///< Σ min(p*, g p̂) / Σ max(p*, g p̂), g of skill_0
   double spill = 0;    ///< share of Σ p̂ on skin where p* < 0.1 max p*
+  /// S_8.5 of what is felt of the field as an array plays it (felt_skill()); NaN where nobody
+  /// asked.
+  double felt_skill = std::numeric_limits<double>::quiet_NaN();
 };
+template <>
+std::span<const Quantity<Metrics>> quantities<Metrics>();
+
+/// Each metric's mean for itself; NaN where one is. @pre there are some.
+Metrics mean(std::span<const Metrics> all);
+/// Each metric's median for itself. @pre as of mean().
+Metrics median(std::span<const Metrics> all);
 
 /// Scores a given field; all zeros for a target without pressure. @param rendered rows·cols, the
 /// effective field p̂, in the unit of the target. @param coverage is passed through.

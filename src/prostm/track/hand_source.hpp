@@ -70,7 +70,8 @@ struct TrackSettings {
   double filter_velocity_scale =
       0.100;  ///< innovation of a velocity at which the low-pass is half open [m/s]
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
   bool operator==(const TrackSettings&) const = default;
 };
 
@@ -113,7 +114,8 @@ struct ScriptedHandSettings {
   int seed = 1;          ///< of the jitter
   bool still = false;    ///< the hovering pose for ever
 
-  void visit(SettingsVisitor& v);
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
 };
 /// Without jitter velocities are exact (central differences of the motion itself); with jitter the
 /// hand is seen as through a tracker of 110 Hz: joints are interpolated between noisy frames and

@@ -274,6 +274,8 @@ std::string PipelineView::hello() {
   return Json{{"type", "hello"},
               {"version", kWireVersion},
               {"prostm", h.version},
+              {"device", h.device},
+              {"numbers", view_number_names()},
               {"array", {{"name", h.array}, {"transducers_mm", transducers}}},
               {"box_mm", {{"origin", millimetres(h.box_corner)}, {"edge", 1e3 * h.box_edge}}}}
       .dump();

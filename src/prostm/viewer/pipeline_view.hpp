@@ -12,6 +12,7 @@ namespace prostm {
 /// What a page is told once.
 struct ViewHello {
   std::string version;             ///< of prostm
+  std::string device;              ///< name of what plays
   std::string array;               ///< name
   std::vector<Vec3> transducers;   ///< in D [m]
   Vec3 box_corner = Vec3::Zero();  ///< of the smoke, in D [m]

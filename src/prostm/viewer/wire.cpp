@@ -1,18 +1,21 @@
 #include "prostm/viewer/wire.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
+
+#include "prostm/score/score.hpp"
 
 namespace prostm {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the wire is little-endian");
 
-constexpr std::array<std::string_view, kViewNumberCount> kNames = {
+constexpr std::array<std::string_view, kPlacedNumbers> kPlaced = {
     "track_ms",       "hand_ms",
-    "fluid_ms",       "contact_ms",
+    "world_ms",       "contact_ms",
     "plan_ms",        "lift_ms",
-    "step_ms",        "fluid_hz",
+    "step_ms",        "world_hz",
     "plan_hz",        "latency_ms",
     "latency_p50_ms", "latency_p99_ms",
     "latency_max_ms", "blocks",
@@ -27,8 +30,28 @@ constexpr std::array<std::string_view, kViewNumberCount> kNames = {
     "sigma_mm",       "setting_sigma_mm",
     "setting_rmse",   "setting_correlation"};
 
+struct Numbers {
+  std::vector<std::string_view> names{kPlaced.begin(), kPlaced.end()};
+  std::vector<std::size_t> metrics;
+};
+
+const Numbers& numbers() {
+  static const Numbers kNumbers = [] {
+    Numbers all;
+    for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
+      const auto placed = std::find(kPlaced.begin(), kPlaced.end(), metric.name);
+      const bool is_placed = placed != kPlaced.end();
+      all.metrics.push_back(is_placed ? static_cast<std::size_t>(placed - kPlaced.begin())
+                                      : all.names.size());
+      if (!is_placed) all.names.emplace_back(metric.name);
+    }
+    return all;
+  }();
+  return kNumbers;
+}
+
 /// Sections in the order of their ids.
-enum Section : std::uint16_t { kRun = 1, kNumbers, kHands, kSmoke, kFields, kPlan };
+enum Section : std::uint16_t { kRun = 1, kNumberList, kHands, kSmoke, kFields, kPlan };
 
 constexpr std::size_t kHeaderBytes = 16, kLengthAt = 12, kHandPadding = 16;
 
@@ -134,7 +157,11 @@ void write_plan(const ViewFrame& frame, Writer& w) {
 }  // namespace
 
 std::span<const std::string_view> view_number_names() {
-  return kNames;
+  return numbers().names;
+}
+
+std::span<const std::size_t> view_metric_places() {
+  return numbers().metrics;
 }
 
 void encode(const ViewFrame& frame, bool with_smoke, bool with_fields,
@@ -150,13 +177,13 @@ void encode(const ViewFrame& frame, bool with_smoke, bool with_fields,
   w.begin(kRun, 1);
   w.put(frame.run.time);
   w.put(frame.run.recording_time);
-  w.put(frame.run.fluid_steps);
+  w.put(frame.run.world_steps);
   w.put(frame.run.plan_updates);
   w.put(frame.run.flags);
   w.put(std::uint32_t{0});
   w.end();
-  w.begin(kNumbers, frame.numbers.size());
-  w.put(frame.numbers);
+  w.begin(kNumberList, frame.numbers.size());
+  w.put_all(frame.numbers);
   w.end();
   write_hands(frame, w);
   if (with_smoke) write_smoke(frame.smoke, w);

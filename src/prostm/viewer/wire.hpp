@@ -12,16 +12,17 @@ namespace prostm {
 
 inline constexpr int kWireVersion = 1;
 
-/// The numbers of a frame, in the order of the wire, which only ever grows at its end.
+/// The numbers of a frame, in the order of the wire, which only ever grows at its end: metrics that
+/// have no place here follow, in the order of quantities<Metrics>().
 enum ViewNumber : int {
   kTrackMs,
   kHandMs,
-  kFluidMs,
+  kWorldMs,
   kContactMs,
   kPlanMs,
   kLiftMs,
   kStepMs,
-  kFluidHz,
+  kWorldHz,
   kPlanHz,
   kLatencyMs,
   kLatencyP50Ms,
@@ -48,11 +49,13 @@ enum ViewNumber : int {
   kSettingSigmaMm,
   kSettingRmse,
   kSettingCorrelation,
-  kViewNumberCount
+  kPlacedNumbers
 };
 
-/// Their names in /numbers.json, in the same order.
+/// Their names in the hello and in /numbers.json, in the same order.
 std::span<const std::string_view> view_number_names();
+/// The places of quantities<Metrics>().
+std::span<const std::size_t> view_metric_places();
 
 /// Flags of ViewRun.
 enum ViewFlag : std::uint32_t {
@@ -65,7 +68,7 @@ enum ViewFlag : std::uint32_t {
 struct ViewRun {
   double time = 0.0;            ///< of the run [s]
   double recording_time = 0.0;  ///< in the hand's recording [s], NaN without one
-  std::uint32_t fluid_steps = 0, plan_updates = 0;
+  std::uint32_t world_steps = 0, plan_updates = 0;
   std::uint32_t flags = 0;  ///< of ViewFlag
 };
 
@@ -118,7 +121,8 @@ struct ViewPath {
 struct ViewFrame {
   std::uint32_t sequence = 0;
   ViewRun run;
-  std::array<float, kViewNumberCount> numbers{};  ///< NaN where there is none
+  /// By ViewNumber; NaN where there is none.
+  std::vector<float> numbers = std::vector<float>(view_number_names().size());
   std::uint32_t hand_count = 0;
   std::array<ViewHand, 2> hands;
   ViewSmoke smoke;

@@ -35,7 +35,7 @@ export class Numbers {
     }
 
     const body = make("tbody");
-    for (const name of ["sequence", "time_s", "recording_time_s", "fluid_steps", "plan_updates"]) {
+    for (const name of ["sequence", "time_s", "recording_time_s", "world_steps", "plan_updates"]) {
       const cell = make("td", { "data-run": name }, "–");
       this.run.set(name, cell);
       body.append(make("tr", {}, make("th", { scope: "row" }, name), cell));
@@ -58,7 +58,7 @@ export class Numbers {
     set(this.run.get("sequence"), String(frame.sequence));
     set(this.run.get("time_s"), fixed(frame.run.time, 3));
     set(this.run.get("recording_time_s"), fixed(frame.run.recordingTime, 3));
-    set(this.run.get("fluid_steps"), String(frame.run.fluidSteps));
+    set(this.run.get("world_steps"), String(frame.run.worldSteps));
     set(this.run.get("plan_updates"), String(frame.run.planUpdates));
   }
 

@@ -31,14 +31,14 @@ const kViolet: [string, string] = ["#a3427f", "#e39ac6"], kYellow: [string, stri
 const kStrips: StripSpec[] = [
   {
     id: "stages", title: "Stages", unit: "ms", stacked: true, atLeast: 10, series: [
-      { label: "fluid", value: of("fluid_ms"), colour: kBlue }, { label: "plan", value: of("plan_ms"), colour: kOrange },
+      { label: "fluid", value: of("world_ms"), colour: kBlue }, { label: "plan", value: of("plan_ms"), colour: kOrange },
       { label: "hand", value: of("hand_ms"), colour: kGreen }, { label: "contact", value: of("contact_ms"), colour: kViolet },
       { label: "track", value: of("track_ms"), colour: kYellow }, { label: "lift", value: of("lift_ms"), colour: kGrey },
     ],
   },
   {
     id: "rates", title: "Rates", unit: "Hz", atLeast: 30, series: [
-      { label: "smoke", value: of("fluid_hz"), colour: kBlue, digits: 1 }, { label: "plans", value: of("plan_hz"), colour: kOrange, digits: 1 },
+      { label: "smoke", value: of("world_hz"), colour: kBlue, digits: 1 }, { label: "plans", value: of("plan_hz"), colour: kOrange, digits: 1 },
     ],
   },
   {
@@ -57,6 +57,7 @@ const kStrips: StripSpec[] = [
     id: "quality", title: "Quality", unit: "", atLeast: 1, atMost: 1, series: [
       { label: "correlation", value: of("correlation"), colour: kBlue, digits: 2 }, { label: "coverage", value: of("coverage"), colour: kGreen, digits: 2 },
       { label: "skill", value: of("skill_8"), colour: kViolet, digits: 2 }, { label: "RMSE", value: of("rmse"), colour: kOrange, digits: 2 },
+      { label: "felt", value: of("felt_skill"), colour: kGrey, digits: 2 },
     ],
   },
 ];

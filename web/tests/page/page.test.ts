@@ -113,7 +113,7 @@ describe("numbers", () => {
     }, { timeout: 30_000, interval: 20 }).toBe(true);
 
     const run = theirs.run as Json, numbers = theirs.numbers as Json;
-    expect(Number(ours.run.fluid_steps)).toBe(run.fluid_steps);
+    expect(Number(ours.run.world_steps)).toBe(run.world_steps);
     expect(Number(ours.run.plan_updates)).toBe(run.plan_updates);
     let compared = 0;
     for (const [name, text] of ours.numbers) {
@@ -139,13 +139,13 @@ describe("numbers", () => {
       const after = await page.evaluate(() => window.prostm.frame!.run);
       expect(after.planUpdates).toBe(before.planUpdates + 1);
       expect(after.paused).toBe(true);
-      return { fluidSteps: after.fluidSteps - before.fluidSteps, time: after.time - before.time };
+      return { worldSteps: after.worldSteps - before.worldSteps, time: after.time - before.time };
     };
     // the pause may have come between the two steps of the smoke that a plan has
-    expect((await step()).fluidSteps).toBeLessThanOrEqual(2);
+    expect((await step()).worldSteps).toBeLessThanOrEqual(2);
     for (let i = 0; i < 2; ++i) {
       const made = await step();
-      expect(made.fluidSteps).toBe(2);
+      expect(made.worldSteps).toBe(2);
       expect(made.time).toBeCloseTo(0.04, 6);
     }
     const still = await page.evaluate(() => window.prostm.frame!.run.time);

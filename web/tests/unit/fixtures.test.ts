@@ -13,7 +13,7 @@ function inWords(frame: Frame): unknown {
   return {
     version: 1,
     sequence: frame.sequence,
-    run: { time: frame.run.time, recording_time: known(frame.run.recordingTime), fluid_steps: frame.run.fluidSteps, plan_updates: frame.run.planUpdates, flags },
+    run: { time: frame.run.time, recording_time: known(frame.run.recordingTime), world_steps: frame.run.worldSteps, plan_updates: frame.run.planUpdates, flags },
     numbers: Object.fromEntries(kNumbers.map((name, i) => [name, known(frame.numbers[i] ?? NaN)])),
     hands: frame.hands.map((h) => ({ id: h.id, side: h.side === "left" ? 0 : 1, confidence: h.confidence, joints: rows(h.joints, 8) })),
     smoke: frame.smoke && { n: frame.smoke.n, corner: frame.smoke.corner, edge: frame.smoke.edge, density: [...frame.smoke.density] },

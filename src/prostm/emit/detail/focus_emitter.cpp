@@ -26,7 +26,7 @@ int period_samples(const EmitSettings& settings, double sample_rate) {
 }
 
 std::vector<double> envelope_of(const EmitSettings& settings, int period) {
-  const Waveform waveform = waveform_from_name(settings.am_waveform);
+  const Waveform waveform = settings.am_waveform;
   std::vector<double> values;
   for (int i = 0; i < period; ++i) values.push_back(envelope(waveform, i / double(period)));
   return values;

@@ -81,7 +81,7 @@ struct PathEmitter::Impl {
 PathEmitter::Impl::Impl(Exchange& e, double sample_rate)
     : exchange(e),
       settings(e.settings),
-      at_once(settings.switch_at == "now"),
+      at_once(settings.switch_at == SwitchAt::Now),
       fade_slew(largest_slew(settings.fade_time, sample_rate)),
       stall_slew(largest_slew(settings.stall_fade_time, sample_rate)),
       stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * sample_rate))),

@@ -14,7 +14,7 @@
 namespace prostm {
 
 struct Fluid::State {
-  State(const FluidSettings& settings, const Scene& scene, WorkerPool& pool);
+  State(const FluidSettings& settings, const SmokeInflow& inflow, WorkerPool& pool);
 
   /// Everything at rest, without smoke.
   void reset();

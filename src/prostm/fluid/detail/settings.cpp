@@ -1,7 +1,7 @@
 #include "prostm/fluid/detail/settings.hpp"
 
-#include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include "prostm/core/require.hpp"
 #include "prostm/fluid/fluid.hpp"
@@ -9,50 +9,45 @@
 namespace prostm {
 namespace {
 
-template <class T>
-[[noreturn]] void refuse(const char* name, const T& value, const char* bound) {
-  std::ostringstream text;
-  text << name << " = " << value << " must be " << bound;
-  throw std::invalid_argument(text.str());
+template <class Settings, class Visitor>
+void list(Settings& s, Visitor& v) {
+  v.field({"cells", "", 32, 128, "along each edge of the box, a multiple of 16"}, s.cells);
+  v.field({"width", "m", 0.05, 5, "edge of the box, which stands on the array"}, s.width);
+  v.field({.name = "solver", .help = "how the pressure is solved for"}, s.solver);
+  v.field({"cycles", "", 1, 100, "V-cycles a step"}, s.cycles);
+  v.field({"jacobi_sweeps", "", 1, 100'000, "sweeps a step of the paper's solver"},
+          s.jacobi_sweeps);
+  v.field({.name = "jacobi_warm", .help = "whether sweeps start from the last pressure"},
+          s.jacobi_warm);
+  v.field({"jet_speed", "", 0, 3, "factor on the speed of the scene's jets"}, s.jet_speed);
+  v.field({"buoyancy", "m/s²", 0, 100, "upward acceleration of undiluted smoke"}, s.buoyancy);
+  v.field({"vorticity", "1/s", 0, 100, "of vorticity confinement; 0: none"}, s.vorticity);
+  v.field({"density", "kg/m³", 0.01, 2000, "of the air"}, s.density);
+  v.field({"dissipation", "1/s", 0, 100, "decay rate of the smoke's density"}, s.dissipation);
 }
 
 }  // namespace
 
-void FluidSettings::visit(SettingsVisitor& v) {
-  v.field("cells", cells);
-  v.field("width", width);
-  v.field("solver", solver);
-  v.field("cycles", cycles);
-  v.field("jacobi_sweeps", jacobi_sweeps);
-  v.field("jacobi_warm", jacobi_warm);
-  v.field("jet_speed", jet_speed);
-  v.field("buoyancy", buoyancy);
-  v.field("vorticity", vorticity);
-  v.field("density", density);
-  v.field("dissipation", dissipation);
+void FluidSettings::visit(SettingsReader& v) const {
+  list(*this, v);
+}
+void FluidSettings::visit(SettingsWriter& v) {
+  list(*this, v);
 }
 
 namespace fluid {
 
 void validate(const FluidSettings& s) {
   if (s.cells < 32 || s.cells > 128 || s.cells % 16 != 0) {
-    refuse("cells", s.cells, "a multiple of 16 between 32 and 128");
+    throw std::invalid_argument("cells = " + std::to_string(s.cells) +
+                                " must be a multiple of 16 between 32 and 128");
   }
-  if (s.solver != "multigrid" && s.solver != "jacobi")
-    refuse("solver", s.solver, "multigrid or jacobi");
-  require_between("cycles", s.cycles, 1, 100);
-  require_between("jacobi_sweeps", s.jacobi_sweeps, 1, 100000);
-  require_between("width", s.width, 0.05, 5.0, "m");
-  require_between("jet_speed", s.jet_speed, 0.0, 3.0);
-  require_between("buoyancy", s.buoyancy, 0.0, 100.0, "m/s²");
-  require_between("vorticity", s.vorticity, 0.0, 100.0, "1/s");
-  require_between("density", s.density, 0.01, 2000.0, "kg/m³");
-  require_between("dissipation", s.dissipation, 0.0, 100.0, "1/s");
+  require_bounds(s);
 }
 
-void validate(const Scene& scene) {
-  require_between("vent speed", scene.vent_speed, 0.0, 20.0, "m/s");
-  for (const SmokeJet& jet : scene.jets) {
+void validate(const SmokeInflow& inflow) {
+  require_between("vent speed", inflow.vent_speed, 0.0, 20.0, "m/s");
+  for (const SmokeJet& jet : inflow.jets) {
     require_between("jet centre x", jet.centre.x(), -10.0, 10.0, "m");
     require_between("jet centre y", jet.centre.y(), -10.0, 10.0, "m");
     require_between("jet radius", jet.radius, 1e-3, 1.0, "m");

@@ -7,6 +7,6 @@ namespace prostm::fluid {
 
 /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
 void validate(const FluidSettings& settings);
-void validate(const Scene& scene);
+void validate(const SmokeInflow& inflow);
 
 }  // namespace prostm::fluid

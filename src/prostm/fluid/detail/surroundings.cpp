@@ -16,14 +16,14 @@ double jet_profile(const SmokeJet& jet, const Vec2& p) {
 
 }  // namespace
 
-Surroundings::Surroundings(const GridShape& grid, const Scene& scene)
-    : grid_{grid.nx}, vented_(scene.vent_speed > 0.0) {
-  validate(scene);
+Surroundings::Surroundings(const GridShape& grid, const SmokeInflow& inflow)
+    : grid_{grid.nx}, vented_(inflow.vent_speed > 0.0) {
+  validate(inflow);
   for (int j = 0; j < grid.ny; ++j) {
     for (int i = 0; i < grid.nx; ++i) {
       const Vec2 p = grid.cell_centre(i, j, 0).head<2>();
-      double speed = scene.vent_speed, share = 0.0;
-      for (const SmokeJet& jet : scene.jets) {
+      double speed = inflow.vent_speed, share = 0.0;
+      for (const SmokeJet& jet : inflow.jets) {
         speed += jet.speed * jet_profile(jet, p);
         share = std::max(share, jet_profile(jet, p));
       }

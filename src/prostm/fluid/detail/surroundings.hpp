@@ -11,8 +11,8 @@ namespace prostm::fluid {
 /// Constant once made; what it sets in the fluid's fields holds for one step.
 class Surroundings {
  public:
-  /// @throws std::invalid_argument for a scene out of bounds.
-  Surroundings(const GridShape& grid, const Scene& scene);
+  /// @throws std::invalid_argument for an inflow out of bounds.
+  Surroundings(const GridShape& grid, const SmokeInflow& inflow);
 
   /// The velocity of the floor's faces.
   void set_floor(Field& w) const;

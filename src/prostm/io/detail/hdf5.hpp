@@ -49,7 +49,7 @@ struct Column {
   hid_t type;                  ///< native, of a number; files hold it as it is in memory
   std::vector<hsize_t> shape;  ///< of one row; empty for a number
   const char* unit;
-  const char* meaning;
+  std::string meaning;
 };
 
 /// A dataset that grows by rows: chunked, shuffled and deflated.

@@ -1,9 +1,34 @@
 #include "prostm/io/detail/recording_layout.hpp"
 
+#include <string>
+#include <string_view>
+#include <variant>
+
 #include "prostm/plan/plan.hpp"
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm::recording {
+namespace {
+
+using PlanNumber = const Quantity<PlanStats>*;
+
+template <class Condition>
+std::vector<PlanNumber> stats_where(const Condition& condition) {
+  std::vector<PlanNumber> found;
+  for (const Quantity<PlanStats>& quantity : quantities<PlanStats>()) {
+    if (condition(quantity)) found.push_back(&quantity);
+  }
+  return found;
+}
+
+std::string names_of(const std::vector<PlanNumber>& numbers) {
+  std::string names;
+  for (const PlanNumber number : numbers)
+    names += (names.empty() ? "" : ", ") + std::string(number->name);
+  return names;
+}
+
+}  // namespace
 
 std::vector<h5::Column> frame_columns() {
   return {{"time", H5T_NATIVE_DOUBLE, {}, "s", "time of the hand frame"},
@@ -75,6 +100,15 @@ std::vector<h5::Column> hand_columns() {
       {"velocity", H5T_NATIVE_FLOAT, {kHands, kJointCount, 3}, "m/s", "of each joint"}};
 }
 
+std::vector<const Quantity<PlanStats>*> stage_times() {
+  return stats_where([](const auto& value) { return std::string_view(value.unit) == "us"; });
+}
+
+std::vector<const Quantity<PlanStats>*> plan_counts() {
+  return stats_where(
+      [](const auto& value) { return std::holds_alternative<int PlanStats::*>(value.value); });
+}
+
 std::vector<h5::Column> plan_columns() {
   const hsize_t paths = kMaxPaths, points = kMaxPathPoints;
   return {
@@ -114,17 +148,8 @@ std::vector<h5::Column> plan_columns() {
        {paths},
        "Pa",
        "rendered at the peak of the modulation, padded with NaN"},
-      {"stage_time",
-       H5T_NATIVE_DOUBLE,
-       {7},
-       "s",
-       "init, kmeans, tour, split, resample, refine, total"},
-      {"counts",
-       H5T_NATIVE_INT32,
-       {7},
-       "1",
-       "clusters, lloyd_iterations, refine_iterations, cost_evaluations, leaves, long_paths, "
-       "crossings"},
+      {"stage_time", H5T_NATIVE_DOUBLE, {stage_times().size()}, "s", names_of(stage_times())},
+      {"counts", H5T_NATIVE_INT32, {plan_counts().size()}, "1", names_of(plan_counts())},
       {"cost", H5T_NATIVE_DOUBLE, {}, "1", "of Eqs. (2) to (5) after refinement"}};
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "prostm/io/detail/hdf5.hpp"
+#include "prostm/plan/plan_stats.hpp"
 
 namespace prostm::recording {
 
@@ -14,5 +15,9 @@ std::vector<h5::Column> target_columns();  ///< of /target, a row for each patch
 h5::Column weight_column();                ///< of /target too, once a patch has weights
 std::vector<h5::Column> hand_columns();    ///< of /hand, a row for each frame
 std::vector<h5::Column> plan_columns();    ///< of /plan, a row for each frame
+
+/// What the columns stage_time and counts of /plan hold, in this order.
+std::vector<const Quantity<PlanStats>*> stage_times();
+std::vector<const Quantity<PlanStats>*> plan_counts();
 
 }  // namespace prostm::recording

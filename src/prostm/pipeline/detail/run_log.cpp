@@ -4,38 +4,34 @@
 
 namespace prostm {
 
-void SmokeLog::meet(const ContactFrame& frame) {
+void WorldLog::meet(const WorldFrame& frame) {
   ++steps_;
   track_.add(frame.track_time);
   hand_.add(frame.hand_time);
-  fluid_.add(frame.fluid_time);
+  world_.add(frame.world_time);
   if (!frame.targeted) return;
   contact_.add(frame.contact_time);
-  joints_outside_ += frame.contact.joints_outside;
-  skin_cells_ += frame.contact.skin_cells;
-  steep_cells_ += frame.contact.steep_cells;
+  merge(frame.contact_stats, contact_stats_);
 }
 
-void SmokeLog::settle(const FluidStats& stats) {
+void WorldLog::settle(const WorldStats& stats) {
   resets_ += stats.reset ? 1 : 0;
-  divergence_ += stats.divergence_rms;
+  divergence_ += stats.divergence;
 }
 
-void SmokeLog::write(RunSummary& out) const {
-  out.fluid_steps = steps_;
-  out.skipped_fluid_steps = skipped_;
-  out.fluid_resets = resets_;
-  out.joints_outside = joints_outside_;
-  out.skin_cells = skin_cells_;
-  out.steep_cells = steep_cells_;
+void WorldLog::write(RunSummary& out) const {
+  out.world_steps = steps_;
+  out.skipped_world_steps = skipped_;
+  out.world_resets = resets_;
+  out.contact_stats = contact_stats_;
   out.mean_divergence = steps_ > 0 ? divergence_ / static_cast<double>(steps_) : 0.0;
   out.track = track_.summary();
   out.hand = hand_.summary();
-  out.fluid = fluid_.summary();
+  out.world = world_.summary();
   out.contact = contact_.summary();
 }
 
-void PlanLog::add(const ContactFrame& contact, const PlanFrame& frame, double run_start) {
+void PlanLog::add(const WorldFrame& contact, const PlanFrame& frame, double run_start) {
   latency_.plan(contact, frame, run_start);
   plan_.add(frame.stats.total);
   lift_.add(frame.lift_time);

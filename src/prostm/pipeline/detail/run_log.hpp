@@ -8,13 +8,13 @@
 
 namespace prostm {
 
-/// Counts what the smoke stage did; used by its thread alone until that has ended.
-class SmokeLog {
+/// Counts what the world's stage did; used by its thread alone until that has ended.
+class WorldLog {
  public:
-  /// A step of the smoke that has just met the hands.
-  void meet(const ContactFrame& frame);
-  /// The fluid has settled after it.
-  void settle(const FluidStats& stats);
+  /// A step that has just met the hands.
+  void meet(const WorldFrame& frame);
+  /// The world has settled after it.
+  void settle(const WorldStats& stats);
   /// Steps that were let go.
   void skip(std::int64_t steps) { skipped_ += steps; }
 
@@ -22,10 +22,10 @@ class SmokeLog {
   void write(RunSummary& out) const;
 
  private:
-  std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0, joints_outside_ = 0, skin_cells_ = 0,
-               steep_cells_ = 0;
+  std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0;
+  ContactStats contact_stats_;
   double divergence_ = 0.0;
-  Distribution track_, hand_, fluid_, contact_;
+  Distribution track_, hand_, world_, contact_;
 };
 
 /// Counts what the plan stage did, and follows plans to the device; used by its thread alone until
@@ -35,7 +35,7 @@ class PlanLog {
   explicit PlanLog(bool realtime) : latency_(realtime) {}
 
   /// @param run_start what the device's clock shows at run time 0 [s].
-  void add(const ContactFrame& contact, const PlanFrame& frame, double run_start);
+  void add(const WorldFrame& contact, const PlanFrame& frame, double run_start);
   /// Reads what the emitter reported since.
   void follow(Emitter& emitter, const Device& device);
 

@@ -26,42 +26,42 @@ RunPace::RunPace(const PipelineSettings& settings, const RunOptions& options)
     : realtime(options.mode == RunMode::RealTime),
       prepare_early(options.prepare_early),
       stay(options.stay),
-      dt(1.0 / settings.fluid_rate),
-      steps(std::llround(options.seconds * settings.fluid_rate)),
+      dt(1.0 / settings.world_rate),
+      steps(std::llround(options.seconds * settings.world_rate)),
       frame_wait(std::min(settings.frame_wait, 0.5 * dt)) {}
 
-// ---- the fluid ----
+// ---- the world ----
 
-void FluidSide::run() noexcept {
+void WorldSide::run() noexcept {
   shared_.end.guard([this] { pace_.realtime ? in_real_time() : without_clock(); });
-  shared_.smoke_ended.store(true, std::memory_order_release);
+  shared_.world_ended.store(true, std::memory_order_release);
   shared_.ready.release();
 }
 
-void FluidSide::count(const ContactFrame& frame) {
+void WorldSide::count(const WorldFrame& frame) {
   log_.meet(frame);
-  log_.settle(pipeline_.smoke().fluid_stats());
+  log_.settle(pipeline_.world_stage().world_stats());
 }
 
 /// A segment ends with a whole update, so that a run that is paused goes on by whole ones.
-bool FluidSide::goes_on() const {
+bool WorldSide::goes_on() const {
   if (shared_.end.over() || (done() && !shared_.endless)) return false;
-  return !(shared_.halt && pipeline_.smoke().targets(log_.steps()));
+  return !(shared_.halt && pipeline_.world_stage().targets(log_.steps()));
 }
 
-double FluidSide::run_time() const {
+double WorldSide::run_time() const {
   return steady_now() - shared_.start;
 }
 
-void FluidSide::set_clock() {
+void WorldSide::set_clock() {
   shared_.start = steady_now() - time();
 }
 
 /// The newest target wins.
-void FluidSide::in_real_time() {
-  SmokeStage& smoke = pipeline_.smoke();
+void WorldSide::in_real_time() {
+  WorldStage& stage = pipeline_.world_stage();
   while (goes_on()) {
-    if (pace_.prepare_early) smoke.prepare(pace_.dt);
+    if (pace_.prepare_early) stage.prepare(pace_.dt);
     ++slot_;
     sleep_until(shared_.start + time());
     // more than a step behind: let steps go rather than run after the clock
@@ -72,26 +72,26 @@ void FluidSide::in_real_time() {
       slot_ = last;
     }
     const double begins = time();
-    ContactFrame& frame = shared_.newest.draft();
-    take_hands(begins, smoke.targets(log_.steps() + 1) ? pace_.frame_wait : 0.0, frame);
-    if (!pace_.prepare_early) smoke.prepare(pace_.dt);
+    WorldFrame& frame = shared_.newest.draft();
+    take_hands(begins, stage.targets(log_.steps() + 1) ? pace_.frame_wait : 0.0, frame);
+    if (!pace_.prepare_early) stage.prepare(pace_.dt);
     const bool targeted = meet(begins, frame);
     if (targeted) {
       shared_.ready.release();
       // the planner gets the cores while it plans
       if (pace_.prepare_early) wait_for_plan(log_.steps(), begins + kLatestPrepare * pace_.dt);
     }
-    smoke.settle();
+    stage.settle();
     settled(begins);
   }
 }
 
-/// The hands of `frame`, the draft of the newest, meet the fluid; true when that made a target,
+/// The hands of `frame`, the draft of the newest, meet the world; true when that made a target,
 /// which is published.
-bool FluidSide::meet(double due, ContactFrame& frame) {
-  pipeline_.smoke().meet(log_.steps() + 1, due, pace_.dt, frame);
+bool WorldSide::meet(double due, WorldFrame& frame) {
+  pipeline_.world_stage().meet(log_.steps() + 1, due, pace_.dt, frame);
   log_.meet(frame);
-  if (shared_.snapshots != nullptr) shared_.snapshots->step(frame, pipeline_.smoke());
+  if (shared_.snapshots != nullptr) shared_.snapshots->step(frame, pipeline_.world_stage());
   const bool targeted = frame.targeted;
   if (targeted) {
     shared_.newest.publish();
@@ -100,54 +100,54 @@ bool FluidSide::meet(double due, ContactFrame& frame) {
   return targeted;
 }
 
-void FluidSide::settled(double time) {
-  log_.settle(pipeline_.smoke().fluid_stats());
-  if (shared_.snapshots != nullptr) shared_.snapshots->smoke(pipeline_.smoke().world());
+void WorldSide::settled(double time) {
+  log_.settle(pipeline_.world_stage().world_stats());
+  if (shared_.snapshots != nullptr) shared_.snapshots->smoke(pipeline_.world_stage().world());
   shared_.steps.store(log_.steps(), std::memory_order_relaxed);
   shared_.run_time.store(time, std::memory_order_relaxed);
 }
 
 /// The hands for a step that is due, with a tracker's frame that came in since if one comes within
 /// `wait` [s].
-void FluidSide::take_hands(double due, double wait, ContactFrame& frame) {
+void WorldSide::take_hands(double due, double wait, WorldFrame& frame) {
   for (;;) {
     const double time = run_time();
-    pipeline_.smoke().take(time, frame);
+    pipeline_.world_stage().take(time, frame);
     if (frame.arrival >= due || time >= due + wait || shared_.end.over() || shared_.halt) return;
     std::this_thread::sleep_for(kPoll);
   }
 }
 
 /// Until the plan of this step was handed over, or until a run time [s].
-void FluidSide::wait_for_plan(std::int64_t step, double latest) const {
+void WorldSide::wait_for_plan(std::int64_t step, double latest) const {
   while (shared_.planned_step.load(std::memory_order_acquire) < step && run_time() < latest)
     std::this_thread::sleep_for(kPoll);
 }
 
-void FluidSide::run_to_target() {
-  SmokeStage& smoke = pipeline_.smoke();
+void WorldSide::run_to_target() {
+  WorldStage& stage = pipeline_.world_stage();
   for (bool targeted = false; !targeted;) {
-    smoke.prepare(pace_.dt);
+    stage.prepare(pace_.dt);
     ++slot_;
     set_clock();
-    ContactFrame& frame = shared_.newest.draft();
-    smoke.take(time(), frame);
+    WorldFrame& frame = shared_.newest.draft();
+    stage.take(time(), frame);
     targeted = meet(time(), frame);
-    smoke.settle();
+    stage.settle();
     settled(time());
   }
 }
 
-/// Plan k uses fluid step k · steps_per_plan, nothing is dropped.
-void FluidSide::without_clock() {
+/// Plan k uses step k · steps_per_plan, nothing is dropped.
+void WorldSide::without_clock() {
   double time = 0.0;
   for (std::int64_t n = 1; n <= pace_.steps && !shared_.end.over(); ++n) {
-    ContactFrame* frame = nullptr;
+    WorldFrame* frame = nullptr;
     while ((frame = shared_.targets.back()) == nullptr && !shared_.end.over())
       std::this_thread::yield();
     if (frame == nullptr) break;
     time += pace_.dt;
-    pipeline_.smoke().run(n, time, pace_.dt, *frame);
+    pipeline_.world_stage().run(n, time, pace_.dt, *frame);
     count(*frame);
     if (frame->targeted) shared_.targets.commit();
     shared_.run_time.store(time, std::memory_order_relaxed);
@@ -166,7 +166,7 @@ void PlanSide::in_real_time() {
     shared_.ready.acquire();
     while (shared_.ready.try_acquire()) {  // targets that are overwritten by now
     }
-    ended = shared_.smoke_ended.load(std::memory_order_acquire);
+    ended = shared_.world_ended.load(std::memory_order_acquire);
     plan_newest();
   }
 }
@@ -174,8 +174,8 @@ void PlanSide::in_real_time() {
 void PlanSide::without_clock() {
   // what was asked for before the run was stopped is still planned
   while (!shared_.end.failed()) {
-    const bool last = shared_.smoke_ended.load(std::memory_order_acquire);
-    if (ContactFrame* frame = shared_.targets.front()) {
+    const bool last = shared_.world_ended.load(std::memory_order_acquire);
+    if (WorldFrame* frame = shared_.targets.front()) {
       play_until(pipeline_.device(), frame->taken);
       plan(*frame);
       shared_.targets.pop();
@@ -192,7 +192,7 @@ void PlanSide::plan_newest() {
   if (shared_.newest.refresh()) plan(shared_.newest.value());
 }
 
-void PlanSide::plan(const ContactFrame& contact) {
+void PlanSide::plan(const WorldFrame& contact) {
   Update* update = shared_.updates.back();
   while (update == nullptr && !pace_.realtime && !shared_.end.over()) {
     std::this_thread::yield();
@@ -215,7 +215,7 @@ void PlanSide::plan(const ContactFrame& contact) {
   }
 }
 
-void PlanSide::count(const ContactFrame& contact, const PlanFrame& frame) {
+void PlanSide::count(const WorldFrame& contact, const PlanFrame& frame) {
   log_.add(contact, frame, shared_.start);
   follow();
   shared_.plans.fetch_add(1, std::memory_order_relaxed);

@@ -17,14 +17,14 @@ namespace prostm {
 struct RunPace {
   RunPace(const PipelineSettings& settings, const RunOptions& options);
   const bool realtime, prepare_early, stay;
-  const double dt;  // of a fluid step [s]
+  const double dt;  // of a step [s]
   const std::int64_t steps;
   const double frame_wait;  // [s]
 };
 
 /// One plan update as the observer sees it.
 struct Update {
-  ContactFrame contact;
+  WorldFrame contact;
   PlanFrame plan;
 };
 
@@ -36,21 +36,21 @@ struct RunShared {
   Snapshots* snapshots = nullptr;  // of a run that can be looked at
 
   std::atomic<bool> halt{false};  // asks the threads to end, to be started again
-  std::atomic<bool> smoke_ended{false}, plan_ended{false};
+  std::atomic<bool> world_ended{false}, plan_ended{false};
   std::atomic<double> run_time{0.0};             // [s]
   std::atomic<double> planned_at{0.0};           // when the last plan was [s of the clock]
   std::atomic<std::int64_t> planned_step{0};     // of the last plan that was handed over
-  std::atomic<std::int64_t> steps{0}, plans{0};  // fluid steps and plan updates so far
-  Latest<ContactFrame> newest;                   // real time
+  std::atomic<std::int64_t> steps{0}, plans{0};  // steps and plan updates so far
+  Latest<WorldFrame> newest;                     // real time
   std::counting_semaphore<> ready{0};            // a target is there, or none will come
-  SpscRing<ContactFrame> targets{4};             // as fast as possible
+  SpscRing<WorldFrame> targets{4};               // as fast as possible
   SpscRing<Update> updates{64};
 };
 
-/// Hand, smoke and skin, with a clock or without.
-class FluidSide {
+/// Hand, world and skin, with a clock or without.
+class WorldSide {
  public:
-  FluidSide(Pipeline& pipeline, const RunPace& pace, RunShared& shared)
+  WorldSide(Pipeline& pipeline, const RunPace& pace, RunShared& shared)
       : pipeline_(pipeline), pace_(pace), shared_(shared) {}
 
   /// On a thread of its own, until the run or the segment ends. What fails ends the run.
@@ -58,7 +58,7 @@ class FluidSide {
 
   // ---- while no thread runs ----
   /// Counts a step that the caller has made.
-  void count(const ContactFrame& frame);
+  void count(const WorldFrame& frame);
   /// Steps as fast as they go until one has made a target, which is published.
   void run_to_target();
   /// Sets the clock so that run time goes on from where it was.
@@ -67,15 +67,15 @@ class FluidSide {
   bool done() const { return slot_ >= pace_.steps; }
   double time() const { return static_cast<double>(slot_) * pace_.dt; }  ///< run time [s]
   std::int64_t published() const { return published_; }
-  const SmokeLog& log() const { return log_; }
+  const WorldLog& log() const { return log_; }
 
  private:
   void in_real_time();
   void without_clock();
   bool goes_on() const;
-  bool meet(double due, ContactFrame& frame);
+  bool meet(double due, WorldFrame& frame);
   void settled(double time);
-  void take_hands(double due, double wait, ContactFrame& frame);
+  void take_hands(double due, double wait, WorldFrame& frame);
   void wait_for_plan(std::int64_t step, double latest) const;
   double run_time() const;
 
@@ -84,7 +84,7 @@ class FluidSide {
   RunShared& shared_;
   std::int64_t slot_ = 0;       // of the step before
   std::int64_t published_ = 0;  // targets
-  SmokeLog log_;
+  WorldLog log_;
 };
 
 /// Plans and their emission. Without a clock it makes the device play, too.
@@ -93,12 +93,12 @@ class PlanSide {
   PlanSide(Pipeline& pipeline, const RunPace& pace, RunShared& shared)
       : pipeline_(pipeline), pace_(pace), shared_(shared), log_(pace.realtime) {}
 
-  /// On a thread of its own, until the fluid's has ended. What fails ends the run.
+  /// On a thread of its own, until the world's has ended. What fails ends the run.
   void run() noexcept;
 
   // ---- while no thread runs ----
   /// Counts an update that the caller has made.
-  void count(const ContactFrame& contact, const PlanFrame& frame);
+  void count(const WorldFrame& contact, const PlanFrame& frame);
   /// Plans the newest target if one was published.
   void plan_newest();
   /// Takes in what became of the plans.
@@ -109,7 +109,7 @@ class PlanSide {
  private:
   void in_real_time();
   void without_clock();
-  void plan(const ContactFrame& contact);
+  void plan(const WorldFrame& contact);
 
   Pipeline& pipeline_;
   const RunPace& pace_;

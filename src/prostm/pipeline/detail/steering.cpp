@@ -51,11 +51,11 @@ void Steering::attend() {
         ++updates_asked_;
         break;
       case Kind::Seek:
-        pipeline_.smoke().hands().seek(command.value);
+        pipeline_.world_stage().hands().seek(command.value);
         if (!state_.playing) ++updates_asked_;  // to be seen
         break;
       case Kind::TrackerPose:
-        pipeline_.smoke().set_tracker_pose(command.X_DT);
+        pipeline_.world_stage().set_tracker_pose(command.X_DT);
         if (link_.hands != nullptr) link_.hands->set_tracker_pose(command.X_DT);
     }
   }
@@ -85,20 +85,20 @@ void Steering::apply(const LiveSettings& wanted, const std::vector<std::uint32_t
 
 void Steering::change(const LiveSettings& wanted) {
   const LiveSettings& held = state_.settings;
-  SmokeStage* smoke = &pipeline_.smoke();
+  WorldStage* stage = &pipeline_.world_stage();
   std::unique_ptr<HandSwitch> hands;
   const bool other_hands = wanted.source != held.source ||
                            wanted.pipeline.track.prediction != held.pipeline.track.prediction;
   if (other_hands) {
     hands = link_.make_hands(wanted.source, wanted.pipeline);
-    hands->set_tracker_pose(smoke->tracker_pose());
-    const double at = smoke->hands().recording_time();
+    hands->set_tracker_pose(stage->tracker_pose());
+    const double at = stage->hands().recording_time();
     if (wanted.source == held.source && std::isfinite(at)) hands->seek(at);
   }
   pipeline_.reconfigure(wanted.pipeline);
   if (hands) {
     link_.hands = hands.get();
-    pipeline_.smoke().set_hands(std::move(hands));
+    pipeline_.world_stage().set_hands(std::move(hands));
   }
   state_.settings = wanted;
   planned_with_ = std::make_shared<const PipelineSettings>(wanted.pipeline);
@@ -106,10 +106,10 @@ void Steering::change(const LiveSettings& wanted) {
 }
 
 void Steering::publish_state() {
-  const HandSource& hands = pipeline_.smoke().hands();
+  const HandSource& hands = pipeline_.world_stage().hands();
   state_.recording_length = hands.recording_length();
   state_.tracker = hands.tracker_status();
-  state_.X_DT = pipeline_.smoke().tracker_pose();
+  state_.X_DT = pipeline_.world_stage().tracker_pose();
   link_.control.publish(state_);
   told_ = steady_now();
 }
@@ -122,7 +122,7 @@ void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fa
   plan_rate_.add(t, plans);
   RunSnapshot& run = link_.snapshots.run_draft();
   run.time = time;
-  run.fluid_rate = step_rate_.rate();
+  run.world_rate = step_rate_.rate();
   run.plan_rate = plan_rate_.rate();
   run.paused = !state_.playing;
   run.page_hand = link_.hands != nullptr && link_.hands->page_in_charge();

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "prostm/core/require.hpp"
+#include "prostm/core/settings.hpp"
 
 namespace prostm {
 namespace {
@@ -18,49 +18,67 @@ void require_factor(const char* name, double value) {
   throw std::invalid_argument(sentence.str());
 }
 
-}  // namespace
-
-void TrackSettings::visit(SettingsVisitor& v) {
-  v.field("smoothing_time", smoothing_time);
-  v.field("max_speed", max_speed);
-  v.field("max_gap", max_gap);
-  v.field("least_confidence", least_confidence);
-  v.field("freeze_time", freeze_time);
-  v.field("prediction", prediction);
-  v.field("prediction_limit", prediction_limit);
-  v.field("filter_position", filter_position);
-  v.field("filter_velocity", filter_velocity);
-  v.field("filter_position_scale", filter_position_scale);
-  v.field("filter_velocity_scale", filter_velocity_scale);
+template <class Settings, class Visitor>
+void list_track(Settings& s, Visitor& v) {
+  v.field({"smoothing_time", "s", 0.001, 0.5, "window of joints before they are differentiated"},
+          s.smoothing_time);
+  v.field({"max_speed", "m/s", 0.01, 100, "of a joint; faster ones are glitches"}, s.max_speed);
+  v.field({"max_gap", "s", 0.001, 10, "a hand missing for longer is gone"}, s.max_gap);
+  v.field({"least_confidence", "", 0, 1, "hands that the tracker trusts less are not taken"},
+          s.least_confidence);
+  v.field({"freeze_time", "s", 0.05, 60,
+           "a live hand none of whose joints moves for so long is "
+           "not taken"},
+          s.freeze_time);
+  v.field({"prediction", "s", 0, 0.2,
+           "hands are predicted so far beyond the age of their frame; "
+           "0: not at all"},
+          s.prediction);
+  v.field({"prediction_limit", "m", 0, 0.1, "no joint is predicted farther"}, s.prediction_limit);
+  v.field({"filter_position", "", 0, 1,
+           "share of a still joint's change that is taken, above 0; "
+           "1: no filter"},
+          s.filter_position);
+  v.field({"filter_velocity", "", 0, 1, "the same of velocities"}, s.filter_velocity);
+  v.field({"filter_position_scale", "m", 1e-5, 1, "change at which the filter is half open"},
+          s.filter_position_scale);
+  v.field({"filter_velocity_scale", "m/s", 1e-4, 100, "the same of velocities"},
+          s.filter_velocity_scale);
 }
 
-void ScriptedHandSettings::visit(SettingsVisitor& v) {
-  v.field("height", height);
-  v.field("period", period);
-  v.field("jitter", jitter);
-  v.field("seed", seed);
-  v.field("still", still);
+template <class Settings, class Visitor>
+void list_scripted(Settings& s, Visitor& v) {
+  constexpr int kSeeds = std::numeric_limits<int>::max();
+  v.field({"height", "m", 0.10, 0.60, "of the hovering palm above the tracker"}, s.height);
+  v.field({"period", "s", 5, 3600, "of the cycle"}, s.period);
+  v.field({"jitter", "m", 0, 0.01, "standard deviation of a joint's noise"}, s.jitter);
+  v.field({"seed", "", 0, kSeeds, "of that noise"}, s.seed);
+  v.field({.name = "still", .help = "whether the hand hovers and does not move"}, s.still);
+}
+
+}  // namespace
+
+void TrackSettings::visit(SettingsReader& v) const {
+  list_track(*this, v);
+}
+void TrackSettings::visit(SettingsWriter& v) {
+  list_track(*this, v);
+}
+void ScriptedHandSettings::visit(SettingsReader& v) const {
+  list_scripted(*this, v);
+}
+void ScriptedHandSettings::visit(SettingsWriter& v) {
+  list_scripted(*this, v);
 }
 
 void validate(const TrackSettings& settings) {
-  require_between("smoothing_time", settings.smoothing_time, 0.001, 0.5, "s");
-  require_between("max_speed", settings.max_speed, 0.01, 100.0, "m/s");
-  require_between("max_gap", settings.max_gap, 0.001, 10.0, "s");
-  require_between("least_confidence", settings.least_confidence, 0.0, 1.0, "");
-  require_between("freeze_time", settings.freeze_time, 0.05, 60.0, "s");
-  require_between("prediction", settings.prediction, 0.0, 0.2, "s");
-  require_between("prediction_limit", settings.prediction_limit, 0.0, 0.1, "m");
   require_factor("filter_position", settings.filter_position);
   require_factor("filter_velocity", settings.filter_velocity);
-  require_between("filter_position_scale", settings.filter_position_scale, 1e-5, 1.0, "m");
-  require_between("filter_velocity_scale", settings.filter_velocity_scale, 1e-4, 100.0, "m/s");
+  require_bounds(settings);
 }
 
 void validate(const ScriptedHandSettings& settings) {
-  require_between("height", settings.height, 0.10, 0.60, "m");
-  require_between("period", settings.period, 5.0, 3600.0, "s");
-  require_between("jitter", settings.jitter, 0.0, 0.01, "m");
-  require_between("seed", settings.seed, 0, std::numeric_limits<int>::max());
+  require_bounds(settings);
 }
 
 void validate_recording(const HandRecording& recording) {

@@ -109,7 +109,7 @@ void fill_paths(const PlanSnapshot& plan, ViewFrame& out) {
   }
 }
 
-void set(ViewFrame& frame, ViewNumber number, double value) {
+void set(ViewFrame& frame, std::size_t number, double value) {
   frame.numbers[number] = static_cast<float>(value);
 }
 
@@ -162,6 +162,7 @@ void FrameMaker::refresh(ViewFrame& frame, ViewNews& news) {
 void FrameMaker::take_plan(ViewFrame& frame) {
   const PlanSnapshot& plan = snapshots_.plan();
   render(plan, rendered_);
+  if (plan.planned) felt_.offer(plan, rendered_.patch);
   double scale = rendered_.max_target;
   for (const auto& field : rendered_.field)
     for (const double p : field) scale = std::max(scale, p);
@@ -177,14 +178,12 @@ void FrameMaker::take_plan(ViewFrame& frame) {
 void FrameMaker::fill_scores(ViewFrame& frame) const {
   const PlanSnapshot& plan = snapshots_.plan();
   const bool scored = plan.planned;
-  const Metrics& m = rendered_.metrics;
-  set(frame, kRmse, scored ? m.rmse : kNone);
-  set(frame, kCorrelation, scored ? m.correlation : kNone);
-  set(frame, kCoverage, scored ? m.coverage : kNone);
-  set(frame, kSkill0, scored ? m.skill_0 : kNone);
-  set(frame, kSkill8, scored ? m.skill_8 : kNone);
-  set(frame, kOverlap, scored ? m.overlap : kNone);
-  set(frame, kSpill, scored ? m.spill : kNone);
+  Metrics metrics = rendered_.metrics;
+  metrics.felt_skill = felt_.skill();
+  const auto all = quantities<Metrics>();
+  const auto places = view_metric_places();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    set(frame, places[i], scored ? value_of(all[i], metrics) : kNone);
   constexpr double kMm = 1e3;
   set(frame, kSigmaMm, scored ? kMm * rendered_.sigma : kNone);
   const Metrics& setting = rendered_.metrics_at_setting;
@@ -200,7 +199,7 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   const auto now = Recent::Clock::now();
   frame.run.time = run.time;
   frame.run.recording_time = step.recording_time;
-  frame.run.fluid_steps = static_cast<std::uint32_t>(step.step);
+  frame.run.world_steps = static_cast<std::uint32_t>(step.step);
   frame.run.plan_updates = static_cast<std::uint32_t>(plan.id);
   frame.run.flags = (run.paused ? kViewPaused : 0U) | (run.page_hand ? kViewPageHand : 0U) |
                     (frame.hand_count > 0 ? kViewHandInSight : 0U) |
@@ -210,12 +209,12 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   const double plan_time = plan.plan_time + plan.lift_time + plan.contact_time;
   set(frame, kTrackMs, kMs * step.track_time);
   set(frame, kHandMs, kMs * step.hand_time);
-  set(frame, kFluidMs, kMs * step.fluid_time);
+  set(frame, kWorldMs, kMs * step.world_time);
   set(frame, kContactMs, kMs * plan.contact_time);
   set(frame, kPlanMs, kMs * plan.plan_time);
   set(frame, kLiftMs, kMs * plan.lift_time);
-  set(frame, kStepMs, kMs * (step.track_time + step.hand_time + step.fluid_time + plan_time));
-  set(frame, kFluidHz, run.fluid_rate);
+  set(frame, kStepMs, kMs * (step.track_time + step.hand_time + step.world_time + plan_time));
+  set(frame, kWorldHz, run.world_rate);
   set(frame, kPlanHz, run.plan_rate);
 
   double latency = 0.0;

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "prostm/pipeline/live.hpp"
+#include "prostm/viewer/detail/felt_watch.hpp"
 #include "prostm/viewer/view_source.hpp"
 
 namespace prostm::viewer {
@@ -45,6 +46,7 @@ class FrameMaker {
   Snapshots& snapshots_;
   RenderedPlan rendered_;
   Recent latencies_{10.0};
+  FeltWatch felt_;
 };
 
 }  // namespace prostm::viewer

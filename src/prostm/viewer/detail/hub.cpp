@@ -41,7 +41,7 @@ std::string Hub::numbers() {
                                  {"run",
                                   {{"time", number(frame.run.time)},
                                    {"recording_time", number(frame.run.recording_time)},
-                                   {"fluid_steps", frame.run.fluid_steps},
+                                   {"world_steps", frame.run.world_steps},
                                    {"plan_updates", frame.run.plan_updates},
                                    {"flags", frame.run.flags}}}};
   const auto names = view_number_names();

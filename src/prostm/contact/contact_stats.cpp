@@ -1,0 +1,48 @@
+#include <array>
+
+#include "prostm/contact/skin_contact.hpp"
+
+namespace prostm {
+
+double steep_share(const ContactStats& s) {
+  const std::int64_t all = s.skin_cells + s.steep_cells;
+  return all > 0 ? static_cast<double>(s.steep_cells) / static_cast<double>(all) : 0.0;
+}
+
+namespace {
+
+constexpr std::array<Quantity<ContactStats>, 5> kStats{{
+    {.name = "skin_cells",
+     .unit = "",
+     .help = "Cells of targets with skin, over all updates.",
+     .value = &ContactStats::skin_cells},
+    {.name = "skin_area_cm2",
+     .unit = "cm2",
+     .help = "Of this skin, as it has faded, over all updates.",
+     .value = &ContactStats::skin_area,
+     .scale = 1e4},
+    {.name = "steep_cells",
+     .unit = "",
+     .help = "Cells too steep for the array to press on.",
+     .value = &ContactStats::steep_cells,
+     .better = Better::Less},
+    {.name = "steep_share",
+     .unit = "",
+     .help = "Share of the hands' skin that is too steep.",
+     .value = &steep_share,
+     .better = Better::Less},
+    {.name = "joints_outside",
+     .unit = "",
+     .help = "Joint positions outside the box.",
+     .value = &ContactStats::joints_outside,
+     .better = Better::Less},
+}};
+
+}  // namespace
+
+template <>
+std::span<const Quantity<ContactStats>> quantities<ContactStats>() {
+  return kStats;
+}
+
+}  // namespace prostm

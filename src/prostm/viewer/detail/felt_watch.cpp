@@ -1,0 +1,61 @@
+#include "prostm/viewer/detail/felt_watch.hpp"
+
+#include <unistd.h>
+
+#include <stdexcept>
+
+#include "prostm/score/felt_skill.hpp"
+
+namespace prostm::viewer {
+namespace {
+
+// a plan takes about 0.25 s: 5 % of a core
+constexpr std::chrono::seconds kPause{5};
+
+double skill_of(const PlanSnapshot& plan, int patch, WorkerPool& pool) {
+  EmitSettings emit = plan.settings->emit;
+  emit.full_scale_pressure = plan.full_scale_pressure;
+  try {
+    return felt_skill(plan.plan, plan.target, patch, emit, plan.emission_rate,
+                      plan.settings->transducers, pool);
+  } catch (const std::invalid_argument&) {
+    return std::numeric_limits<double>::quiet_NaN();  // an array that reaches no focal point of it
+  }
+}
+
+}  // namespace
+
+FeltWatch::FeltWatch() : thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+void FeltWatch::offer(const PlanSnapshot& plan, int patch) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_) return;
+  next_ = now + kPause;
+  {
+    const std::scoped_lock lock(mutex_);
+    plan_ = plan;
+    patch_ = patch;
+    waiting_ = true;
+  }
+  wake_.notify_one();
+}
+
+void FeltWatch::work(const std::stop_token& stop) {
+  // of this thread alone on Linux; the run comes first
+  static_cast<void>(::nice(19));
+  WorkerPool pool(1);
+  while (true) {
+    PlanSnapshot plan;
+    int patch = 0;
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, stop, [this] { return waiting_; })) return;
+      waiting_ = false;
+      plan = std::move(plan_);
+      patch = patch_;
+    }
+    skill_.store(skill_of(plan, patch, pool), std::memory_order_relaxed);
+  }
+}
+
+}  // namespace prostm::viewer

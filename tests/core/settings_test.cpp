@@ -1,0 +1,91 @@
+#include "prostm/core/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <stdexcept>
+
+namespace prostm {
+namespace {
+
+enum class Colour { Red, Green, Blue };
+
+}  // namespace
+
+template <>
+inline constexpr std::array<std::string_view, 3> kNames<Colour> = {"red", "green", "blue"};
+
+namespace {
+
+struct Paint {
+  double litres = 1.0;
+  int coats = 2;
+  Colour colour = Colour::Green;
+  void visit(SettingsReader& v) const { list(*this, v); }
+  void visit(SettingsWriter& v) { list(*this, v); }
+
+ private:
+  template <class Self, class Visitor>
+  static void list(Self& s, Visitor& v) {
+    v.field({"litres", "l", 0.1, 10, "in the pot"}, s.litres);
+    v.field({"coats", "", 1, 5, "on the wall"}, s.coats);
+    v.field({.name = "colour", .help = "of it"}, s.colour);
+  }
+};
+
+template <class Call>
+std::string refusal(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Names, GoBothWays) {
+  for (const Colour colour : {Colour::Red, Colour::Green, Colour::Blue})
+    EXPECT_EQ(from_name<Colour>(name_of(colour), "colour"), colour);
+  EXPECT_FALSE(value_named<Colour>("violet").has_value());
+  EXPECT_EQ(refusal([] { from_name<Colour>("violet", "colour"); }),
+            "colour \"violet\" is unknown: it must be red, green or blue");
+}
+
+TEST(Bounds, AreThoseOfTheList) {
+  Paint paint;
+  EXPECT_EQ(refusal([&] { require_bounds(paint); }), "accepted");
+  paint.litres = 11.0;
+  EXPECT_EQ(refusal([&] { require_bounds(paint); }), "litres = 11 l must be between 0.1 and 10 l");
+  paint.litres = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal([&] { require_bounds(paint); }), "accepted");
+  paint = {};
+  paint.coats = 0;
+  EXPECT_EQ(refusal([&] { require_bounds(paint); }), "coats = 0 must be between 1 and 5");
+}
+
+/// Sets every field to another value.
+class Changer : public SettingsWriter {
+ public:
+  void field(const Setting&, double& value) override { value *= 2.0; }
+  void field(const Setting&, int& value) override { ++value; }
+  void field(const Setting&, bool& value) override { value = !value; }
+  void field(const Setting&, std::string& value) override { value += "!"; }
+  void choice(const Setting&, std::span<const std::string_view> names, int& index) override {
+    index = (index + 1) % static_cast<int>(names.size());
+  }
+};
+
+TEST(SettingsGroup, ReadsAndWritesWhatItIsOf) {
+  Paint paint;
+  Changer changer;
+  const SettingsGroup group = group_of("paint", paint);
+  group.write(changer);
+  EXPECT_EQ(paint.litres, 2.0);
+  EXPECT_EQ(paint.coats, 3);
+  EXPECT_EQ(paint.colour, Colour::Blue);
+  const Paint fixed;
+  EXPECT_FALSE(group_of("fixed", fixed).write);
+}
+
+}  // namespace
+}  // namespace prostm
