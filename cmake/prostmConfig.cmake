@@ -1,6 +1,16 @@
-# find_package(prostm) gives prostm::target, prostm::plan, prostm::am, prostm::emit, prostm::acoustics, prostm::device and
-# prostm::score. find_package(prostm COMPONENTS pipeline) gives prostm::track, prostm::hand, prostm::contact, prostm::fluid
-# and prostm::pipeline too.
+# find_package(prostm) gives the planner's library: prostm::core, target, plan, am, acoustics, emit, device and score.
+# find_package(prostm COMPONENTS pipeline) gives prostm::track, hand, contact, fluid and pipeline too.
+foreach(component ${prostm_FIND_COMPONENTS})
+  if(component STREQUAL "pipeline" AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/prostmPipelineTargets.cmake)
+    set(prostm_pipeline_FOUND TRUE)
+  elseif(prostm_FIND_REQUIRED_${component})
+    set(prostm_FOUND FALSE)
+    string(CONCAT prostm_NOT_FOUND_MESSAGE "this prostm has no component '${component}'; there is one, pipeline, in a "
+           "prostm that was built with PROSTM_PROGRAM=ON, and the planner's libraries need none")
+    return()
+  endif()
+endforeach()
+
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(Eigen3 3.4 NO_MODULE)
@@ -9,14 +19,7 @@ find_dependency(Boost 1.81)
 find_dependency(fmt)
 find_dependency(nlohmann_json)
 include(${CMAKE_CURRENT_LIST_DIR}/prostmTargets.cmake)
-
-foreach(component ${prostm_FIND_COMPONENTS})
-  if(component STREQUAL "pipeline" AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/prostmPipelineTargets.cmake)
-    find_dependency(OpenXR)
-    include(${CMAKE_CURRENT_LIST_DIR}/prostmPipelineTargets.cmake)
-    set(prostm_pipeline_FOUND TRUE)
-  elseif(prostm_FIND_REQUIRED_${component})
-    set(prostm_FOUND FALSE)
-    set(prostm_NOT_FOUND_MESSAGE "prostm has no component '${component}' here: it may be pipeline, built with PROSTM_PROGRAM=ON")
-  endif()
-endforeach()
+if(prostm_pipeline_FOUND)
+  find_dependency(OpenXR)
+  include(${CMAKE_CURRENT_LIST_DIR}/prostmPipelineTargets.cmake)
+endif()

@@ -3,7 +3,9 @@
 
 #include "prostm/device/device.hpp"
 #include "prostm/device/device_kinds.hpp"
+#include "prostm/device/sample_chain.hpp"
 #include "prostm/emit/emitter.hpp"
+#include "prostm/emit/loop_samples.hpp"
 #include "prostm/plan/lifted_plan.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/target/target_field.hpp"
