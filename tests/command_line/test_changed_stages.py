@@ -56,7 +56,7 @@ def test_a_change_asks_for_its_stage(checkout):
 
 
 def test_what_no_sanitizer_looks_at_asks_for_the_few_that_always_run(checkout):
-    checkout.write("docs/design.md", "web/src/main.ts", "tests/python/test_am.py")
+    checkout.write("docs/design.md", "web/src/main.ts", "tests/python/test_am.py", "tests/library/test_library.py")
     checkout.commit()
     assert checkout.stages(checkout.first) == ALWAYS
 
