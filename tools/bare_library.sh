@@ -7,7 +7,7 @@ usage() {
 usage: tools/bare_library.sh [--folder DIR] [--keep]
 
 Builds the commit that is checked out here with PROSTM_PROGRAM=OFF in a minimal Debian 12, installs it, deletes sources
-and build, and builds and runs examples/01_plan.cpp in a CMake project of five lines that finds the installed library.
+and build, and builds and runs examples/01_plan.cpp in the CMake project of five lines that docs/cpp.md shows.
 tools/bare_debian.sh sets the Debian up: it takes the options, and needs root, debootstrap and a Debian mirror.
 
 example: tools/bare_library.sh --folder /var/tmp/bare
@@ -19,12 +19,6 @@ for argument in "$@"; do
 done
 
 packages=(g++ cmake ninja-build libeigen3-dev libboost1.81-dev libhwy-dev libfmt-dev nlohmann-json3-dev)
-project='cmake_minimum_required(VERSION 3.25)
-project(own LANGUAGES CXX)
-find_package(prostm REQUIRED)
-add_executable(own 01_plan.cpp)
-target_link_libraries(own PRIVATE prostm::plan)'
-
 install="DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends ${packages[*]}"
 
 exec "$(dirname "$0")/bare_debian.sh" "$@" \
@@ -33,6 +27,6 @@ exec "$(dirname "$0")/bare_debian.sh" "$@" \
   'cmake -G Ninja -B build -DPROSTM_PROGRAM=OFF' \
   'cmake --build build' \
   'cmake --install build' \
-  'mkdir -p /srv/own && cp examples/01_plan.cpp /srv/own && rm -r src build' \
-  "echo '$project' >/srv/own/CMakeLists.txt" \
+  'mkdir -p /srv/own && cp examples/01_plan.cpp /srv/own' \
+  "sed -n '/^\`\`\`cmake/,/^\`\`\`/ { /^\`/!p }' docs/cpp.md >/srv/own/CMakeLists.txt && rm -r src build" \
   'cd /srv/own && cmake -G Ninja -B build && cmake --build build && ./build/own'

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -138,10 +139,12 @@ int main() {
     run(COMPILER, *QUICK, tmp_path / "all.cpp", "-o", tmp_path / "all", *pkg_config("--cflags", "--libs"))
 
 
-def test_a_project_of_five_lines(prefix, tmp_path):
-    source = project(tmp_path / "own", "find_package(prostm 0.1 REQUIRED)\n"
-                     f"add_executable(own {EXAMPLES / '01_plan.cpp'})\ntarget_link_libraries(own prostm::plan)")
-    configure(prefix, source, tmp_path / "build")
+def test_the_project_of_five_lines_that_the_documents_show(prefix, tmp_path):
+    [text] = re.findall(r"```cmake\n(.*?)```", (ROOT / "docs" / "cpp.md").read_text(), re.S)
+    assert text.count("\n") == 5
+    (tmp_path / "CMakeLists.txt").write_text(text)
+    shutil.copy(EXAMPLES / "01_plan.cpp", tmp_path)
+    configure(prefix, tmp_path, tmp_path / "build")
     run(CMAKE, "--build", tmp_path / "build")
     assert "paths" in run(tmp_path / "build" / "own")
 
