@@ -8,6 +8,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -82,7 +83,7 @@ class Record {
           py::dict values;
           for (const py::handle name : names) {
             const py::object value = self.attr(name);
-            if (!optional.contains(name) || value.equal(value)) values[name] = value;
+            if (!optional.contains(name) || !std::isnan(value.cast<double>())) values[name] = value;
           }
           return values;
         },
