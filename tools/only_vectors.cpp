@@ -1,0 +1,52 @@
+/// Loaded before a program (LD_PRELOAD), this keeps its kernels to the vector instructions that
+/// ONLY_VECTORS names, or to the plain code for "none". So programs of any commit can be limited,
+/// and the shipped one needs no switch for it.
+
+#include <hwy/targets.h>
+#include <strings.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+constexpr std::int64_t kPlain = HWY_EMU128 | HWY_SCALAR;
+
+/// Calls back with each set of vector instructions that this processor has, the best one first.
+template <class Visit>
+void for_each_target(Visit visit) {
+  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS & ~kPlain; left != 0;
+       left &= left - 1) {
+    visit(left & -left);
+  }
+}
+
+[[gnu::constructor]] void limit() {
+  const char* name = std::getenv("ONLY_VECTORS");
+  if (name == nullptr) return;
+  std::int64_t only = std::strcmp(name, "none") == 0 ? kPlain : 0;
+  for_each_target([&](std::int64_t target) {
+    if (strcasecmp(hwy::TargetName(target), name) == 0) only = target;
+  });
+  if (only == 0) {
+    std::fprintf(stderr, "only_vectors: this processor has no %s\n", name);
+    std::_Exit(2);
+  }
+  hwy::SetSupportedTargetsForTest(only);
+  hwy::GetChosenTarget().DeInit();
+}
+
+}  // namespace
+
+/// Their names into `out`, with spaces between.
+extern "C" void list_vectors(char* out, int size) {
+  int used = 0;
+  for_each_target([&](std::int64_t target) {
+    if (used < size) {
+      used += std::snprintf(out + used, static_cast<std::size_t>(size - used), "%s ",
+                            hwy::TargetName(target));
+    }
+  });
+}
