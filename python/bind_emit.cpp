@@ -101,9 +101,7 @@ void bind_lifted(py::module_& m) {
             return foci;
           },
           "The LiftedFoci, as a new list.")
-      .def_readwrite("id", &LiftedPlan::id, "Number of the plan, as TakeOver repeats it.")
-      .def_readonly("hand_time", &LiftedPlan::hand_time,
-                    "Of the hand frame that it was planned from [s].");
+      .def_readwrite("id", &LiftedPlan::id, "Number of the plan, as TakeOver repeats it.");
 
   m.def(
       "lift", &lift_on_field,

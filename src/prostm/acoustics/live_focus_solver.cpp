@@ -103,12 +103,11 @@ void LiveFocusSolver::reset() {
 void LiveFocusSolver::solve(std::span<const LiveFocus> foci) noexcept {
   if (!settings_.warm) reset();
   count_ = 0;
-  unreached_ = 0;
-  for (std::size_t f = 0; f < foci.size(); ++f) {
+  for (std::size_t f = 0; f < std::min(foci.size(), kMaxLiveFoci); ++f) {
     if (is_within(foci[f].amplitude, 0.0F, kSilent)) {
-      if (f < kMaxLiveFoci) weight_[f] = 1.0F;
-    } else if (f >= kMaxLiveFoci || !add(foci[f], f)) {
-      ++unreached_;
+      weight_[f] = 1.0F;
+    } else {
+      add(foci[f], f);
     }
   }
   switch (settings_.method) {
@@ -122,11 +121,11 @@ void LiveFocusSolver::solve(std::span<const LiveFocus> foci) noexcept {
 }
 
 /// Takes a focal point, unless it cannot be had.
-bool LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
-  if (!is_sound(focus) || !is_clear(packed_, near_, focus.p_D)) return false;
+void LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
+  if (!is_sound(focus) || !is_clear(packed_, near_, focus.p_D)) return;
   propagation_row_in_single(packed_, focus.p_D.cast<double>(), g_.re(count_), g_.im(count_));
   const solving::Magnitudes all = solving::magnitudes(g_, count_);
-  if (all.squares <= 0.0F) return false;
+  if (all.squares <= 0.0F) return;
   place_[count_] = place;
   const auto full_scale = static_cast<float>(settings_.full_scale);
   const auto bound = static_cast<float>(settings_.bound);
@@ -135,7 +134,6 @@ bool LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
   alone_[count_] = all.sum;
   squares_[count_] = all.squares;
   ++count_;
-  return true;
 }
 
 /// (A11). This and the next two set the drives, and return the largest.

@@ -48,7 +48,9 @@ class LiveFocusSolver {
                   const LiveFocusSettings& settings);
 
   /// Finds the drives for these focal points. Those with an amplitude below 1e-4 are silent and do
-  /// not count, nor do those that cannot be had (`unreached`). Allocates and throws nothing.
+  /// not count. Nor do those that cannot be had: a position or an amplitude that is out of range or
+  /// not finite, behind the array, nearer than kNearestPoint to a transducer, or beyond
+  /// kMaxLiveFoci. Allocates and throws nothing.
   void solve(std::span<const LiveFocus> foci) noexcept;
 
   /// q in row 0, a column for each transducer.
@@ -56,10 +58,6 @@ class LiveFocusSolver {
   /// What is reached of the amplitudes together, Σ a |y| / Σ a², a and y over what each focal point
   /// has alone; at most 1, and 0 without focal points. Phases are not rounded yet.
   float level() const { return level_; }
-  /// Focal points of the last sample that were left out: a position or an amplitude that is out of
-  /// range or not finite, behind the array, nearer than kNearestPoint to a transducer, or beyond
-  /// kMaxLiveFoci.
-  int unreached() const { return unreached_; }
 
   /// Forgets the sample before.
   void reset();
@@ -67,7 +65,7 @@ class LiveFocusSolver {
  private:
   using Complex = std::complex<float>;
 
-  bool add(const LiveFocus& focus, std::size_t place);
+  void add(const LiveFocus& focus, std::size_t place);
   float superpose();
   float gs_pat();
   float weighted();
@@ -92,7 +90,6 @@ class LiveFocusSolver {
   std::array<float, kMaxLiveFoci> wanted_{}, alone_{}, squares_{};  // over alone; Σ|G| [Pa]; Σ|G|²
   std::array<Complex, kMaxLiveFoci> c_{}, y_{};
   float level_ = 0.0F;
-  int unreached_ = 0;
 };
 
 }  // namespace prostm

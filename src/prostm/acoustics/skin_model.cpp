@@ -74,20 +74,6 @@ double SkinModel::phase_speed(double omega) const {
   return omega / surface_wave_number(omega).real();
 }
 
-double SkinModel::group_speed(double omega) const {
-  // d(k)/dω = k/ω − k M'/(2M)
-  const Complex k = surface_wave_number(omega);
-  const double rise =
-      settings_.density / kRayleigh * (square(settings_.fast_speed) - square(settings_.slow_speed));
-  const Complex relaxed(1.0, omega * relaxation_time_);
-  const Complex slope = rise * Complex(0.0, relaxation_time_) / (relaxed * relaxed);
-  return 1.0 / (k / omega - k * slope / (2.0 * shear_modulus(omega))).real();
-}
-
-double SkinModel::attenuation(double omega) const {
-  return -surface_wave_number(omega).imag();
-}
-
 Complex SkinModel::surface_frequency(double wave_number) const {
   const double slow = square(wave_number * settings_.slow_speed);
   const double fast = square(wave_number * settings_.fast_speed);

@@ -45,10 +45,6 @@ class SkinModel {
   std::complex<double> surface_wave_number(double omega) const;
   /// Phase speed ω / Re k [m/s] of the surface wave, (S4). @pre ω > 0
   double phase_speed(double omega) const;
-  /// Group speed dω/d(Re k) [m/s] of the surface wave. @pre ω > 0
-  double group_speed(double omega) const;
-  /// Attenuation α of the surface wave's amplitude [Np/m], (S4). @pre ω > 0
-  double attenuation(double omega) const;
   /// Complex angular frequency Ω of the surface wave of real wave number k > 0, which moves with
   /// Re Ω and decays as e^{−Im Ω t} [rad/s], (S5). Re Ω = 0 where c_∞ > 3 c_0 and the wave creeps.
   std::complex<double> surface_frequency(double wave_number) const;

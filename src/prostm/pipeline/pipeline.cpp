@@ -185,7 +185,6 @@ void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
     lift(out.plan, contact.target, lifted);
     compensate_tilt(lifted, contact.target, emit_settings_.tilt_bound);
     lifted.id = out.id;
-    lifted.hand_time = contact.arrival;
     for (const LiftedPath& path : lifted.paths)
       out.max_skin_length = std::max(out.max_skin_length, path.length);
     emitter_->submit();

@@ -103,7 +103,6 @@ void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out)
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept {
   out.paths.clear();
   out.foci.clear();
-  out.hand_time = frame.time;
   for (const FocalPath& path : plan.paths) {
     if (path.points.empty()) continue;
     const auto patch = static_cast<std::size_t>(path.patch);

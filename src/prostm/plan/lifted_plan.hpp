@@ -36,8 +36,7 @@ struct LiftedFocus {
 struct LiftedPlan {
   boost::container::static_vector<LiftedPath, kMaxPaths> paths;
   boost::container::static_vector<LiftedFocus, kMaxPaths> foci;
-  std::int64_t id = 0;     ///< counts plans from 1
-  double hand_time = 0.0;  ///< of the hand frame that it was planned from [s]
+  std::int64_t id = 0;  ///< counts plans from 1
 };
 
 /// Undoes the projection of section IV-A: each segment is cut in kLiftedPointsPerSegment, each
@@ -45,7 +44,7 @@ struct LiftedPlan {
 /// path's speed along the 3-D curve. The heights are smoothed along the path over two cells, (E1),
 /// since the stairs of a raster would make the curve longer than the skin is. A path of fewer than
 /// two distinct points is a point at rest; a path without points is left out. A focus gets the
-/// height of the skin there. Sets `paths`, `foci` and `hand_time`, leaves `id`. @pre every `patch`
+/// height of the skin there. Sets `paths` and `foci`, leaves `id`. @pre every `patch`
 /// is an index into frame.patches.
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
 
