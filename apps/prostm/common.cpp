@@ -15,6 +15,7 @@
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/json.hpp"
 #include "prostm/core/require.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/io/array_file.hpp"
@@ -216,7 +217,7 @@ void flush(std::FILE* out) {
 }
 
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value) {
-  if (!json_option.empty()) write_file(json_option, value.dump(1) + "\n");
+  if (!json_option.empty()) write_file(json_option, to_text(value));
 }
 
 nlohmann::ordered_json to_json(const Summary& s, double unit) {

@@ -13,6 +13,7 @@
 #include "prostm/io/field_file.hpp"
 #include "prostm/io/physical_file.hpp"
 #include "prostm/io/plan_file.hpp"
+#include "prostm/io/widths_file.hpp"
 #include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
 
@@ -149,20 +150,14 @@ void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
   fmt::print(out, "one focus of {} at full drive; sigma along the tilt × across it\n", array.name);
   fmt::print(out, "  {:>9} {:>9} {:>6} {:>17} {:>14}\n", "height mm", "beside mm", "tilt °",
              "sigma mm", "pressure Pa");
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const FocusWidthEntry& e : table) {
-    const double degrees = e.tilt * 180.0 / kPi;
     fmt::print(out, "  {:>9.0f} {:>9.0f} {:>6.0f} {:>8.2f} × {:>6.2f} {:>14.1f}\n", 1e3 * e.height,
-               1e3 * e.offset, degrees, 1e3 * e.width.along, 1e3 * e.width.across, e.width.level);
-    rows.push_back({{"height_mm", 1e3 * e.height},
-                    {"offset_mm", 1e3 * e.offset},
-                    {"tilt_deg", degrees},
-                    {"sigma_along_mm", 1e3 * e.width.along},
-                    {"sigma_across_mm", 1e3 * e.width.across},
-                    {"pressure_pa", e.width.level}});
+               1e3 * e.offset, e.tilt * 180.0 / kPi, 1e3 * e.width.along, 1e3 * e.width.across,
+               e.width.level);
   }
-  write_json(given.common.json,
-             {{"format", "prostm-widths/1"}, {"array", array.name}, {"widths", rows}});
+  if (!given.common.json.empty()) {
+    write_file(given.common.json, widths_to_json(array.name, table));
+  }
 }
 
 /// Drives for the whole loop, with progress; false when it was interrupted.
