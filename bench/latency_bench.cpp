@@ -91,7 +91,7 @@ double middle(const Arrangement& a, const std::function<double(const RunSummary&
   std::vector<double> values;
   values.reserve(a.runs.size());
   for (const RunSummary& run : a.runs) values.push_back(figure(run));
-  return bench::quantile(values, 0.5);
+  return quantile(values, 0.5);
 }
 
 double laps_completed(const RunSummary& run) {

@@ -86,13 +86,12 @@ void add_rows(const std::string& name, const HandRecording& recording,
                               ahead = errors(recording, horizon, true);
     const auto line = [&](const char* how, const std::vector<double>& mm) {
       fmt::print("{:<28} {:>4.0f} ms  {:<10} {:>8.2f} {:>8.2f} {:>8.2f}\n", name, horizon * 1e3,
-                 how, bench::quantile(mm, 0.5), bench::quantile(mm, 0.95),
-                 bench::quantile(mm, 1.0));
+                 how, quantile(mm, 0.5), quantile(mm, 0.95), quantile(mm, 1.0));
     };
     line("held", held);
     line("predicted", ahead);
     rows.push_back({fmt::format("{}, {:.0f} ms ahead", name, horizon * 1e3), "mm",
-                    summary_of(ahead), "held", bench::quantile(held, 0.5)});
+                    summary_of(ahead), "held", quantile(held, 0.5)});
   }
 }
 

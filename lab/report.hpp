@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -14,17 +12,9 @@
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/json.hpp"
 
 namespace prostm::bench {
-
-/// The value that `share` of all are not above, by the nearest-rank rule; 0 when there is none.
-inline double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const double rank = std::max(std::ceil(share * static_cast<double>(values.size())), 1.0);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// One line of a table: a distribution, and the median of what it is compared with.
 struct Row {
@@ -64,7 +54,7 @@ inline std::string to_json(const std::vector<Row>& rows) {
     }
     list.push_back(one);
   }
-  return list.dump(1) + "\n";
+  return prostm::to_text(list);
 }
 
 /// Prints rows and, where a file is named, writes them. @return 0

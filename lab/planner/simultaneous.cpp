@@ -11,6 +11,7 @@
 #include "fields/fields.hpp"
 #include "planner/contenders.hpp"
 #include "planner/sequences.hpp"
+#include "prostm/core/distribution.hpp"
 #include "prostm/emit/detail/path_emitter.hpp"
 
 namespace prostm::bench {
@@ -181,7 +182,7 @@ double LeastDistances::share_below(double distance) const {
 }
 
 double LeastDistances::quantile(double share) const {
-  return bench::quantile(least_, share);
+  return prostm::quantile(least_, share);
 }
 
 FocalPath begun_at(const FocalPath& path, int first, bool reversed) {

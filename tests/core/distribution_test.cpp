@@ -15,7 +15,7 @@ namespace {
 
 // The nearest-rank quantile by its definition: the smallest value that at least a share q of the
 // values does not exceed.
-double quantile(const std::vector<double>& values, double q) {
+double by_definition(const std::vector<double>& values, double q) {
   double best = 0.0;
   bool found = false;
   for (double candidate : values) {
@@ -36,6 +36,14 @@ void expect_exact_moments(const Summary& s, const std::vector<double>& values) {
   EXPECT_NEAR(s.mean, mean, 1e-12 * (1.0 + std::abs(mean)));
   EXPECT_NEAR(s.deviation, std::sqrt(squares / n), 1e-10 * (1.0 + std::sqrt(squares / n)));
   EXPECT_EQ(s.max, *std::max_element(values.begin(), values.end()));
+}
+
+TEST(Quantile, IsOfTheNearestRank) {
+  EXPECT_EQ(quantile({}, 0.5), 0.0);
+  EXPECT_EQ(quantile({3.0}, 0.0), 3.0);
+  EXPECT_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.0);
+  EXPECT_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.51), 3.0);
+  EXPECT_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 1.0), 4.0);
 }
 
 TEST(Distribution, EmptyIsAllZeros) {
@@ -60,8 +68,8 @@ TEST(Distribution, AgreesWithTheDefinitions) {
     }
     const Summary s = distribution.summary();
     expect_exact_moments(s, values);
-    EXPECT_EQ(s.p50, quantile(values, 0.50));
-    EXPECT_EQ(s.p99, quantile(values, 0.99));
+    EXPECT_EQ(s.p50, by_definition(values, 0.50));
+    EXPECT_EQ(s.p99, by_definition(values, 0.99));
   }
 }
 
@@ -92,8 +100,8 @@ TEST(Distribution, ThinsEvenlyWhenFull) {
 
       const Summary s = distribution.summary();
       expect_exact_moments(s, values);
-      EXPECT_EQ(s.p50, quantile(sample, 0.50)) << capacity << " " << n;
-      EXPECT_EQ(s.p99, quantile(sample, 0.99)) << capacity << " " << n;
+      EXPECT_EQ(s.p50, by_definition(sample, 0.50)) << capacity << " " << n;
+      EXPECT_EQ(s.p99, by_definition(sample, 0.99)) << capacity << " " << n;
     }
   }
 }

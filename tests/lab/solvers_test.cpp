@@ -41,13 +41,5 @@ TEST(TextbookGsPat, FindsTheDrivesOfTheReference) {
   }
 }
 
-TEST(Quantile, IsThatOfTheNearestRank) {
-  EXPECT_EQ(bench::quantile({}, 0.5), 0.0);
-  EXPECT_EQ(bench::quantile({3.0}, 0.0), 3.0);
-  EXPECT_EQ(bench::quantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.0);
-  EXPECT_EQ(bench::quantile({4.0, 1.0, 3.0, 2.0}, 0.51), 3.0);
-  EXPECT_EQ(bench::quantile({4.0, 1.0, 3.0, 2.0}, 1.0), 4.0);
-}
-
 }  // namespace
 }  // namespace prostm

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -139,6 +140,14 @@ TEST(Validate, NamesWhatIsWrong) {
       EXPECT_THAT(e.what(), testing::HasSubstr(damage.message)) << damage.name;
     }
   }
+}
+
+TEST(TotalPressure, LooksAtSkinAlone) {
+  TargetField field = palm(3, 4);
+  const double all = std::accumulate(field.pressure.begin(), field.pressure.end(), 0.0);
+  EXPECT_EQ(total_pressure(field), all);
+  field.skin[11] = 0;
+  EXPECT_EQ(total_pressure(field), all - 11.0);
 }
 
 TEST(MaxPressure, LooksAtSkinAlone) {

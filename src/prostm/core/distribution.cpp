@@ -5,6 +5,15 @@
 
 namespace prostm {
 
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(rank, 1, values.size())) - 1;
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 Distribution::Distribution(std::size_t capacity) : capacity_(std::max<std::size_t>(capacity, 2)) {
   kept_.reserve(capacity_);
 }
@@ -31,17 +40,11 @@ void Distribution::add(double value) noexcept {
 Summary Distribution::summary() const {
   Summary s;
   if (count_ == 0) return s;
-  std::vector<double> sorted = kept_;
-  std::sort(sorted.begin(), sorted.end());
-  const auto quantile = [&](double q) {
-    const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
-    return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
-  };
   s.n = count_;
   s.mean = mean_;
   s.deviation = std::sqrt(squares_ / static_cast<double>(count_));
-  s.p50 = quantile(0.50);
-  s.p99 = quantile(0.99);
+  s.p50 = quantile(kept_, 0.50);
+  s.p99 = quantile(kept_, 0.99);
   s.max = max_;
   return s;
 }

@@ -6,6 +6,9 @@
 
 namespace prostm {
 
+/// The value that `share` of all are not above, by the nearest-rank rule; 0 when there is none.
+double quantile(std::vector<double> values, double share);
+
 struct Summary {
   std::size_t n = 0;
   double mean = 0.0, deviation = 0.0;      ///< standard deviation of the population

@@ -20,7 +20,8 @@ TargetField read_field(const std::string& path, const FieldFileOptions& options 
 
 /// Parsers of bytes; `name` stands for the file in messages. @throws InputError.
 TargetField field_from_json(std::string_view text, const std::string& name);
-/// float32, float64 or integer, 2-D, C or Fortran order; NaN is no skin. Row 0 is the smallest y.
+/// float32, float64, integer or boolean, 2-D, C or Fortran order; NaN is no skin. Row 0 is the
+/// smallest y.
 TargetField field_from_npy(std::string_view bytes, const std::string& name, double cell_mm);
 /// Grey value (luminance) over full white is the pressure, alpha 0 is no skin; row 0 is the largest
 /// y.

@@ -16,12 +16,6 @@ double sigma_of(const PipelineSettings& settings, const TargetField& target) {
   return by_place ? settings.plan.sigma_on(target) : settings.sigma();
 }
 
-double total_pressure(const TargetField& target) {
-  double sum = 0.0;
-  for (const double p : target.pressure) sum += p;
-  return sum;
-}
-
 /// Means over blocks of B³ cells, of n³ blocks. Smoke is never negative: advection weighs it with
 /// weights from 0 to 1.
 template <std::size_t B>

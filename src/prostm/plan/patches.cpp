@@ -41,13 +41,6 @@ double highest_pressure(const TargetField& target, std::size_t max_cells) {
   return checked_maximum(target.pressure, target.skin, kLargestPressure);
 }
 
-double total_pressure(const TargetField& target) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < target.size(); ++i)
-    sum += target.skin[i] != 0 ? target.pressure[i] : 0.0;
-  return sum;
-}
-
 std::array<int, kMaxPatches> share_out(const PatchPressures& pressure, int count) {
   std::array<int, kMaxPatches> share{};
   const double most = *std::max_element(pressure.begin(), pressure.end());

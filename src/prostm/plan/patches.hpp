@@ -13,9 +13,6 @@ namespace prostm::planning {
 /// says which those are. @param max_cells the largest raster that there is room for.
 double highest_pressure(const TargetField& target, std::size_t max_cells);
 
-/// Σ p* over the skin. @pre highest_pressure() is not negative.
-double total_pressure(const TargetField& target);
-
 using PatchPressures = std::array<double, kMaxPatches>;
 
 /// Shares out `count` focal points one by one: first one to each patch that has pressure, the

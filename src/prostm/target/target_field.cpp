@@ -145,6 +145,13 @@ double max_pressure(const TargetField& field) {
   return largest;
 }
 
+double total_pressure(const TargetField& field) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < field.size(); ++i)
+    sum += field.skin[i] != 0 ? field.pressure[i] : 0.0;
+  return sum;
+}
+
 double max_weight(const TargetField& field) {
   double largest = 0.0;
   for (std::size_t i = 0; i < field.size(); ++i) {

@@ -61,6 +61,9 @@ void validate(const TargetField& field);
 /// Largest pressure; 0 for a field without skin.
 double max_pressure(const TargetField& field);
 
+/// Sum of the pressures on skin.
+double total_pressure(const TargetField& field);
+
 /// Largest weight on skin; 0 for a field without skin. @pre the field has weights.
 double max_weight(const TargetField& field);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "prostm/core/latest.hpp"
 #include "prostm/emit/detail/take_over_log.hpp"
@@ -56,7 +57,20 @@ struct Emitter::Exchange {
     return message.lost ? News::Lost : News::Plan;
   }
 
-  /// Counts `samples` more of all focal points and makes the counters readable. Device's thread.
+  /// A block of an emitter's samples, which hears at its beginning what is new. Device's thread.
+  template <class Impl>
+  void fill(Impl& impl, std::int64_t first, std::span<FocusSample> out) {
+    const auto foci = static_cast<std::size_t>(settings.foci);
+    const std::size_t samples = out.size() / foci;
+    impl.receive(first);
+    for (std::size_t i = 0; i < samples; ++i) {
+      impl.emit(first + static_cast<std::int64_t>(i), out.subspan(i * foci, foci));
+    }
+    publish(impl.stats, samples * foci, impl.longest_step);
+  }
+
+ private:
+  /// Counts `samples` more of all focal points and makes the counters readable.
   void publish(EmitStats& stats, std::size_t samples, const LongestStep& longest) {
     stats.samples += static_cast<std::int64_t>(samples);
     stats.max_focus_step = longest.length();

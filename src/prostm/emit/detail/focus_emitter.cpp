@@ -184,14 +184,7 @@ int FocusEmitter::period() const {
 }
 
 void FocusEmitter::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
-  Impl& impl = *impl_;
-  const auto foci = static_cast<std::size_t>(impl.settings.foci);
-  const std::size_t samples = out.size() / foci;
-  impl.receive(first);
-  for (std::size_t i = 0; i < samples; ++i) {
-    impl.emit(first + static_cast<std::int64_t>(i), out.subspan(i * foci, foci));
-  }
-  exchange().publish(impl.stats, samples * foci, impl.longest_step);
+  exchange().fill(*impl_, first, out);
 }
 
 }  // namespace prostm

@@ -304,14 +304,7 @@ PathEmitter::PathEmitter(const EmitSettings& settings, double sample_rate)
 PathEmitter::~PathEmitter() = default;
 
 void PathEmitter::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
-  Impl& impl = *impl_;
-  const auto foci = static_cast<std::size_t>(impl.settings.foci);
-  const std::size_t samples = out.size() / foci;
-  impl.receive(first);
-  for (std::size_t i = 0; i < samples; ++i) {
-    impl.emit(first + static_cast<std::int64_t>(i), out.subspan(i * foci, foci));
-  }
-  exchange().publish(impl.stats, samples * foci, impl.longest_step);
+  exchange().fill(*impl_, first, out);
 }
 
 }  // namespace prostm

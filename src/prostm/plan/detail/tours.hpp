@@ -30,7 +30,7 @@ double tour_length(const DistanceTable& distance, std::span<const std::uint8_t> 
 /// 2-opt [Croes 1958]: reverses stretches of the closed tour while that shortens it.
 void two_opt(const DistanceTable& distance, std::span<std::uint8_t> tour);
 
-/// Shortest of `starts` 2-opt optima, from the order given and from seeded random orders. @return
+/// Shortest of a few 2-opt optima, from the order given and from seeded random orders. @return
 /// its length [mm].
 double shortest_tour(const DistanceTable& distance, std::span<std::uint8_t> tour,
                      std::uint64_t seed);

@@ -34,7 +34,7 @@ class CellTiles {
   explicit CellTiles(std::size_t max_cells);
 
   /// Takes over the skin cells of `target`, averaged so that a block is no wider than `width` [mm]
-  /// where the target's cells allow it, and wider where that would be more than kMaxBlocks.
+  /// where the target's cells allow it, and wider where there is no room for so many blocks.
   /// Allocates nothing. @pre maximum > 0, sizes agree, the target has no more than max_cells and,
   /// if it has weights, one > 0 on skin.
   void set(const TargetField& target, double maximum, double width);
