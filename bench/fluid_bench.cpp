@@ -3,6 +3,7 @@
 ///
 /// usage: fluid_bench [--json FILE]
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>

@@ -4,6 +4,7 @@
 ///
 /// usage: latency_bench [--json FILE] [--hand FILE] [--scene S] [--seconds S] [--rounds N]
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
