@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     PlanFileExtras extras;
     extras.method = file.method;
     const PlanFile back =
-        plan_from_json(plan_to_json(file.plan, file.raster, extras, ""), "back.json");
+        plan_from_json(plan_to_json(file.plan, file.raster, extras, {}), "back.json");
     if (back.plan.paths.size() != file.plan.paths.size()) std::abort();
     if (back.plan.foci.size() != file.plan.foci.size()) std::abort();
   } catch (const InputError&) {

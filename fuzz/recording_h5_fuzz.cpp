@@ -49,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace prostm;
   std::string_view bytes(reinterpret_cast<const char*>(data), size);
   static const std::string path = "/tmp/prostm-fuzz-" + std::to_string(::getpid()) + ".h5";
-  Recorder recorder(path, "{}");
+  Recorder recorder(path, {});
   for (int i = 0; i < 3; ++i) {
     TargetFrame frame;
     frame.time = take<double>(bytes);
