@@ -447,6 +447,14 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     told = prostm("field", "plan.json", "--field", field).stdout
     assert "which judges nothing" in told and "worst side lobe" in told
 
+    # what is felt of a plan as soon as there is an array, where nothing else asks for it
+    told = prostm("plan", field, "--array", "usx", "--json", "felt.json").stdout
+    plan = json.loads((tmp_path / "felt.json").read_text())
+    assert " felt" in told and "felt_skill" not in plan["planned_metrics"]
+    assert all("felt_skill" not in control["metrics"] for control in plan["controls"])
+    felt = json.loads(prostm("field", "felt.json", "--field", field, "--json", "-").stdout)["felt"]
+    assert plan["metrics"]["felt_skill"] == pytest.approx(felt["metrics"]["skill_8"], abs=0.01)
+
     prostm("plan", field, "--method", "am", "--json", "foci.json")
     am = json.loads(prostm("field", "foci.json", "--field", field, "--figure", "am.png", "--json", "-").stdout)
     assert am["loop"]["laps"] == [0, 0, 0, 0] and am["loop"]["duration_ms"] == 5

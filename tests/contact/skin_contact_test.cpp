@@ -101,7 +101,8 @@ TEST(SkinContact, PointsLieOnTheSkinAndFaceTheArray) {
       on_skin += skin.normal.z() < 0.5 ? 1 : 0;
     }
   }
-  EXPECT_GT(on_skin, 0.95 * static_cast<double>(stats.skin_cells));  // what the array sees is the underside
+  EXPECT_GT(on_skin,
+            0.95 * static_cast<double>(stats.skin_cells));  // what the array sees is the underside
 }
 
 TEST(SkinContact, PlaneAxesFollowTheDevice) {

@@ -110,6 +110,17 @@ def test_the_quality_of_a_result_is_that_of_what_is_played(preset):
     assert result.metrics().as_dict() == result.metrics(emission=settings).as_dict()
 
 
+def test_what_is_felt_of_a_plan_needs_an_array(field):
+    result = prostm.plan(field, "best")
+    assert np.isnan(result.metrics().felt_skill) and "felt_skill" not in result.metrics().as_dict()
+    felt = result.metrics(array="usx")
+    assert 0.3 < felt.felt_skill <= 1 and felt.as_dict()["felt_skill"] == felt.felt_skill
+    assert {**felt.as_dict(), **result.metrics().as_dict()} == felt.as_dict()
+    assert result.metrics(array="usx").felt_skill == felt.felt_skill != result.metrics(array="autd3").felt_skill
+    with pytest.raises(ValueError, match="no-such"):
+        result.metrics(array="no-such")
+
+
 def test_a_plan_beats_its_controls(field):
     mine = prostm.plan(field, "paper").metrics()
     table = prostm.controls(field)

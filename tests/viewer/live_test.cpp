@@ -187,6 +187,16 @@ TEST(Live, RatesAreThoseOfTheRunHoweverSeldomTheyAreAskedFor) {
   }));
 }
 
+TEST(Live, TellsHowWellWhatIsFeltRendersTheTarget) {
+  LiveRun run;
+  Page page(run.port());  // it is computed while somebody looks
+  EXPECT_TRUE(eventually([&] {
+    page.next_text();
+    const Json skill = run.numbers().at("numbers").at("felt_skill");
+    return skill.is_number() && skill <= 1.0;
+  }));
+}
+
 TEST(Live, RecordingsAreSoughtIn) {
   LiveRun run;
   Page page(run.port());

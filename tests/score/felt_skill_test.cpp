@@ -1,0 +1,74 @@
+#include "prostm/score/felt_skill.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "fields/fields.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/score/felt.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr double kRate = 40e3;  // [Hz]
+
+/// A target as a frame, its pressure times `factor`, and a plan of it.
+struct Planned {
+  explicit Planned(double factor = 1.0) {
+    frame.patches.push_back(fields::make(fields::Pattern::OnePlume, 50, 32));
+    TargetField& target = frame.patches[0];
+    for (double& p : target.pressure) p *= factor;
+    PlanStats stats;
+    PlanSettings settings;
+    settings.preset = Preset::Fast;
+    Planner(settings, target.size()).plan(target, plan, stats);
+  }
+  TargetFrame frame;
+  Plan plan;
+};
+
+double felt(const Planned& planned, const Plan& plan) {
+  WorkerPool pool(1);
+  return felt_skill(plan, planned.frame, 0, {}, kRate, usx_array(), pool);
+}
+
+TEST(FeltSkill, IsThatOfThePerceptOfTheLoop) {
+  const Planned planned;
+  const TargetField& target = planned.frame.patches[0];
+  const LoopSamples loop = plan_loop(planned.plan, planned.frame, {}, kRate);
+  const Medium air;
+  LoopDriveResult drives;
+  loop_drives(usx_array(), air, loop, {}, [](int, int) { return true; }, drives);
+  WorkerPool pool(2);
+  const FeltField percept =
+      FeelingSkin(target).feel(PackedArray(usx_array(), air), air, target, loop, drives, pool);
+  const double skill = score_physical(target, percept.percept, 0.0).skill_8;
+  EXPECT_EQ(felt(planned, planned.plan), skill);
+  EXPECT_GT(skill, 0.3);
+  EXPECT_LE(skill, 1.0);
+}
+
+TEST(FeltSkill, DoesNotKnowTheUnitOfTheTarget) {
+  const Planned one, thousand(1000.0);
+  EXPECT_NEAR(felt(one, one.plan), felt(thousand, thousand.plan), 0.02);
+}
+
+TEST(FeltSkill, IsUnknownWithoutPressureOrAPlan) {
+  Planned planned;
+  EXPECT_TRUE(std::isnan(felt(planned, {})));
+  std::fill(planned.frame.patches[0].pressure.begin(), planned.frame.patches[0].pressure.end(), 0.0);
+  EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
+}
+
+TEST(PlanLoop, RefusesAPlanWithoutPressure) {
+  Planned planned;
+  for (FocalPath& path : planned.plan.paths)
+    std::fill(path.pressure.begin(), path.pressure.end(), 0.0);
+  EXPECT_THROW(plan_loop(planned.plan, planned.frame, {}, kRate), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace prostm
