@@ -19,7 +19,7 @@
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/score/detail/loop_drives.hpp"
+#include "prostm/score/loop_drives.hpp"
 #include "report.hpp"
 
 namespace prostm {

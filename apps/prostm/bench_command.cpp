@@ -16,9 +16,7 @@
 namespace prostm::app {
 namespace {
 
-constexpr int kStages = 7;
-constexpr const char* kStageNames[kStages] = {"init",     "kmeans", "tour", "split",
-                                              "resample", "refine", "total"};
+constexpr std::size_t kStages = kPlanStages;
 using StageTimes = std::array<double, kStages>;  // [s]
 
 /// The paper's Table I [µs] (Intel i7-6820HK, another machine): mean and standard deviation, for
@@ -35,17 +33,19 @@ constexpr PaperTable kPaper[] = {
 constexpr double kPaperAmRate = 250.0;
 
 StageTimes times_of(const PlanStats& s) {
-  return {s.init, s.kmeans, s.tour, s.split, s.resample, s.refine, s.total};
+  StageTimes times{};
+  for (std::size_t i = 0; i < kStages; ++i) times[i] = value_of(plan_stages()[i], s);
+  return times;
 }
 
 /// The median of each stage over the repeats of one field.
 StageTimes median(const std::vector<StageTimes>& repeats) {
   StageTimes out{};
-  for (int stage = 0; stage < kStages; ++stage) {
+  for (std::size_t stage = 0; stage < kStages; ++stage) {
     std::vector<double> t;
-    for (const StageTimes& times : repeats) t.push_back(times[static_cast<std::size_t>(stage)]);
+    for (const StageTimes& times : repeats) t.push_back(times[stage]);
     std::nth_element(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(t.size() / 2), t.end());
-    out[static_cast<std::size_t>(stage)] = t[t.size() / 2];
+    out[stage] = t[t.size() / 2];
   }
   return out;
 }
@@ -72,10 +72,11 @@ void print_column(std::FILE* out, const Column& column) {
              column.coverage.summary().mean);
   fmt::print(out, "    {:<10} {:>9} {:>9} {:>9} {:>9} {:>9}  [us]\n", "", "mean", "sd", "p50",
              "p99", "max");
-  for (int i = 0; i < kStages; ++i) {
-    const Summary s = column.stage[static_cast<std::size_t>(i)].summary();
-    fmt::print(out, "    {:<10} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f}\n", kStageNames[i],
-               s.mean * 1e6, s.deviation * 1e6, s.p50 * 1e6, s.p99 * 1e6, s.max * 1e6);
+  for (std::size_t i = 0; i < kStages; ++i) {
+    const Summary s = column.stage[i].summary();
+    fmt::print(out, "    {:<10} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f}\n",
+               plan_stages()[i].name, s.mean * 1e6, s.deviation * 1e6, s.p50 * 1e6, s.p99 * 1e6,
+               s.max * 1e6);
   }
 }
 
@@ -85,7 +86,7 @@ void print_paper(std::FILE* out, const std::string& scene) {
     fmt::print(out, "  the paper's Table I, on its own machine:\n    {:<10} {:>9} {:>9}  [us]\n",
                "", "mean", "sd");
     for (std::size_t i = 0; i < kStages; ++i) {
-      fmt::print(out, "    {:<10} {:>9.0f} {:>9.0f}\n", kStageNames[i], table.mean[i],
+      fmt::print(out, "    {:<10} {:>9.0f} {:>9.0f}\n", plan_stages()[i].name, table.mean[i],
                  table.deviation[i]);
     }
   }
@@ -114,7 +115,7 @@ nlohmann::ordered_json stage_row(const std::string& file, const std::string& sce
                                  const Column& ours, std::size_t stage,
                                  const Reference& reference) {
   const Summary a = ours.stage[stage].summary();
-  return {{"name", fmt::format("{}: {} {}", file, ours.name, kStageNames[stage])},
+  return {{"name", fmt::format("{}: {} {}", file, ours.name, plan_stages()[stage].name)},
           {"scene", scene},
           {"unit", "us"},
           {"n", a.n},

@@ -41,7 +41,8 @@ TEST(FeltSkill, IsThatOfThePerceptOfTheLoop) {
   const LoopSamples loop = plan_loop(planned.plan, planned.frame, {}, kRate);
   const Medium air;
   LoopDriveResult drives;
-  loop_drives(usx_array(), air, loop, {}, [](int, int) { return true; }, drives);
+  loop_drives(
+      usx_array(), air, loop, {}, [](int, int) { return true; }, drives);
   WorkerPool pool(2);
   const FeltField percept =
       FeelingSkin(target).feel(PackedArray(usx_array(), air), air, target, loop, drives, pool);
@@ -59,7 +60,8 @@ TEST(FeltSkill, DoesNotKnowTheUnitOfTheTarget) {
 TEST(FeltSkill, IsUnknownWithoutPressureOrAPlan) {
   Planned planned;
   EXPECT_TRUE(std::isnan(felt(planned, {})));
-  std::fill(planned.frame.patches[0].pressure.begin(), planned.frame.patches[0].pressure.end(), 0.0);
+  std::fill(planned.frame.patches[0].pressure.begin(), planned.frame.patches[0].pressure.end(),
+            0.0);
   EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
 }
 

@@ -25,8 +25,8 @@ TEST(Metrics, AreAllInTheirList) {
 TEST(Metrics, MeanAndMedianAreOfEachForItself) {
   std::array<Metrics, 4> all;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i].rmse = static_cast<double>(i * i);        // 0 1 4 9
-    all[i].spill = 3.0 - static_cast<double>(i);     // 3 2 1 0
+    all[i].rmse = static_cast<double>(i * i);         // 0 1 4 9
+    all[i].spill = 3.0 - static_cast<double>(i);      // 3 2 1 0
     all[i].felt_skill = i == 1 ? std::nan("") : 0.5;  // unknown of one
   }
   EXPECT_EQ(mean(all).rmse, 3.5);

@@ -69,14 +69,15 @@ class Page {
   void draw() {
     canvas_.text(Vec2(kLeft, 36.0), given_.title, {.size = 18.0, .bold = true});
     if (given_.metrics != nullptr) {
-      const Metrics& m = *given_.metrics;
-      canvas_.text(
-          Vec2(kLeft, 58.0),
-          fmt::format("envelope: RMSE {} · correlation {} · S₈.₅ {} · overlap {} · spill {}",
-                      figure::number_text(m.rmse, 3), figure::number_text(m.correlation, 3),
-                      figure::number_text(m.skill_8, 3), figure::number_text(m.overlap, 3),
-                      figure::number_text(m.spill, 3)),
-          {.size = 12.0, .colour = figure::kFaintInk});
+      std::string line = "envelope: ";
+      const char* before = "";
+      for (const Quantity<Metrics>& metric : quantities<Metrics>()) {
+        const double value = value_of(metric, *given_.metrics);
+        if (std::isnan(value)) continue;
+        line += fmt::format("{}{} {}", before, metric.label, figure::number_text(value, 3));
+        before = " · ";
+      }
+      canvas_.text(Vec2(kLeft, 58.0), line, {.size = 12.0, .colour = figure::kFaintInk});
       heat("target p*", given_.raster->pressure, max_pressure(*given_.raster));
     }
     const PhysicalField& field = *given_.field;

@@ -224,10 +224,10 @@ void Recorder::Impl::append_plan(const Plan* p, const PlanStats* stats) {
 
   std::vector<double> stage;
   std::vector<std::int32_t> counts;
-  for (const Quantity<PlanStats>* quantity : recording::stage_times())
-    stage.push_back(stats == nullptr ? kNan : value_of(*quantity, *stats));
-  for (const Quantity<PlanStats>* quantity : recording::plan_counts())
-    counts.push_back(stats == nullptr ? 0 : static_cast<std::int32_t>(value_of(*quantity, *stats)));
+  for (const Quantity<PlanStats>& time : plan_stages())
+    stage.push_back(stats == nullptr ? kNan : value_of(time, *stats));
+  for (const Quantity<PlanStats>& count : recording::plan_counts())
+    counts.push_back(stats == nullptr ? 0 : static_cast<std::int32_t>(value_of(count, *stats)));
   plan.append("stage_time", stage, 1);
   plan.append("counts", counts, 1);
   plan.append("cost", stats == nullptr ? kNan : stats->cost);

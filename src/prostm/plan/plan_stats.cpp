@@ -21,6 +21,7 @@ constexpr Quantity<PlanStats> count(const char* group, const char* name, int Pla
       .name = name, .unit = "", .help = help, .value = number, .better = better, .group = group};
 }
 
+// the stages stand first
 constexpr std::array kStats{
     stage("init", &PlanStats::init, "Finding the skin and its pressure."),
     stage("kmeans", &PlanStats::kmeans, "Clustering."),
@@ -52,6 +53,10 @@ constexpr std::array kStats{
 template <>
 std::span<const Quantity<PlanStats>> quantities<PlanStats>() {
   return kStats;
+}
+
+std::span<const Quantity<PlanStats>, kPlanStages> plan_stages() {
+  return std::span(kStats).first<kPlanStages>();
 }
 
 }  // namespace prostm

@@ -1,6 +1,7 @@
 #pragma once
 /// What a planner says of a call, beside the plan.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,6 +33,9 @@ struct PlanStats {
 
 template <>
 std::span<const Quantity<PlanStats>> quantities<PlanStats>();
+/// Of these, the times of Table I, `total` last.
+inline constexpr std::size_t kPlanStages = 7;
+std::span<const Quantity<PlanStats>, kPlanStages> plan_stages();
 
 /// The intermediate results of the paper's Fig. 2, for figures.
 struct PlanTrace {

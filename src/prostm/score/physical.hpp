@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "prostm/acoustics/loop_field.hpp"
-#include "prostm/score/detail/loop_drives.hpp"
+#include "prostm/score/loop_drives.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/target/target_field.hpp"
 

@@ -1,7 +1,6 @@
 #include "prostm/io/detail/recording_layout.hpp"
 
 #include <string>
-#include <string_view>
 #include <variant>
 
 #include "prostm/plan/plan.hpp"
@@ -10,21 +9,10 @@
 namespace prostm::recording {
 namespace {
 
-using PlanNumber = const Quantity<PlanStats>*;
-
-template <class Condition>
-std::vector<PlanNumber> stats_where(const Condition& condition) {
-  std::vector<PlanNumber> found;
-  for (const Quantity<PlanStats>& quantity : quantities<PlanStats>()) {
-    if (condition(quantity)) found.push_back(&quantity);
-  }
-  return found;
-}
-
-std::string names_of(const std::vector<PlanNumber>& numbers) {
+std::string names_of(std::span<const Quantity<PlanStats>> numbers) {
   std::string names;
-  for (const PlanNumber number : numbers)
-    names += (names.empty() ? "" : ", ") + std::string(number->name);
+  for (const Quantity<PlanStats>& number : numbers)
+    names += (names.empty() ? "" : ", ") + std::string(number.name);
   return names;
 }
 
@@ -100,13 +88,12 @@ std::vector<h5::Column> hand_columns() {
       {"velocity", H5T_NATIVE_FLOAT, {kHands, kJointCount, 3}, "m/s", "of each joint"}};
 }
 
-std::vector<const Quantity<PlanStats>*> stage_times() {
-  return stats_where([](const auto& value) { return std::string_view(value.unit) == "us"; });
-}
-
-std::vector<const Quantity<PlanStats>*> plan_counts() {
-  return stats_where(
-      [](const auto& value) { return std::holds_alternative<int PlanStats::*>(value.value); });
+std::vector<Quantity<PlanStats>> plan_counts() {
+  std::vector<Quantity<PlanStats>> counts;
+  for (const Quantity<PlanStats>& quantity : quantities<PlanStats>()) {
+    if (std::holds_alternative<int PlanStats::*>(quantity.value)) counts.push_back(quantity);
+  }
+  return counts;
 }
 
 std::vector<h5::Column> plan_columns() {
@@ -148,7 +135,7 @@ std::vector<h5::Column> plan_columns() {
        {paths},
        "Pa",
        "rendered at the peak of the modulation, padded with NaN"},
-      {"stage_time", H5T_NATIVE_DOUBLE, {stage_times().size()}, "s", names_of(stage_times())},
+      {"stage_time", H5T_NATIVE_DOUBLE, {kPlanStages}, "s", names_of(plan_stages())},
       {"counts", H5T_NATIVE_INT32, {plan_counts().size()}, "1", names_of(plan_counts())},
       {"cost", H5T_NATIVE_DOUBLE, {}, "1", "of Eqs. (2) to (5) after refinement"}};
 }

@@ -1,4 +1,4 @@
-#include "prostm/score/detail/loop_drives.hpp"
+#include "prostm/score/loop_drives.hpp"
 
 #include <algorithm>
 #include <cmath>
