@@ -30,9 +30,9 @@ struct Planned {
   Plan plan;
 };
 
-double felt(const Planned& planned, const Plan& plan) {
+double felt(const Planned& planned, const Plan& plan, const EmitSettings& settings = {}) {
   WorkerPool pool(1);
-  return felt_skill(plan, planned.frame, 0, {}, kRate, usx_array(), pool);
+  return felt_skill(plan, planned.frame, 0, settings, kRate, usx_array(), pool);
 }
 
 TEST(FeltSkill, IsThatOfThePerceptOfTheLoop) {
@@ -63,6 +63,25 @@ TEST(FeltSkill, IsUnknownWithoutPressureOrAPlan) {
   std::fill(planned.frame.patches[0].pressure.begin(), planned.frame.patches[0].pressure.end(),
             0.0);
   EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
+}
+
+TEST(FeltSkill, IsUnknownOfAPlanThatNoArrayPlays) {
+  Planned planned;
+  EmitSettings unheard;
+  unheard.full_scale_pressure = 1e9;
+  unheard.silent_below = 0.5;
+  EXPECT_TRUE(std::isnan(felt(planned, planned.plan, unheard)));
+  for (FocalPath& path : planned.plan.paths)
+    std::fill(path.pressure.begin(), path.pressure.end(), 0.0);
+  EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
+}
+
+TEST(FeltSkill, IsUnknownWhereALapTakesTooLong) {
+  for (const double speed : {0.5, 0.05}) {  // laps below and above those that a loop may have
+    Planned planned;
+    for (FocalPath& path : planned.plan.paths) path.speed = speed;
+    EXPECT_TRUE(std::isnan(felt(planned, planned.plan))) << speed;
+  }
 }
 
 TEST(PlanLoop, RefusesAPlanWithoutPressure) {

@@ -18,10 +18,10 @@ constexpr int kLongestLaps = 8;      // of the longest lap, that a loop may have
 constexpr double kLongestLap = 1.0;  // [s]
 constexpr double kSlowest = 1e-6;    // below this speed a focal point is at rest [m/s]
 
-/// Samples of a lap as the plan says; 0 for a focal point at rest.
-double lap_of(const LiftedPath& path, double sample_rate) {
+/// As the plan says [s]; 0 for a focal point at rest.
+double lap_of(const LiftedPath& path) {
   if (path.p_D.empty() || path.length <= 0.0 || path.speed <= kSlowest) return 0.0;
-  return path.length / std::min(path.speed, kMaxFocusSpeed) * sample_rate;
+  return path.length / std::min(path.speed, kMaxFocusSpeed);
 }
 
 int laps_in(int samples, double lap) {
@@ -58,8 +58,7 @@ void check(const LiftedPlan& plan, const EmitSettings& settings, double sample_r
                                 (plan.foci.empty() ? " paths" : " foci") + "; a loop is of 1 to " +
                                 std::to_string(settings.foci) + ", the number of focal points");
   }
-  for (const LiftedPath& path : plan.paths) {
-    if (lap_of(path, sample_rate) <= kLongestLap * sample_rate) continue;
+  if (longest_lap(plan) > kLongestLap) {
     throw std::invalid_argument(
         "a path takes more than 1 s; for a loop it must be shorter or its focal point faster");
   }
@@ -107,11 +106,17 @@ double LoopSamples::largest_stretch() const {
   return largest;
 }
 
+double longest_lap(const LiftedPlan& plan) {
+  double longest = 0.0;
+  for (const LiftedPath& path : plan.paths) longest = std::max(longest, lap_of(path));
+  return longest;
+}
+
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
   check(plan, settings, sample_rate);
   if (!plan.foci.empty()) return loop_of_foci(plan, settings, sample_rate);
   std::vector<double> laps;
-  for (const LiftedPath& path : plan.paths) laps.push_back(lap_of(path, sample_rate));
+  for (const LiftedPath& path : plan.paths) laps.push_back(lap_of(path) * sample_rate);
   LoopSamples loop;
   loop.foci = static_cast<int>(laps.size());
   loop.samples = loop_length(laps);

@@ -34,6 +34,9 @@ struct LoopSamples {
 /// paths or foci, with more than settings.foci, or with a lap that takes more than a second.
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate);
 
+/// Of a plan's paths [s]; 0 where every focal point is at rest.
+double longest_lap(const LiftedPlan& plan);
+
 /// Loops can be cut in parts of this many samples, 0.2 ms at 40 kHz.
 inline constexpr int kLoopUnit = 8;
 

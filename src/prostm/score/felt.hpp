@@ -9,8 +9,11 @@
 
 namespace prostm {
 
-/// Whether what is felt of a loop is computed: it takes at most 250 ms, at up to 100 kHz, and the
-/// raster has at most 128 cells along an edge, of 0.1 to 20 mm. Beyond, the skin has too many
+/// The longest loop whose percept is computed [s].
+inline constexpr double kLongestFelt = 0.25;
+
+/// Whether what is felt of a loop is computed: it takes at most kLongestFelt, at up to 100 kHz, and
+/// the raster has at most 128 cells along an edge, of 0.1 to 20 mm. Beyond, the skin has too many
 /// harmonics or places.
 bool is_felt(const TargetField& raster, const LoopSamples& loop);
 

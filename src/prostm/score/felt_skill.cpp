@@ -9,24 +9,45 @@
 
 namespace prostm {
 
-LoopSamples plan_loop(const Plan& plan, const TargetFrame& frame, EmitSettings settings,
-                      double sample_rate) {
-  LiftedPlan lifted;
-  lift(plan, frame, lifted);
-  compensate_tilt(lifted, frame, settings.tilt_bound);
+namespace {
+
+LiftedPlan lifted(const Plan& plan, const TargetFrame& frame, const EmitSettings& settings) {
+  LiftedPlan out;
+  lift(plan, frame, out);
+  compensate_tilt(out, frame, settings.tilt_bound);
+  return out;
+}
+
+double largest_pressure(const LiftedPlan& plan) {
   double largest = 0.0;
-  for (const LiftedPath& path : lifted.paths) {
+  for (const LiftedPath& path : plan.paths) {
     for (const double p : path.pressure) largest = std::max(largest, p);
   }
-  for (const LiftedFocus& focus : lifted.foci) largest = std::max(largest, focus.pressure);
-  if (largest <= 0.0) {
+  for (const LiftedFocus& focus : plan.foci) largest = std::max(largest, focus.pressure);
+  return largest;
+}
+
+LoopSamples loop_of(const LiftedPlan& plan, EmitSettings settings, double sample_rate) {
+  if (settings.full_scale_pressure == 0.0) settings.full_scale_pressure = largest_pressure(plan);
+  settings.foci = std::max(settings.foci, static_cast<int>(plan.paths.size() + plan.foci.size()));
+  return loop_samples(plan, settings, sample_rate);
+}
+
+bool is_silent(const LoopSamples& loop) {
+  return std::all_of(loop.sample.begin(), loop.sample.end(),
+                     [](const FocusSample& sample) { return sample.intensity == 0.0F; });
+}
+
+}  // namespace
+
+LoopSamples plan_loop(const Plan& plan, const TargetFrame& frame, const EmitSettings& settings,
+                      double sample_rate) {
+  const LiftedPlan on_skin = lifted(plan, frame, settings);
+  if (largest_pressure(on_skin) <= 0.0) {
     throw std::invalid_argument(
         "the plan has no pressure anywhere, so there is no field to compute");
   }
-  if (settings.full_scale_pressure == 0.0) settings.full_scale_pressure = largest;
-  settings.foci =
-      std::max(settings.foci, static_cast<int>(lifted.paths.size() + lifted.foci.size()));
-  return loop_samples(lifted, settings, sample_rate);
+  return loop_of(on_skin, settings, sample_rate);
 }
 
 double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
@@ -34,9 +55,11 @@ double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
                   WorkerPool& pool) {
   const TargetField& target = frame.patches[static_cast<std::size_t>(patch)];
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  if (plan.empty() || !(max_pressure(target) > 0.0)) return kUnknown;
-  const LoopSamples loop = plan_loop(plan, frame, settings, sample_rate);
-  if (!is_felt(target, loop)) return kUnknown;
+  const LiftedPlan on_skin = lifted(plan, frame, settings);
+  if (!(largest_pressure(on_skin) > 0.0) || !(max_pressure(target) > 0.0)) return kUnknown;
+  if (longest_lap(on_skin) > kLongestFelt) return kUnknown;
+  const LoopSamples loop = loop_of(on_skin, settings, sample_rate);
+  if (is_silent(loop) || !is_felt(target, loop)) return kUnknown;
   const Medium air;
   LoopDriveResult drives;
   loop_drives(
