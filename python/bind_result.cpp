@@ -23,12 +23,17 @@ Metrics metrics_of(const PlanResult& result, int patch, const EmitSettings* emis
                    double sample_rate, const std::optional<std::string>& array) {
   const TargetField& field = result.patch(patch);
   const SegmentPressures played = result.played(emission, sample_rate);
-  const TargetFrame frame = result.frame();
-  const EmitSettings emit = result.emission(emission);
-  const py::gil_scoped_release unlocked;
-  Metrics metrics =
-      score_plan(field, result.plan, patch, result.sigma(), result.gain_law(), &played);
+  const double sigma = result.sigma();
+  const GainLaw gain = result.gain_law();
+  Metrics metrics;
+  {
+    const py::gil_scoped_release unlocked;
+    metrics = score_plan(field, result.plan, patch, sigma, gain, &played);
+  }
   if (array) {
+    const TargetFrame frame = result.frame();
+    const EmitSettings emit = result.emission(emission);
+    const py::gil_scoped_release unlocked;
     WorkerPool pool(1);
     metrics.felt_skill =
         felt_skill(result.plan, frame, patch, emit, sample_rate, array_from_name(*array), pool);
