@@ -1,0 +1,56 @@
+"""The documents as a reader sees them: blocks of code, links and headings."""
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "data/README.md", *ROOT.glob("docs/**/*.md")])
+
+
+class Block(NamedTuple):
+    """A fenced block: the language after its fence, its text, and the line that the text begins on."""
+
+    language: str
+    text: str
+    line: int
+
+
+def name_of(page):
+    return str(page.relative_to(ROOT))
+
+
+def blocks_of(page):
+    blocks, inside = [], None
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        if not line.startswith("```"):
+            if inside is not None:
+                inside.append(line)
+        elif inside is None:
+            inside, language, begin = [], line[3:].strip(), number + 1
+        else:
+            blocks.append(Block(language, "\n".join(inside) + "\n", begin))
+            inside = None
+    assert inside is None, f"{name_of(page)}: a block of code does not end"
+    return blocks
+
+
+def text_of(page):
+    """The page without its blocks of code."""
+    kept, code = [], False
+    for line in page.read_text(encoding="utf-8").splitlines():
+        if line.startswith("```"):
+            code = not code
+        elif not code:
+            kept.append(line)
+    return "\n".join(kept)
+
+
+def links_of(page):
+    return re.findall(r"\]\(([^)\s]+)\)", text_of(page))
+
+
+def anchors_of(page):
+    """Of the headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", text_of(page), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}

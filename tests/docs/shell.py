@@ -1,0 +1,117 @@
+"""Types the commands of a document, as it has them, and compares what the document says they print."""
+
+import os
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+from pages import ROOT
+
+PROSTM = Path(os.environ["PROSTM"])
+# statuses other than 0 that a command may end with here, where no tracker is and any machine will do
+STATUSES = {"leap://": {3}, "openxr": {3}, "prostm check": {0, 1}}
+# commands that are not typed here: other tests run them, or they need another machine
+ELSEWHERE = ("cmake ", "g++ ", "ssh ", "tools/", "PKG_CONFIG_PATH=")
+SECONDS = 2  # of a run that keeps the clock's time
+
+
+def split_commands(text):
+    """One for each command: lines that end in a backslash and here-documents are joined."""
+    command, end = "", None
+    for line in text.splitlines():
+        command += line + "\n"
+        if end is None and (found := re.search(r"<<'?(\w+)'?", line)):
+            end = found[1]
+        if (end is None and not line.endswith("\\")) or line == end:
+            if command.strip() and not command.startswith("#"):
+                yield command.rstrip("\n")
+            command, end = "", None
+    assert not command, f"a command does not end: {command}"
+
+
+def shortened(command):
+    """The same for 2 s where it would keep the clock's time for longer, and its page at any free port."""
+    words = command.split("#")[0]
+    if not words.startswith("prostm run") or "--as-fast-as-possible" in words or "--stepped" in words:
+        return command
+    short, replaced = re.subn(r"--seconds \S+", f"--seconds {SECONDS}", words)
+    short += "" if replaced else f" --seconds {SECONDS}"
+    return short + (" --view-port 0" if "--view" in words and "--view-port" not in words else "")
+
+
+def statuses_of(command):
+    return next((allowed for words, allowed in STATUSES.items() if words in command), {0})
+
+
+def check_run(command):
+    """That ./run has the command, and the benchmark or comparison that it names."""
+    words = shlex.split(command, comments=True)[1:]
+    usage = subprocess.run([ROOT / "run", "--help"], capture_output=True, text=True, check=True).stdout
+    assert re.search(rf"^  {words[0]}\b", usage, re.MULTILINE), f"./run has no {words[0]}"
+    if words[0] in ("bench", "lab"):
+        for name in words[1:]:
+            if name.startswith("-"):
+                break
+            assert (ROOT / words[0] / f"{name}_{words[0]}.cpp").exists(), f"./run {words[0]} has no {name}"
+    else:
+        for option in filter(lambda w: w.startswith("--"), words[1:]):
+            assert option in usage or words[0] == "demo", f"./run {words[0]} has no {option}"
+
+
+def type_command(command, folder):
+    """Runs it with bash in `folder`. @return what it printed, both streams together."""
+    if command.startswith("./run"):
+        check_run(command)
+        return None
+    if command.startswith(ELSEWHERE):
+        return None
+    environment = os.environ | {"PATH": f"{PROSTM.parent}:{os.environ['PATH']}"}
+    done = subprocess.run(["bash", "-c", shortened(command)], cwd=folder, env=environment, timeout=120,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    assert done.returncode in statuses_of(command), f"{command}\nended with {done.returncode}:\n{done.stdout}"
+    return done.stdout
+
+
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?")
+
+
+def same_line(said, printed):
+    """Whether a line is what the document says: … stands for anything, numbers may differ by a tenth."""
+    pattern = "".join(
+        ".*" if part == "…" else rf"({NUMBER.pattern})" if NUMBER.fullmatch(part) else re.escape(part)
+        for part in re.split(rf"(…|{NUMBER.pattern})", said.rstrip()) if part)
+    found = re.fullmatch(pattern, printed.rstrip())
+    if not found:
+        return False
+    wanted = [float(n) for n in NUMBER.findall(said)]
+    return all(abs(float(n) - w) <= 0.1 * abs(w) + 0.02 for n, w in zip(found.groups(), wanted, strict=True))
+
+
+def check_output(said, printed):
+    """Every line that the document shows comes, in order; a line of … alone stands for any lines."""
+    lines = iter(printed.splitlines())
+    skipping = False
+    for line in said.splitlines():
+        if line.strip() == "…":
+            skipping = True
+            continue
+        for got in lines:
+            if same_line(line, got):
+                break
+            assert skipping, f"said:    {line}\nprinted: {got}\nin:\n{printed}"
+        else:
+            raise AssertionError(f"never printed: {line}\nin:\n{printed}")
+        skipping = False
+
+
+def run_console(text, folder):
+    """A block of commands after "$ " and what they print."""
+    for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
+        command, _, said = part.partition("\n")
+        while command.endswith("\\"):
+            more, _, said = said.partition("\n")
+            command += "\n" + more
+        printed = type_command(command, folder)
+        if printed is not None:
+            check_output(said, printed)
