@@ -1,4 +1,5 @@
-/// The AM baseline: updates a second, Table I of [B-1] in trend, and the paper's Fig. 3 in kind.
+/// The AM baseline: updates per second, the trend of Table I of [B-1], and a figure like the
+/// paper's Fig. 3.
 
 #include <fmt/core.h>
 
@@ -44,11 +45,11 @@ int main(int argc, char** argv) {
   using namespace prostm::bench;
   CLI::App app("AM, the paper's baseline: updates a second, and its table of errors");
   Options options;
-  app.add_option("--frames", options.frames, "scored of each field, spread over its sequence")
+  app.add_option("--frames", options.frames, "frames scored per field, spread over its sequence")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   app.add_option("--figure", options.figure,
-                 "draw target, STM and AM of each of FIELDS; .png or .svg");
+                 "draw target, STM and AM for each of FIELDS; .png or .svg");
   app.add_option("FIELDS", options.files,
                  "recordings of prostm capture or field files, after the generated fields");
   return run(app, argc, argv, [&] { return measure(options); });

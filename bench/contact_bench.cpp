@@ -1,5 +1,5 @@
-/// What it costs to make the targets of one update from the smoke on a moving hand, on two, and on
-/// two whose fingers interlock: processor time of the one thread that does it.
+/// Cost of making one update's targets from the smoke, as processor time of the one thread that
+/// does it: on one moving hand, on two, and on two with interlocked fingers.
 ///
 /// usage: contact_bench [--json FILE]
 
@@ -22,7 +22,7 @@ namespace {
 constexpr int kCells = 64, kUpdates = 400;
 constexpr double kUpdate = 0.04;     // [s]
 constexpr double kHandStart = 4.0;   // [s] into the scripted hand's cycle: it hovers, then lowers
-constexpr double kFarApart = 0.150;  // between the hands [m]
+constexpr double kFarApart = 0.150;  // distance between the hands [m]
 constexpr double kInterlocked = 0.012;
 
 double processor_ms() {
@@ -31,7 +31,7 @@ double processor_ms() {
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
-/// The scripted hand, and where `apart` is not 0 a second one beside it and 20 mm above [m].
+/// Samples the scripted hand; if `apart` [m] is not 0, adds a second one beside it, 20 mm higher.
 void sample(HandSource& source, double time, double apart, HandFrame& frame) {
   source.sample(time, frame);
   to_device(default_tracker_pose(), frame);

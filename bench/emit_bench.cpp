@@ -1,4 +1,4 @@
-/// What the emission costs per block, and whether the simulated array is fed in time, alone and on
+/// Cost of the emission per block, and whether the simulated array is fed in time on an idle and on
 /// a busy machine.
 ///
 /// usage: emit_bench [--json FILE]
@@ -28,7 +28,7 @@ constexpr double kRate = 40e3;      // [Hz]
 constexpr std::size_t kBlock = 40;  // samples
 constexpr int kBlocksPerPlan = 40;  // 25 plans a second
 
-/// Four loops of 140 mm in 100 points, at places that drift by `drift` [m] a plan.
+/// Makes four loops of 140 mm in 100 points each; their centres drift by `drift` [m] per plan.
 void make_plan(Random& random, std::vector<Vec3>& centres, double drift, LiftedPlan& plan) {
   plan.paths.clear();
   ++plan.id;
@@ -45,7 +45,7 @@ void make_plan(Random& random, std::vector<Vec3>& centres, double drift, LiftedP
   }
 }
 
-/// Four foci at such places.
+/// Makes four foci whose places drift in the same way.
 void make_foci(Random& random, std::vector<Vec3>& centres, double drift, LiftedPlan& plan) {
   plan.foci.clear();
   ++plan.id;
@@ -68,7 +68,7 @@ std::vector<Vec3> centres() {
   return out;
 }
 
-/// Cost of fill() [µs], of blocks with a new plan and of the others.
+/// Measures the cost of fill() [µs], separately for blocks with a new plan and for the others.
 template <class MakePlan>
 void measure_fill(Method method, const MakePlan& make, Distribution& without, Distribution& with) {
   const auto emitter = make_emitter(method, emit_settings(), kRate);
@@ -88,7 +88,7 @@ void measure_fill(Method method, const MakePlan& make, Distribution& without, Di
   }
 }
 
-/// Ten seconds in real time with 25 plans a second, beside `busy` threads that never sleep.
+/// Streams for ten seconds in real time, 25 plans a second, beside `busy` threads that never sleep.
 DeviceStats stream(unsigned busy) {
   std::atomic<bool> done{false};
   std::vector<std::jthread> load;
@@ -113,18 +113,18 @@ DeviceStats stream(unsigned busy) {
   return array.stats();
 }
 
-/// Cost of a block of 40 samples of 4 focal points.
+/// Adds the cost of a block of 40 samples of 4 focal points.
 void add_fill_rows(std::vector<Row>& rows) {
   Distribution steady, with_plan, foci;  // [µs]
   measure_fill(Method::ProStm, make_plan, steady, with_plan);
-  // foci take a plan over in whichever block has a zero
+  // a new plan's foci are taken over in whichever block has a zero of the envelope
   measure_fill(Method::Am, make_foci, foci, foci);
   rows.push_back({"fill", "us", steady.summary(), "", 0.0});
   rows.push_back({"fill with a new plan", "us", with_plan.summary(), "", 0.0});
   rows.push_back({"fill, am, new plans among them", "us", foci.summary(), "", 0.0});
 }
 
-/// How many of the 10,000 blocks of ten seconds come late or not at all.
+/// Counts how many of the 10,000 blocks of ten seconds are late or missed.
 void add_stream_rows(unsigned busy, const std::string& load, std::vector<Row>& rows) {
   const DeviceStats stats = stream(busy);
   Distribution late, missed;

@@ -1,5 +1,5 @@
-/// What the field of an array costs: rows of the propagation matrix, and the field of a whole loop
-/// beside the direct product of matrices through OpenBLAS.
+/// Cost of an array's field: rows of the propagation matrix, and the field of a whole loop compared
+/// with direct matrix products by OpenBLAS.
 ///
 /// usage: field_bench [--json FILE]
 
@@ -38,8 +38,8 @@ std::vector<Vec3> raster(int side) {
   return points;
 }
 
-/// Nanoseconds an element of G, interleaved: the kernel, the plain reference, and the floor, which
-/// only writes as many numbers.
+/// Adds the time per element of G [ns], measured in turn for the kernel, for the plain reference,
+/// and for the floor, which only writes as many numbers.
 void add_propagation_rows(int points, int repeats, std::vector<Row>& rows) {
   const PackedArray packed(usx_array(), Medium());
   std::vector<Vec3> at = raster(64);
@@ -67,9 +67,9 @@ void add_propagation_rows(int points, int repeats, std::vector<Row>& rows) {
 }
 
 constexpr int kSamples = 800;  // 20 ms at 40 kHz
-constexpr int kSide = 64;      // of the raster of points
+constexpr int kSide = 64;      // points along each edge of the raster
 
-/// What the transducers of a USX put out in 20 ms of four paths of a plan of preset best.
+/// Returns the output of a USX's transducers over 20 ms of a plan of preset best with four paths.
 LoopDrives gallery_drives(fields::Pattern pattern) {
   const TargetField target = fields::make(pattern, 0);
   Planner planner(PlanSettings(), target.size());
@@ -97,7 +97,7 @@ LoopDrives gallery_drives(fields::Pattern pattern) {
   return drives;
 }
 
-/// The raster, facing the array.
+/// Returns the raster's points, facing the array.
 SurfacePoints surface() {
   SurfacePoints out;
   out.p_D = raster(kSide);
@@ -106,8 +106,8 @@ SurfacePoints surface() {
 }
 
 #ifdef PROSTM_WITH_OPENBLAS
-/// The same by direct products: G in the precision of T, ready made, times the drives, in blocks
-/// of rows whose product stays in the cache, and the sum of squares of each row by BLAS, too.
+/// The same results by direct products: a ready-made G in the precision of T times the drives, in
+/// blocks of rows whose product stays in the cache; BLAS also sums the squares of each row.
 template <class T>
 class DirectProduct {
  public:
@@ -182,7 +182,7 @@ class DirectProduct {
   std::vector<std::complex<T>> g_, a_, z_;
 };
 
-/// Largest difference over the largest value.
+/// Returns the largest difference, relative to the largest value of `b`.
 double difference(const std::vector<float>& a, const std::vector<float>& b) {
   double worst = 0.0;
   float most = 0.0F;
@@ -193,8 +193,8 @@ double difference(const std::vector<float>& a, const std::vector<float>& b) {
   return worst / static_cast<double>(most);
 }
 
-/// Milliseconds of a loop's field with so many threads, all patterns of the gallery, interleaved.
-/// Ours builds G, the products are given it.
+/// Adds the time of a loop's field [ms] with this many threads, all patterns of the gallery,
+/// measured in turn. Our code builds G; the products are given it.
 void add_loop_rows(const std::vector<LoopDrives>& loops, int threads, std::vector<Row>& rows) {
   const PackedArray packed(usx_array(), Medium());
   const SurfacePoints at = surface();
@@ -245,7 +245,7 @@ std::vector<Row> measure_field() {
   for (const fields::Pattern pattern : fields::kPatterns) loops.push_back(gallery_drives(pattern));
   for (const int threads : {1, 2}) add_loop_rows(loops, threads, rows);
 #else
-  fmt::print("libopenblas-dev is not there: nothing to compare the field of a loop with\n");
+  fmt::print("no comparison of a loop's field: this build did not find libopenblas-dev\n");
 #endif
   return rows;
 }

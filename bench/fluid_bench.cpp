@@ -1,5 +1,5 @@
-/// What a moving hand on the grid and a step of the smoke with it cost, and how far its pressure on
-/// the hand is from a converged solve.
+/// Cost of a moving hand on the grid and of a step of the smoke with it, and the error of its
+/// pressure on the hand against a converged solve.
 ///
 /// usage: fluid_bench [--json FILE]
 
@@ -29,15 +29,15 @@ using prostm::bench::Row;
 
 constexpr int kThreads = 2;
 constexpr double kStep = 0.02;  // [s]
-constexpr int kHistory = 200;   // steps whose pressure is compared
-constexpr int kWarmUp = 50;     // steps before anything is measured
+constexpr int kHistory = 200;   // compared steps
+constexpr int kWarmUp = 50;     // steps before the first measured one
 constexpr int kTimedSteps = 300;
 constexpr double kHandStart = 4.0;  // [s] into the scripted hand's cycle: it hovers, then lowers
 constexpr int kExactCycles = 25;
 
-// what a step must move per cell, each array read or written once a pass [bytes]: centred velocity
-// 24, trace 24, four fields 44, divergence 16, two V-cycles 2 · 64 · 8/7, projection 28, publishing
-// 40
+// Least memory traffic of a step per cell [bytes], each array read or written once per pass:
+// centred velocity 24, trace 24, four fields 44, divergence 16, two V-cycles 2 · 64 · 8/7,
+// projection 28, publishing 40.
 constexpr double kBytesPerCell = 322;
 
 /// The scripted hand on a fluid's grid, step by step.
@@ -75,8 +75,8 @@ FluidSettings jacobi(int cells, bool warm) {
   return settings;
 }
 
-/// Relative L2 error of a's pressure against b's on the fluid cells beside the hand [%]; negative
-/// without a hand.
+/// Returns the relative L2 error of a's pressure against b's on the fluid cells beside the hand
+/// [%]; negative without a hand.
 double hand_pressure_error(const Fluid& a, const Fluid& b) {
   const prostm::GridShape& g = a.grid();
   const auto fluid = a.fluid_cells();
@@ -99,7 +99,7 @@ double hand_pressure_error(const Fluid& a, const Fluid& b) {
   return norm > 0.0 ? 100.0 * std::sqrt(error / norm) : -1.0;
 }
 
-/// A fluid's own history, each step compared with a converged solve from the same state.
+/// Compares each step of a fluid's own history with a converged solve from the same state.
 Summary accuracy(const FluidSettings& settings, const std::string& scene) {
   prostm::WorkerPool pool(kThreads);
   Fluid fluid(settings, prostm::scene_from_name(scene).smoke, pool);
@@ -125,7 +125,7 @@ struct StepTimes {
   Summary ours, paper;  // [ms]
 };
 
-/// Steps of both solvers, one of each in turn.
+/// Times steps of both solvers in turn.
 StepTimes step_times(int cells, int steps) {
   prostm::WorkerPool pool(kThreads);
   const prostm::SmokeInflow scene = prostm::scene_from_name("one-plume").smoke;
@@ -143,7 +143,8 @@ StepTimes step_times(int cells, int steps) {
   return {ours_ms.summary(), paper_ms.summary()};
 }
 
-/// The scripted hand on a 64³ grid step by step, alone or with a second one beside and above it.
+/// Times rasterising the scripted hand on a 64³ grid, alone or with a second one beside and above
+/// it.
 Summary raster_times(bool two) {
   prostm::WorkerPool pool(kThreads);
   const prostm::Fluid fluid(multigrid(64, 1), prostm::scene_from_name("four-plumes").smoke, pool);
@@ -168,7 +169,7 @@ Summary raster_times(bool two) {
   return ms.summary();
 }
 
-/// Bytes a second of y = a·x + z over arrays as large as the fluid's state at 64³.
+/// Measures the bytes per second of y = a·x + z over arrays as large as the fluid's state at 64³.
 double triad_rate() {
   prostm::WorkerPool pool(kThreads);
   constexpr int kTasks = 64, kPerTask = 1 << 14;

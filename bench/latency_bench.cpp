@@ -1,6 +1,7 @@
-/// From the tracker's frame to the first sample planned from it, in real time, in turns: prostm
-/// with switches at lap ends and at once, and the paper's arrangement of the same stages. Beside
-/// them, how late the machine wakes a thread that has nothing to do.
+/// Latency from a tracker's frame to the first sample planned from it, in real time, measured in
+/// turn for prostm with switches at lap ends, with switches at once, and for the paper's
+/// arrangement of the same stages. For comparison: how late the machine wakes a thread that has
+/// nothing to do.
 ///
 /// usage: latency_bench [--json FILE] [--hand FILE] [--scene S] [--seconds S] [--rounds N]
 
@@ -22,11 +23,11 @@ namespace {
 
 struct Options {
   std::string hand = "../shared/data/hands/flapping.hands.jsonl", scene = "one-plume";
-  double seconds = 15.0;  // of each run
+  double seconds = 15.0;  // duration of each run [s]
   int rounds = 3;
 };
 
-/// One way to arrange the stages, and what its runs gave.
+/// One arrangement of the stages, and the results of its runs.
 struct Arrangement {
   std::string name;
   PipelineSettings settings;
@@ -44,9 +45,9 @@ Arrangement ours(const Options& given, SwitchAt switch_at) {
   return a;
 }
 
-/// The paper's: the fluid at 50 Hz, each step as a whole after its hands, which are those that are
-/// there; 40 Jacobi sweeps; plans at 25 Hz that take 24 ms, for which preset best stands in with
-/// that budget; switches at lap ends; the same queue.
+/// The paper's arrangement: the fluid at 50 Hz with 40 Jacobi sweeps, each step computed as a whole
+/// after its hands, which are the newest available; plans at 25 Hz that take 24 ms, approximated by
+/// preset best with that budget; switches at lap ends; the same queue.
 Arrangement papers(const Options& given) {
   Arrangement a = ours(given, SwitchAt::Lap);
   a.name = "the paper's";
@@ -75,8 +76,8 @@ RunSummary run_once(const Arrangement& a, const Options& given) {
   return summary;
 }
 
-/// How late a thread wakes that sleeps until every next millisecond, alone on the machine: what no
-/// arrangement can be below [ms].
+/// Adds how late a thread wakes [ms] that sleeps until each next millisecond, alone on the machine:
+/// a lower bound for every arrangement.
 void add_wake_ups(double seconds, Distribution& late) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kPeriod{1};
@@ -87,7 +88,7 @@ void add_wake_ups(double seconds, Distribution& late) {
   }
 }
 
-/// The median over the runs.
+/// Returns the median over the runs.
 double middle(const Arrangement& a, const std::function<double(const RunSummary&)>& figure) {
   std::vector<double> values;
   values.reserve(a.runs.size());
@@ -100,7 +101,7 @@ double laps_completed(const RunSummary& run) {
                    static_cast<double>(std::max<std::int64_t>(1, run.emit.laps_started));
 }
 
-/// A distribution over the runs: medians of their quantiles, and the largest value of all [ms].
+/// Combines a distribution over the runs [ms]: medians of the quantiles, and the overall maximum.
 Summary over_runs(const Arrangement& a,
                   const std::function<const Summary&(const RunSummary&)>& of) {
   Summary all;
@@ -139,7 +140,7 @@ void print_parts(const std::vector<Arrangement>& arrangements) {
 
 std::vector<bench::Row> measure_latency(Options given) {
   if (given.hand != "scripted" && !std::filesystem::exists(given.hand)) {
-    fmt::print("{} is not there: the scripted hand instead\n", given.hand);
+    fmt::print("{} not found: using the scripted hand instead\n", given.hand);
     given.hand = "scripted";
   }
   std::vector<Arrangement> arrangements = {ours(given, SwitchAt::Lap), ours(given, SwitchAt::Now),
@@ -187,11 +188,11 @@ int main(int argc, char** argv) {
   CLI::App app("The latency from a tracker's frame to the first sample planned from it.");
   prostm::Options given;
   app.add_option("--hand", given.hand, "a recording, or scripted")->capture_default_str();
-  app.add_option("--scene", given.scene, "of the fluid")->capture_default_str();
-  app.add_option("--seconds", given.seconds, "of each run")
+  app.add_option("--scene", given.scene, "scene of the fluid")->capture_default_str();
+  app.add_option("--seconds", given.seconds, "duration of each run [s]")
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
-  app.add_option("--rounds", given.rounds, "of all three in turn")
+  app.add_option("--rounds", given.rounds, "rounds of all three arrangements in turn")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   return prostm::bench::run(app, argc, argv, [&] { return prostm::measure_latency(given); });

@@ -1,6 +1,5 @@
-/// What one update of the whole line costs, beside the paper's arrangement of it: the time from a
-/// hand to the samples of the 40 ms that follow, on the machine's cores, without waiting for a
-/// clock.
+/// Cost of one update of the whole pipeline, compared with the paper's arrangement: the computing
+/// time from a hand to the samples of the 40 ms that follow, without waiting for a clock.
 
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/pipeline/pipeline.hpp"
@@ -22,7 +21,7 @@ PipelineSettings settings_of(const std::string& scene, bool papers) {
   return s;
 }
 
-/// A pipeline and what its updates cost [ms].
+/// A pipeline and the costs of its updates [ms].
 struct Line {
   explicit Line(const PipelineSettings& settings)
       : pipeline(settings, make_scripted_hand(settings.scripted_hand, settings.track)) {}

@@ -1,5 +1,5 @@
-/// What the planners are worth: quality and speed of every preset on the gallery of bench/fields or
-/// on captured fields, beside a textbook planner and controls.
+/// Quality and speed of every preset on the generated gallery of tests/fields or on captured
+/// fields, compared with a textbook planner and controls.
 
 #include <fmt/core.h>
 
@@ -48,7 +48,7 @@ std::vector<Row> measure_all(const Options& options) {
   std::vector<Contender> contenders = bench::contenders();
   std::vector<SequenceOutcome> outcomes;
   for (std::size_t s = 0; s < sequences.size(); ++s) {
-    // three patterns on, so that it is another kind of field
+    // three patterns further, so that the field is of another kind
     const TargetField other = generated[(s + 3) % generated.size()].field(1);
     outcomes.push_back(measure(sequences[s], other, contenders, options.quality));
     print(outcomes.back());
@@ -79,14 +79,15 @@ int main(int argc, char** argv) {
   CLI::App app("every preset on generated or given fields, beside a textbook planner and controls");
   Options options;
   app.add_option("--frames", options.quality.frames,
-                 "scored of each field, spread over its sequence")
+                 "frames scored per field, spread over its sequence")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
-  app.add_option("--seeds", options.quality.seeds, "of the textbook planner, whose median counts")
+  app.add_option("--seeds", options.quality.seeds,
+                 "seeds of the textbook planner; the median counts")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--vectors", options.vectors,
-                 "no better vector instructions than these: AVX2, SSE4, …, none");
+                 "best vector instructions to use: AVX2, SSE4, …, none");
   app.add_option("--figure", options.figure, "draw the gallery; .png or .svg");
   app.add_option("--scaling-figure", options.scaling_figure, "draw time against size");
   app.add_option("--bending-figure", options.bending_figure, "draw error against corners");

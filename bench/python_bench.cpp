@@ -1,4 +1,4 @@
-/// What a plan costs from Python beside C++: the same field, settings and process, in turn.
+/// Cost of a plan from Python and from C++: the same field, settings and process, in turn.
 ///
 /// usage: python_bench [--json FILE]
 
@@ -22,8 +22,8 @@ namespace py = pybind11;
 
 constexpr int kRepeats = 400;
 
-/// The Python side: `plan` is one call of a planner that is kept; `read` looks at every array of
-/// its result as well; `whole` makes the field from an array before.
+/// The Python side: `plan` calls a planner that is kept; `read` also reads every array of the
+/// result; `whole` first makes the field from an array.
 constexpr const char* kPython = R"(
 import time
 import numpy
@@ -64,7 +64,7 @@ py::array_t<double> as_array(const TargetField& field) {
   return pressure;
 }
 
-/// Times of Python and C++ in turn, and in each repeat the one less the other.
+/// Adds the times of Python and C++, measured in turn, and their difference in each repeat.
 void compare(const std::string& name, const PlanSettings& settings, py::module_& main,
              std::vector<bench::Row>& rows) {
   const TargetField field = fields::make(fields::Pattern::FourPlumes, 0);
@@ -82,7 +82,7 @@ void compare(const std::string& name, const PlanSettings& settings, py::module_&
     const py::object function = main.attr(call);
     Distribution python, cpp, overhead;
     for (int repeat = -10; repeat < kRepeats; ++repeat) {
-      // who comes first takes turns as well
+      // they also take turns in being first
       double a = 0.0, b = 0.0;
       if (repeat % 2 == 0) a = microseconds_of_cpp(planner, field);
       b = 1e-3 * function(python_planner, pressure, python_field, field.cell).cast<double>();

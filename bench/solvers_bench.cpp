@@ -1,4 +1,4 @@
-/// Focus solvers: how many solutions a second, how true they are, and how smoothly drives move.
+/// Focus solvers: solutions per second, accuracy, and steps of the drives' phases.
 ///
 /// usage: solvers_bench [--json FILE]
 

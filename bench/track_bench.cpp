@@ -1,6 +1,6 @@
-/// How far hands are from where they are taken to be, some time after a tracker's frame came in:
-/// held where they were, or predicted as CausalTrack does. Real recordings, where they are there,
-/// and the scripted hand at 110 frames a second.
+/// Errors of the assumed hand positions some time after a tracker's frame: held at the last frame
+/// or predicted as CausalTrack does. Uses real recordings, if available, and the scripted hand at
+/// 110 frames a second.
 ///
 /// usage: track_bench [--json FILE] [--recordings FOLDER]
 
@@ -21,7 +21,7 @@ constexpr double kHorizons[] = {0.010, 0.020, 0.030, 0.040};  // [s]
 constexpr std::array<std::size_t, 6> kJoints = {kPalm,      kThumbTip, kIndexTip,
                                                 kMiddleTip, kRingTip,  kLittleTip};
 
-/// Where a hand truly is: linear between the recording's frames; false where it is not tracked.
+/// Interpolates the true hand linearly between the recording's frames; false if it is not tracked.
 bool truth(const HandRecording& recording, const Hand& hand, double time, Hand& out) {
   const auto after = std::upper_bound(recording.frames.begin(), recording.frames.end(), time,
                                       [](double t, const HandFrame& f) { return t < f.time; });
@@ -40,7 +40,7 @@ bool truth(const HandRecording& recording, const Hand& hand, double time, Hand& 
   return true;
 }
 
-/// Errors [mm] of palm and finger tips, `horizon` [s] after each frame.
+/// Returns the errors of palm and finger tips [mm], `horizon` [s] after each frame.
 std::vector<double> errors(const HandRecording& recording, double horizon, bool predicted) {
   TrackSettings settings;
   settings.prediction = predicted ? horizon : 0.0;
@@ -72,7 +72,7 @@ HandRecording scripted(double jitter) {
   TrackSettings unsmoothed;
   const auto source = make_scripted_hand(settings, unsmoothed);
   HandRecording recording;
-  // at the tracker's own instants no noise is averaged between frames
+  // at the tracker's own instants, so that no noise is averaged between frames
   for (int i = 0; i < 4400; ++i) {
     source->sample(i / 110.0, recording.frames.emplace_back());
   }
@@ -101,7 +101,7 @@ std::vector<bench::Row> measure(const std::string& folder) {
   add_rows("scripted", scripted(0.0), rows);
   add_rows("scripted, 0.3 mm of noise", scripted(3e-4), rows);
   if (!std::filesystem::is_directory(folder)) {
-    fmt::print("{} is not there: no real recordings\n", folder);
+    fmt::print("{} not found: no real recordings\n", folder);
     return rows;
   }
   std::vector<std::filesystem::path> files;

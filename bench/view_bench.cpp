@@ -1,5 +1,5 @@
-/// What it costs to be looked at: a run in real time without a page, with one page, and with five
-/// of which one stops reading; and what the pipeline's own threads do for those who look.
+/// Cost of viewing: a run in real time without a page, with one page, and with five of which one
+/// stops reading; and the time that the pipeline's own threads spend on handing data over.
 ///
 /// usage: view_bench [--json FILE] [--seconds S] [--scene S]
 
@@ -27,7 +27,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 
 struct Options {
-  double seconds = 15.0;  // of each run
+  double seconds = 15.0;  // duration of each run [s]
   std::string scene = "one-plume";
 };
 
@@ -38,8 +38,8 @@ class UntilToldToStop final : public RunObserver {
   std::atomic<bool> stop{false};
 };
 
-/// A page that counts what comes, on a thread of its own; one that stops reads nothing more after
-/// its first frame.
+/// A page that counts the received frames on its own thread; one that stops reads nothing after its
+/// first frame.
 class Reader {
  public:
   Reader(int port, bool stops) : socket_(io_) {
@@ -74,7 +74,7 @@ class Reader {
   std::thread thread_;
 };
 
-/// What one run gave, second by second.
+/// The measurements of one run, one value per second.
 struct Measured {
   Distribution server, frames, bytes;  // [%], [1/s] and [MB/s] of each page that reads
   RunSummary run;
@@ -92,7 +92,7 @@ std::unique_ptr<HandSource> hands_of(const PipelineSettings& s) {
   return make_scripted_hand(s.scripted_hand, s.track);
 }
 
-/// Second by second until the time is over. @param stopped whether the first page has stopped.
+/// Measures once a second for `seconds`. @param stopped whether the first page stopped reading.
 void watch(const ViewServer& server, const std::vector<std::unique_ptr<Reader>>& pages,
            bool stopped, double seconds, Measured& out) {
   for (double t = 0.0; t < seconds; t += 1.0) {
@@ -126,7 +126,7 @@ void measure_run(const Options& given, int readers, bool one_stops, Measured& ou
                                     Vec3::Zero(), settings.fluid.width});
   ViewSettings view_settings;
   view_settings.port = 0;
-  view_settings.stall_time = 3600.0;  // the page that stopped stays
+  view_settings.stall_time = 3600.0;  // keeps the page that stopped
   const ViewServer server(view_settings, view, {});
 
   UntilToldToStop observer;
@@ -145,7 +145,7 @@ void measure_run(const Options& given, int readers, bool one_stops, Measured& ou
   if (out.run.failure) std::rethrow_exception(out.run.failure);
 }
 
-/// The same run that nobody can look at.
+/// Measures the same run without a server.
 RunSummary measure_alone(const Options& given) {
   const PipelineSettings settings = settings_of(given);
   Pipeline pipeline(settings, hands_of(settings));
@@ -157,7 +157,7 @@ RunSummary measure_alone(const Options& given) {
   return summary;
 }
 
-/// What the pipeline's threads do for those who look, a call at a time [µs].
+/// Measures the time that the pipeline's threads spend on handing data over, per call [µs].
 void measure_hand_off(const Options& given, Distribution& step, Distribution& smoke,
                       Distribution& plan) {
   constexpr int kSteps = 400;
@@ -180,7 +180,7 @@ void measure_hand_off(const Options& given, Distribution& step, Distribution& sm
   }
 }
 
-/// A number that is no distribution.
+/// Wraps a single number as a summary.
 Summary single(double value) {
   return {1, value, 0.0, value, value, value};
 }
@@ -229,10 +229,10 @@ std::vector<bench::Row> view_rows(const Options& given) {
 
 int main(int argc, char** argv) {
   prostm::Options given;
-  CLI::App app("what it costs to be looked at");
-  app.add_option("--seconds", given.seconds, "of each run")
+  CLI::App app("cost of viewing a run in the web page");
+  app.add_option("--seconds", given.seconds, "duration of each run [s]")
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
-  app.add_option("--scene", given.scene, "of the runs")->capture_default_str();
+  app.add_option("--scene", given.scene, "scene of the runs")->capture_default_str();
   return prostm::bench::run(app, argc, argv, [&] { return prostm::view_rows(given); });
 }

@@ -9,10 +9,10 @@ int main(int argc, char** argv) {
   CLI::App app("ways to render a target, played by the array and felt by the skin");
   int frames = 3;
   std::string figure;
-  app.add_option("--frames", frames, "of each generated sequence")
+  app.add_option("--frames", frames, "frames of each generated sequence")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  app.add_option("--figure", figure, "draw what each way puts on the skin, and what is felt");
+  app.add_option("--figure", figure, "draw each way's pressure on the skin, and its percept");
   return bench::run(app, argc, argv, [&] {
     if (!figure.empty()) check_figure(figure);
     std::vector<bench::Row> rows;

@@ -9,8 +9,8 @@
 
 namespace prostm::bench {
 
-/// Reads the options that `app` was given, and --json FILE; prints what `measure` gives, and
-/// writes it. @return 0, or 2 after one sentence about bad input.
+/// Reads the options of `app` and --json FILE; prints and writes the rows that `measure` returns.
+/// @return 0, or 2 after a message about bad input.
 template <class Measure>
 int run(CLI::App& app, int argc, char** argv, Measure measure) {
   std::string json;

@@ -1,5 +1,5 @@
 #pragma once
-/// What every benchmark program shares: its one option, its table and its JSON.
+/// Shared parts of the benchmark programs: their common option, table and JSON.
 
 #include <fmt/format.h>
 
@@ -16,11 +16,11 @@
 
 namespace prostm::bench {
 
-/// One line of a table: a distribution, and the median of what it is compared with.
+/// One line of a table: a distribution, and the median of its baseline.
 struct Row {
   std::string name, unit;
   Summary ours;
-  std::string baseline;       ///< empty when nothing is compared
+  std::string baseline;       ///< empty if nothing is compared
   double baseline_p50 = 0.0;  ///< in `unit`
 };
 
@@ -38,8 +38,8 @@ inline void print(const std::vector<Row>& rows) {
   }
 }
 
-/// [{"name","unit","n","p50","p99","max","baseline","baseline_p50","ratio"}, …]; ratio = baseline
-/// over ours.
+/// Returns [{"name","unit","n","p50","p99","max","baseline","baseline_p50","ratio"}, …]; ratio is
+/// baseline over ours.
 inline std::string to_json(const std::vector<Row>& rows) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Row& row : rows) {
@@ -57,7 +57,7 @@ inline std::string to_json(const std::vector<Row>& rows) {
   return prostm::to_text(list);
 }
 
-/// Prints rows and, where a file is named, writes them. @return 0
+/// Prints rows and writes them to the file `json`, if it is named. @return 0
 inline int print_and_write(const std::vector<Row>& rows, const std::string& json) {
   fmt::print("\n");
   print(rows);
@@ -65,7 +65,7 @@ inline int print_and_write(const std::vector<Row>& rows, const std::string& json
   return 0;
 }
 
-/// The main() of a benchmark: `program [--json FILE]`, where `measure` gives the rows.
+/// The main() of a benchmark: `program [--json FILE]`; `measure` returns the rows.
 template <class Measure>
 int run(int argc, char** argv, Measure measure) {
   std::string json;

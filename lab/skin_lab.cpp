@@ -1,5 +1,5 @@
-/// What the skin does under moving focal points: published experiments, computed with parameters
-/// that were fixed before, and the cost of a response.
+/// The skin under moving focal points: published experiments, computed with parameters that were
+/// fixed beforehand, and the cost of a response.
 
 #include "program.hpp"
 #include "prostm/figure/figures.hpp"
@@ -7,10 +7,10 @@
 
 int main(int argc, char** argv) {
   using namespace prostm;
-  CLI::App app("what the skin does under moving focal points: published experiments");
+  CLI::App app("the skin under moving focal points: published experiments");
   std::string folder;
   app.add_option("--figures", folder,
-                 "a folder; draw skin-circles.png, skin-squares.png, skin-lines.png and "
+                 "folder in which to draw skin-circles.png, skin-squares.png, skin-lines.png and "
                  "skin-gap.png");
   return bench::run(app, argc, argv, [&] {
     const auto figure = [&](const char* name) {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kMostFoci = 32;
 constexpr double kApart = 5e-3;  // least distance of two focal points [m]
-constexpr std::array kBounds = {5.0, 8.0, 11.0, 15.0, 20.0, 30.0};  // of distances [mm]
-constexpr std::array kCounts = {1, 3, 5, 9, 17, 33};                // of focal points
+constexpr std::array kBounds = {5.0, 8.0, 11.0, 15.0, 20.0, 30.0};  // bin edges, distance [mm]
+constexpr std::array kCounts = {1, 3, 5, 9, 17, 33};                // bin edges, focal points
 
 struct Method {
   const char* name;
@@ -27,7 +27,7 @@ const std::array kMethods = {Method{"superposition", {.method = FocusMethod::Sup
                              Method{"weighted", {.method = FocusMethod::Weighted}},
                              Method{"LM", {.method = FocusMethod::LevenbergMarquardt}}};
 
-/// Errors of shares by distance, and powers by number of focal points.
+/// Errors of shares by distance, and power by number of focal points.
 struct Outcome {
   std::array<std::vector<double>, kBounds.size()> errors;
   std::array<Distribution, kCounts.size() - 1> power;
@@ -45,7 +45,7 @@ std::vector<Vec3> random_foci(Random& random, int count) {
   return foci;
 }
 
-/// Of the nearest other focal point [mm]; 1000 where there is none.
+/// Returns the distance to the nearest other focal point [mm]; 1000 for a single one.
 double distance_of(const std::vector<Vec3>& foci, std::size_t m) {
   double least = 1.0;
   for (std::size_t other = 0; other < foci.size(); ++other) {

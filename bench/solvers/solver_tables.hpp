@@ -1,5 +1,5 @@
 #pragma once
-/// What focus solvers cost and what they reach.
+/// Cost and accuracy of the focus solvers.
 
 #include <vector>
 
@@ -7,20 +7,21 @@
 
 namespace prostm::bench {
 
-/// Times solutions for 1 to 32 focal points above the USX-like array, from positions to drives, one
-/// core, beside TextbookGsPat in turns; and how many there are in a sample of 40 kHz.
+/// Times solutions for 1 to 32 focal points above the USX-like array, from positions to drives, on
+/// one core, in turn with TextbookGsPat; prints how many fit into one sample at 40 kHz.
 void measure_speed(std::vector<Row>& rows);
 
-/// Prints the errors of shares against the distance of the nearest other focal point, and the
-/// levels, over `sets` random sets of 1 to 32 focal points with unequal targets, for every method.
+/// Prints the errors of shares by distance to the nearest other focal point, and the power by
+/// number of focal points, for every method over `sets` random sets of 1 to 32 points with unequal
+/// targets.
 void print_random_sets(int sets);
 
-/// Prints what streams of moving focal points get: errors of shares, power, and how far the phases
-/// of drives step from sample to sample, with and without the memory of the sample before.
+/// Prints the results for streams of moving focal points: errors of shares, power, and the steps of
+/// the drives' phases from sample to sample, with and without a warm start from the last sample.
 void measure_streams(std::vector<Row>& rows);
 
-/// Prints the radiation pressure that each of 1 to 8 focal points gets at full drive, over that of
-/// one alone, and what rounding the phases of drives costs.
+/// Prints the radiation pressure at each of 1 to 8 focal points at full drive, relative to that of
+/// a single one, and the cost of rounding the drives' phases.
 void print_power_and_rounding();
 
 }  // namespace prostm::bench

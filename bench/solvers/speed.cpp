@@ -10,8 +10,8 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kSample = 25e-6;  // of 40 kHz [s]
-constexpr int kSets = 50;          // that a measurement solves one after the other
+constexpr double kSample = 25e-6;  // sample period at 40 kHz [s]
+constexpr int kSets = 50;          // solved one after the other in a measurement
 constexpr int kRounds = 200;
 
 struct Sets {
@@ -20,7 +20,7 @@ struct Sets {
   std::vector<std::vector<float>> amplitudes;
 };
 
-/// Consecutive samples of moving focal points.
+/// Makes consecutive samples of moving focal points.
 Sets make_sets(int foci) {
   const fields::MovingFoci moving(1, foci, foci > 8 ? 8e-3 : 25e-3);
   Sets sets;

@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kRate = 40e3;  // [Hz]
 constexpr int kSamples = 800, kStreams = 10;
-constexpr int kStride = 8;  // between samples whose pressures are looked at
+constexpr int kStride = 8;  // between samples whose pressures are evaluated
 
-/// Amplitudes that are asked for.
+/// The requested amplitudes: as the focal points move, or all 1.
 enum class Ask { AsTheyMove, All };
 
 struct Streamed {
-  Distribution error;         ///< largest of a share in a sample [%]
-  Distribution each, sum;     ///< (p/p alone)² of each focal point, and Σ of all
+  Distribution error;         ///< largest error of a share in a sample [%]
+  Distribution each, sum;     ///< (p/p alone)² of each focal point, and their Σ
   std::vector<double> steps;  ///< of drives' phases from sample to sample [°]
 };
 
@@ -44,7 +44,7 @@ Eigen::VectorXcd drives_of(const LiveFocusSolver& solver) {
   return q;
 }
 
-/// What the drives reach, by (A1) in double precision.
+/// Evaluates the pressures of the drives by (A1) in double precision.
 void add_pressures(const std::vector<LiveFocus>& foci, const Eigen::VectorXcd& q, Streamed& out) {
   const auto count = static_cast<Eigen::Index>(foci.size());
   std::vector<Vec3> points;
@@ -61,7 +61,7 @@ void add_pressures(const std::vector<LiveFocus>& foci, const Eigen::VectorXcd& q
   for (const double share : y) out.each.add(share * share);
 }
 
-/// Follows streams of focal points on loops whose middles are at least `apart` [m].
+/// Follows streams of focal points on loops whose centres are at least `apart` [m] apart.
 Streamed follow(const LiveFocusSettings& settings, int count, double apart, Ask ask) {
   Streamed out;
   for (int stream = 0; stream < kStreams; ++stream) {

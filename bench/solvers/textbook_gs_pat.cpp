@@ -30,7 +30,7 @@ void TextbookGsPat::propagate(const Eigen::Vector3f& p, float* re, float* im) co
   for (std::size_t n = 0; n < n_; ++n) {
     const float dx = p.x() - x_[n], dy = p.y() - y_[n];
     const float across = dx * dx + dy * dy, r = std::sqrt(across + p.z() * p.z());
-    // 2 J₁(u)/u as its series in u², enough of it for u up to 4
+    // series of 2 J₁(u)/u in u², with enough terms for u up to 4
     const float u = wave_number_ * radius_ / r;
     const float v = u * u * across * 0.25F;
     const float directivity =
@@ -45,7 +45,7 @@ void TextbookGsPat::propagate(const Eigen::Vector3f& p, float* re, float* im) co
   }
 }
 
-/// R = G B and the squares of G's rows.
+/// Computes R = G B and the squares of G's rows.
 void TextbookGsPat::correlate(std::size_t foci) {
   for (std::size_t i = 0; i < foci; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {

@@ -1,5 +1,5 @@
 #pragma once
-/// GS-PAT as a good plain program has it: the baseline of the live solvers.
+/// GS-PAT as a good plain program implements it: the baseline of the live solvers.
 
 #include <span>
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace prostm::bench {
 
-/// (A13) in single precision, real and imaginary parts apart so that the compiler makes vectors of
-/// all loops over transducers; compiled with -O3 -ffast-math for the machine that it is built on.
+/// (A13) in single precision, with real and imaginary parts apart so that the compiler vectorises
+/// all loops over transducers; compiled with -O3 -ffast-math for the machine it is built on.
 class TextbookGsPat {
  public:
   /// @pre a flat array in z = 0 that faces +z, of pistons.
   TextbookGsPat(const TransducerArray& array, const Medium& medium, int most_foci);
 
-  /// Drives for `foci` [m] with target pressures a over what each has alone; one common factor, so
-  /// that none is above 1.
+  /// Computes drives for `foci` [m]; `a` are the target pressures relative to each focus alone. One
+  /// common factor keeps every drive at or below 1.
   void solve(std::span<const Eigen::Vector3f> foci, std::span<const float> a, int iterations);
 
   std::span<const float> re() const { return q_re_; }

@@ -11,13 +11,13 @@
 namespace prostm::bench {
 namespace {
 
-constexpr int kCells = 54;  // along each edge: cells of 3 mm
+constexpr int kCells = 54;  // per edge of the raster; each of 3 mm
 
-/// Means over fields of one way.
+/// Means over fields for one way of rendering.
 struct Means {
-  Distribution skill_0, skill_8, overlap, spill;                          // of the envelope
-  Distribution felt_skill_8, felt_correlation, felt_overlap, felt_spill;  // of the percept
-  Distribution lack, felt_lack;                                           // 1 − S_8.5 of both
+  Distribution skill_0, skill_8, overlap, spill;                          // scores of the envelope
+  Distribution felt_skill_8, felt_correlation, felt_overlap, felt_spill;  // scores of the percept
+  Distribution lack, felt_lack;                                           // 1 − S_8.5 of each
   Distribution side_lobe, ghosts, ghost;
   struct Level {
     Distribution pressure, percept, intensity, lobe, ghost;  // [Pa], [µm]
@@ -57,11 +57,12 @@ double mean(const Distribution& d) {
 
 void print_shapes(const std::array<Means, kWays.size()>& means) {
   fmt::print(
-      "\nShapes, whatever the level. Envelope: largest radiation pressure over the loop; felt: "
+      "\nShapes, independent of the level. Envelope: largest radiation pressure over the loop; "
+      "felt: "
       "the\n"
       "map of perceived intensity; lobe: largest of the envelope more than {:.0f} mm from all "
       "paths, "
-      "over\nits largest; ghosts: maxima of what is felt above half of its largest where nothing "
+      "over\nits largest; ghosts: maxima of the percept above half of its largest where nothing "
       "is "
       "to be felt,\nand the strongest of all such maxima over the largest\n"
       "{:<16} {:>8} {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n",

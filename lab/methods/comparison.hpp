@@ -1,5 +1,5 @@
 #pragma once
-/// Ways to render a target beside each other.
+/// Compares the ways to render a target.
 
 #include <string>
 #include <vector>
@@ -9,18 +9,20 @@
 
 namespace prostm::bench {
 
-/// What is made equal between ways before they are compared.
+/// The quantity that is made equal between ways before they are compared.
 enum class Equal { Drive, Power, Percept };
 
-/// What the square of a way's drives is to be multiplied by: largest |q| of 1; Σ |q|² of the
-/// reference's; the reference's largest percept. 0 where that means nothing: the drives of flat.
+/// Returns the factor for the square of a way's drives. Drive: the largest |q| becomes 1; Power: Σ
+/// |q|² becomes the reference's; Percept: the largest percept becomes the reference's. 0 if the way
+/// has no drives to scale.
 double factor_for(Equal equal, const Rendering& rendering, const Rendering& reference);
 
 /// Renders `frames` of each generated sequence in every way, 200 mm above the USX-like array, and
-/// prints means: first what no factor changes, then pressures and percepts under each control.
+/// prints means: first the quantities that no factor changes, then pressures and percepts under
+/// each control.
 void compare_ways(int frames, std::vector<Row>& rows);
 
-/// For two generated fields: the target, and for each way the envelope and what is felt.
+/// Draws the target, and for each way the envelope and the percept, for two generated fields.
 void draw_ways(const std::string& path);
 
 }  // namespace prostm::bench

@@ -13,10 +13,10 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kRate = 40e3;         // of samples [Hz]
-constexpr double kModulation = 200.0;  // of the flat field [Hz]
+constexpr double kRate = 40e3;         // sample rate [Hz]
+constexpr double kModulation = 200.0;  // modulation frequency of the flat field [Hz]
 
-/// @param sigma of the array's focus [m].
+/// @param sigma width of the array's focus [m].
 Plan plan_by(Way way, const TargetField& target, double sigma) {
   Plan plan;
   PlanStats stats;
@@ -41,7 +41,7 @@ Plan plan_by(Way way, const TargetField& target, double sigma) {
   return plan;
 }
 
-/// The plan as it sounds once it is running, full scale at its own largest pressure.
+/// Samples the running plan, with full scale at its own largest pressure.
 LoopSamples loop_of(const Plan& plan, const TargetField& target) {
   TargetFrame frame;
   frame.patches.push_back(target);
@@ -60,7 +60,7 @@ LoopSamples loop_of(const Plan& plan, const TargetField& target) {
   return loop_samples(lifted, settings, kRate);
 }
 
-/// 1 Pa on all skin at the peak of the modulation, whose intensity is |sin|.
+/// Returns 1 Pa on all skin at the peak of the modulation, whose intensity is |sin|.
 std::vector<double> flat_loop(const TargetField& raster, int parts) {
   std::vector<double> out;
   for (int k = 0; k < parts; ++k) {
@@ -107,10 +107,10 @@ struct Renderer::Parts {
   PackedArray packed;
   WorkerPool pool;
   FeelingSkin skin;
-  double sigma;  // of a focus in the raster's middle [m]
+  double sigma;  // width of a focus in the raster's middle [m]
 };
 
-/// What the array puts on the skin, and the skin's answer.
+/// Computes the field of the array on the skin, and the skin's response.
 void Renderer::Parts::play(const TargetField& target, Rendering& out) {
   const LoopSamples loop = loop_of(out.plan, target);
   LoopDriveResult drives;

@@ -1,5 +1,5 @@
 #pragma once
-/// What each way to render a target really puts on the skin, and what the skin makes of it.
+/// The pressure that each way to render a target puts on the skin, and the resulting percept.
 
 #include <memory>
 #include <string>
@@ -13,32 +13,32 @@
 
 namespace prostm::bench {
 
-/// The ways that are compared. BestNarrow is Best planned with the width of the array's own focus,
-/// all others with the paper's σ. Flat is no array's doing: the same pressure on all skin,
-/// modulated as AM is.
+/// The compared ways. BestNarrow is Best planned with the width of the array's own focus; all
+/// others use the paper's σ. Flat needs no array: the same pressure on all skin, modulated as in
+/// AM.
 enum class Way { PaperValid, Best, BestNarrow, Am, Circles, Flat };
 inline constexpr std::array kWays = {Way::PaperValid, Way::Best,    Way::BestNarrow,
                                      Way::Am,         Way::Circles, Way::Flat};
 std::string to_string(Way way);
 
-/// One way on one target, with the largest drive at 1; flat: with a pressure of 1 Pa. Radiation
-/// pressures [Pa] and percepts [m] go with the square of the drives.
+/// One way on one target, with the largest drive at 1; for Flat, with a pressure of 1 Pa. Radiation
+/// pressures [Pa] and percepts [m] scale with the square of the drives.
 struct Rendering {
   Plan plan;
-  double mean_power = 0.0;  ///< Σ |q|², mean over the loop; 0 of flat
+  double mean_power = 0.0;  ///< mean of Σ |q|² over the loop; 0 for Flat
   PhysicalField field;
   FeltField felt;
-  Metrics of_envelope, of_felt;  ///< of field.envelope and of felt.percept, against the target
+  Metrics of_envelope, of_felt;  ///< scores of field.envelope and felt.percept
   Ghosts ghosts;
 };
 
-/// Plans, plays and feels. Keeps what it has worked out for a loop's period.
+/// Plans, plays and computes percepts. Caches its results for a loop's period.
 class Renderer {
  public:
   Renderer(const TransducerArray& array, const TargetField& raster);
   ~Renderer();
 
-  /// @pre the target has the raster of the constructor, and pressure on skin.
+  /// @pre `target` has the raster of the constructor, and pressure on skin.
   Rendering render(Way way, const TargetField& target);
 
  private:

@@ -14,7 +14,7 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kPaperRate = 250.0;  // updates a second: "roughly 250 Hz on both test scenarios"
+constexpr double kPaperRate = 250.0;  // updates per second: "roughly 250 Hz on both test scenarios"
 constexpr const char* kCaution =
     "The paper calls its model of the field \"not suited for a quantitative (e.g., RMSE) "
     "comparison "
@@ -23,7 +23,7 @@ constexpr const char* kCaution =
 constexpr std::array kSigmas{8e-3, 16e-3, 24e-3, 32e-3};  // [m]
 constexpr std::array kCounts{2, 4, 8};
 
-/// Table I of [B-1], with the emitter as an obstacle and without.
+/// Table I of [B-1], with and without the emitter as an obstacle.
 struct Published {
   const char* name;
   double rmse[kCounts.size()][kSigmas.size()];
@@ -38,7 +38,7 @@ Metrics score_am(const TargetField& target, const Plan& plan, double sigma) {
   return score_plan(target, plan, 0, sigma, GainLaw{});
 }
 
-/// Mean RMSE over the frames of a sequence.
+/// Returns the mean RMSE over the frames of a sequence.
 double mean_rmse(const Sequence& sequence, int frames, int count, double sigma) {
   AmSettings settings;
   settings.foci = count;

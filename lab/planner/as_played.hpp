@@ -1,5 +1,5 @@
 #pragma once
-/// The quality of what is played of a plan, which is what the tables state.
+/// Quality of a plan as it is played; the tables state this quality.
 
 #include "prostm/emit/played.hpp"
 #include "prostm/plan/planner.hpp"
@@ -7,7 +7,8 @@
 
 namespace prostm::bench {
 
-/// By the emission's defaults, at a full scale of γ times the target's largest pressure.
+/// Returns the pressures played with the emission's default settings, with full scale at γ times
+/// the target's largest pressure.
 inline SegmentPressures played(const TargetField& target, const Plan& plan,
                                const PlanSettings& settings) {
   if (plan.empty()) return {};
@@ -16,7 +17,7 @@ inline SegmentPressures played(const TargetField& target, const Plan& plan,
   return played_pressures(plan, target, emit, 40e3);
 }
 
-/// score_plan() of that, with the planner's σ and γ.
+/// Scores the plan as it is played, with the planner's σ and γ.
 inline Metrics score_as_played(const TargetField& target, const Plan& plan,
                                const PlanSettings& settings) {
   const SegmentPressures pressures = played(target, plan, settings);

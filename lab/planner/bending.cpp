@@ -16,10 +16,10 @@ namespace prostm::bench {
 namespace {
 
 constexpr std::array kWeights{0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0};
-constexpr int kFrames = 10;  // of each field
+constexpr int kFrames = 10;  // per field
 constexpr double kDegrees = 180.0 / kPi;
 
-/// One preset, and which of its settings weighs bending.
+/// A preset and its setting that weighs bending.
 struct Kind {
   const char* preset;
   const char* setting;
@@ -28,12 +28,12 @@ struct Kind {
 constexpr std::array kKinds{Kind{"best", "fit_bending", &PlanSettings::fit_bending},
                             Kind{"paper-valid", "weight_bending", &PlanSettings::weight_bending}};
 
-/// Everything that is planned with one weight.
+/// The results of all plans with one weight.
 struct AtWeight {
   double weight = 0.0;
-  Distribution rmse, skill;  // of plans
+  Distribution rmse, skill;  // per plan
   Distribution paths;
-  Distribution sharpest, rms, excess, length;  // of paths [degrees, mm]
+  Distribution sharpest, rms, excess, length;  // per path [degrees, mm]
 
   void add(const TargetField& field, const Plan& plan, const PlanSettings& s) {
     const Metrics m = score_as_played(field, plan, s);
@@ -86,7 +86,7 @@ void print_table(const Kind& kind, const std::vector<AtWeight>& sweep) {
   fmt::print("{:>14} the default\n", "*");
 }
 
-/// A line of the figure, from the roundest paths on.
+/// Makes a line of the figure, starting with the roundest paths.
 template <class X, class Y>
 ChartSeries line(const Kind& kind, const std::vector<AtWeight>& sweep, const X& x, const Y& y) {
   ChartSeries series;

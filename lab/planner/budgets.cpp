@@ -9,9 +9,9 @@
 namespace prostm::bench {
 namespace {
 
-constexpr int kScored = 20;  // frames of each field
+constexpr int kScored = 20;  // frames per field
 
-/// Times [ms], and how many were over the budget.
+/// Times [ms], and the number of those over the budget.
 struct Times {
   Distribution times;
   int count = 0, over = 0;

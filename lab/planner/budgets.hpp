@@ -1,5 +1,5 @@
 #pragma once
-/// Whether plans keep to their budget of time.
+/// Checks whether plans keep to their time budget.
 
 #include <vector>
 
@@ -7,9 +7,9 @@
 
 namespace prostm::bench {
 
-/// Times plans of `best` on the generated fields under budgets of 1 and 20 ms, each in turn with a
-/// loop that does nothing but watch the clock until 97 % of the budget: what that loop is late,
-/// the machine is. Prints the table.
+/// Times plans of `best` on the generated fields under budgets of 1 and 20 ms, in turn with a loop
+/// that only watches the clock until 97 % of the budget: if that loop is late, the machine is the
+/// cause. Prints the table.
 void measure_budgets(std::vector<Row>& rows);
 
 }  // namespace prostm::bench

@@ -1,5 +1,5 @@
 #pragma once
-/// The planners that a bench measures.
+/// The planners that are measured.
 
 #include <memory>
 #include <string>
@@ -9,19 +9,19 @@
 
 namespace prostm::bench {
 
-/// One way to plan a sequence of targets: a preset with its settings, kept from frame to frame or
-/// begun anew for each.
+/// One way to plan a sequence of targets: a preset with its settings, whose planner is either kept
+/// from frame to frame or reset for each.
 struct Variant {
-  std::string name;        ///< in tables
-  std::string preset;      ///< of PlanSettings
-  double budget_ms = 0.0;  ///< time that it is given; 0 = the preset's own
+  std::string name;        ///< as shown in tables
+  std::string preset;      ///< a preset of PlanSettings
+  double budget_ms = 0.0;  ///< time budget [ms]; 0 = the preset's own
   bool warm = false;       ///< plans every frame of a sequence with one planner
   int paths = PlanSettings{}.paths;
 };
 
 PlanSettings settings_of(const Variant& variant);
 
-/// A variant's planner. plan() of one that is not warm knows nothing of the targets before.
+/// A variant's planner. If it is not warm, plan() ignores all earlier targets.
 class Contender {
  public:
   explicit Contender(const Variant& variant);
@@ -30,7 +30,7 @@ class Contender {
   const std::string& name() const { return variant_.name; }
   const PlanSettings& settings() const { return settings_; }
 
-  /// Before a sequence of targets of at most `cells` cells: forgets what was planned.
+  /// Starts a sequence of targets of at most `cells` cells: forgets all earlier plans.
   void begin(std::size_t cells);
   PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats);
 
@@ -40,10 +40,10 @@ class Contender {
   std::unique_ptr<Planner> planner_;
 };
 
-/// All variants of the table.
+/// Returns all variants of the table.
 std::vector<Contender> contenders();
 
-/// The presets alone, one variant each, for pictures and scaling.
+/// Returns the presets alone, one variant each, for pictures and scaling.
 std::vector<Contender> presets(int paths = PlanSettings{}.paths);
 
 }  // namespace prostm::bench

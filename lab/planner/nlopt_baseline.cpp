@@ -27,8 +27,8 @@ namespace {
 
 using namespace planning;
 
-constexpr double kFitWidth = 4.0;    // of the cells that starts are tried on [mm]
-constexpr int kFitEvaluations = 30;  // of a start of preset best
+constexpr double kFitWidth = 4.0;    // width of the cells used for starts [mm]
+constexpr int kFitEvaluations = 30;  // per start of preset best
 
 template <typename Visit>
 void for_samples(const Loops& loops, const Visit& visit) {
@@ -37,7 +37,7 @@ void for_samples(const Loops& loops, const Visit& visit) {
   }
 }
 
-/// Preset paper's paths before they are refined [mm from the raster's origin].
+/// Returns preset paper's paths before refinement [mm from the raster's origin].
 std::vector<Vec2> starting_paths(const TargetField& target, const PlanSettings& settings,
                                  Planner& planner) {
   Plan plan;
@@ -59,7 +59,7 @@ std::vector<Vec2> starting_paths(const TargetField& target, const PlanSettings& 
   return x;
 }
 
-/// Of coordinates x0, y0, x1, y1, …; fills the gradient.
+/// A cost of coordinates x0, y0, x1, y1, …; fills the gradient.
 using Cost = std::function<double(std::span<const double> x, std::span<double> gradient)>;
 
 struct Counted {
@@ -80,21 +80,21 @@ struct Minimum {
   int evaluations = 0;
 };
 
-/// L-BFGS until it gains no more, begun again `restarts` times from where it ended.
+/// Runs L-BFGS to convergence, then `restarts` more times from the point it reached.
 Minimum with_nlopt(const Cost& cost, std::vector<double> x, double tolerance, int restarts) {
   const auto n = static_cast<unsigned>(x.size());
   Counted counted{cost, std::vector<double>(n)};
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(nlopt_create(NLOPT_LD_LBFGS, n),
                                                               nlopt_destroy);
   nlopt_set_min_objective(opt.get(), counted_cost, &counted);
-  // pairs that are kept; its own choice takes 15 times as long
+  // stored pairs; NLopt's own choice takes 15 times as long
   nlopt_set_vector_storage(opt.get(), 10);
   nlopt_set_ftol_rel(opt.get(), tolerance);
   nlopt_set_maxeval(opt.get(), 50'000);
   Minimum minimum;
   const StageTimer timer;
   for (int run = 0; run <= restarts; ++run) {
-    // a line search that can gain no more ends with a failure, at the best point all the same: the
+    // when its line search gains no more, NLopt reports a failure but keeps the best point: the
     // costs have kinks
     nlopt_optimize(opt.get(), x.data(), &minimum.cost);
   }
@@ -104,7 +104,7 @@ Minimum with_nlopt(const Cost& cost, std::vector<double> x, double tolerance, in
   return minimum;
 }
 
-/// (P6), for NLopt.
+/// Returns (P6) in NLopt's form.
 Cost papers_cost(const PressureRaster& raster, const PlanSettings& settings) {
   const auto refiner =
       std::make_shared<Refiner>(CostSettings(settings), settings.paths, settings.samples, 0);
@@ -140,7 +140,7 @@ Minimum with_descent(const PressureRaster& raster, const PlanSettings& settings,
   return minimum;
 }
 
-/// (P11)–(P15), for NLopt.
+/// Returns (P11)–(P15) in NLopt's form.
 Cost fit_cost(const CellTiles& cells, Descent& descent, const Loops& start) {
   return [&cells, &descent, fit = Fit{start, {}, 0.0F}](std::span<const double> x,
                                                         std::span<double> gradient) mutable {
@@ -161,7 +161,7 @@ Cost fit_cost(const CellTiles& cells, Descent& descent, const Loops& start) {
   };
 }
 
-/// The descent of preset best, begun again until that gains no more.
+/// Runs the descent of preset best; with `again`, restarts it until it gains no more.
 Minimum with_fit_descent(const CellTiles& cells, Descent& descent, const Loops& start,
                          int evaluations, bool again) {
   Fit fit;
@@ -178,9 +178,9 @@ Minimum with_fit_descent(const CellTiles& cells, Descent& descent, const Loops& 
   return minimum;
 }
 
-/// Gathers one minimiser against NLopt.
+/// Compares one minimiser with NLopt.
 struct Against {
-  Distribution difference, time;  // of the cost, relative; [µs]
+  Distribution difference, time;  // relative difference of the cost; [µs]
   double evaluations = 0;
   void add(const Minimum& ours, const Minimum& theirs) {
     difference.add((ours.cost - theirs.cost) / std::abs(theirs.cost));
@@ -208,7 +208,7 @@ void append(const std::string& name, const Against& ours, const Against& theirs,
   rows.push_back({name + ", cost over NLopt's", "1", ours.difference.summary(), {}, 0.0});
 }
 
-/// The paper's costs: gradient descent of the paper's presets against NLopt.
+/// The paper's costs: gradient descent of the paper's presets compared with NLopt.
 void compare_refinement(int frames, std::vector<Row>& rows) {
   PlanSettings settings;
   settings.preset = Preset::Paper;
@@ -233,7 +233,7 @@ void compare_refinement(int frames, std::vector<Row>& rows) {
   append("planner/refinement, the preset's steps", preset, theirs, rows);
 }
 
-/// The costs of preset best: its L-BFGS against NLopt's.
+/// The costs of preset best: its L-BFGS compared with NLopt's.
 void compare_fit(int frames, std::vector<Row>& rows) {
   PlanSettings settings;
   Against preset, converged, theirs;

@@ -1,5 +1,5 @@
 #pragma once
-/// What the presets minimise, given to another minimiser.
+/// Compares the presets' minimisers with another one.
 
 #include <vector>
 
@@ -8,9 +8,10 @@
 namespace prostm::bench {
 
 /// Minimises (P6) from the starting paths of preset paper, and (P11)–(P15) from starts of preset
-/// best, with the planner's own descents, as many steps as the presets take and until they gain no
-/// more, and with the L-BFGS of NLopt to convergence, on frames of the nine fields. Prints (ours −
-/// theirs)/|theirs| of the final costs. Says so where the bench was built without NLopt.
+/// best, on frames of the nine fields. Each minimum is found by the planner's own descent, with as
+/// many steps as the preset takes and until it gains no more, and by the L-BFGS of NLopt, to
+/// convergence. Prints (ours − theirs)/|theirs| of the final costs, or a message if this build has
+/// no NLopt.
 void compare_with_nlopt(int frames, std::vector<Row>& rows);
 
 }  // namespace prostm::bench

@@ -12,12 +12,12 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kTolerance = 0.5e-3;  // [m] beyond L that is not too long
+constexpr double kTolerance = 0.5e-3;  // accepted excess over L [m]
 
 /// The paths of one planner on one skin.
 struct OnSkin {
   Distribution length;        // on the skin [mm]
-  Distribution period_error;  // of the stated period, over that of the length on the skin [%]
+  Distribution period_error;  // of the stated period, relative to that on the skin [%]
   Distribution planar_speed;  // on the skin, if laps took length / speed of the plane [m/s]
   int too_long = 0;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What uneven skin makes of plans.
+/// The effect of uneven skin on plans.
 
 #include <vector>
 
@@ -7,10 +7,9 @@
 
 namespace prostm::bench {
 
-/// Prints, for paper-valid and best on each of the generated skins, exact and in voxels, how far
-/// the longest path is from L on the skin, and how fast and slow a focal point is that plays its
-/// laps in the period length / speed of the plane.
-/// @param frames of each pattern's sequence.
+/// Prints, for paper-valid and best on each of the generated skins, exact and in voxels, the excess
+/// of the longest path over L on the skin, and the speed on the skin of a focal point whose laps
+/// take the period length / speed of the plane. @param frames number of frames per pattern.
 void measure_on_skin(int frames, std::vector<Row>& rows);
 
 }  // namespace prostm::bench

@@ -25,7 +25,7 @@ GalleryPlan plan_for_gallery(Contender& contender, const TargetField& target) {
   return out;
 }
 
-/// "one-plume" as a heading.
+/// Turns a name like "one-plume" into a heading.
 std::string heading(std::string name) {
   std::replace(name.begin(), name.end(), '-', ' ');
   name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));

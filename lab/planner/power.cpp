@@ -15,7 +15,7 @@
 namespace prostm::bench {
 namespace {
 
-constexpr int kInstants = 8;  // of a lap of the longest path
+constexpr int kInstants = 8;  // per lap of the longest path
 
 double highest_pressure(const LiftedPlan& plan) {
   double highest = 0.0;
@@ -25,8 +25,8 @@ double highest_pressure(const LiftedPlan& plan) {
   return highest;
 }
 
-/// What the emitter would play `time` [s] after all paths were begun, slew apart. @param
-/// wanted_power gets Σ I² before the limit.
+/// Returns the foci that the emitter would play `time` [s] after all paths began, ignoring slew
+/// limits. @param wanted_power receives Σ I² before the limit.
 std::vector<FocusSample> foci_at(const LiftedPlan& plan, double time, double full_scale,
                                  double& wanted_power) {
   const EmitSettings emit;
@@ -52,11 +52,11 @@ std::vector<FocusSample> foci_at(const LiftedPlan& plan, double time, double ful
 
 /// All plans with one number of paths.
 struct AtPaths {
-  Distribution rmse, coverage, skill;  // of plans
-  Distribution wanted;                 // Σ I² of an instant
+  Distribution rmse, coverage, skill;  // per plan
+  Distribution wanted;                 // Σ I² at an instant
   double asked = 0.0, got = 0.0;       // Σ radiation pressure over one focal point alone
-  Distribution peak, mean;             // of what a plan gets
-  Distribution full, superposed;       // of focal points that all want intensity 1
+  Distribution peak, mean;             // pressures reached in a plan
+  Distribution full, superposed;       // at focal points that all want intensity 1
 
   void play(const TransducerArray& array, const LiftedPlan& plan, double period) {
     const double full_scale = highest_pressure(plan);
@@ -155,7 +155,7 @@ void measure_power(int frames, std::vector<Row>& rows) {
   fmt::print(
       "asked: sum of intensity^2 at a time, mean and p99; E4a: share of full scale that the limit "
       "of "
-      "{:g} leaves each\ngot: what the array renders of what is asked for; highest, mean: of that, "
+      "{:g} leaves each\ngot: rendered over asked; highest, mean: rendered pressures "
       "of a plan\nfull: all focal points at intensity 1; added: the same, superposed by (A11)\n",
       limit);
 }

@@ -12,8 +12,8 @@
 namespace prostm::bench {
 namespace {
 
-/// Weights (pressure, length, intersection, bending) that the textbook is tried with; the first are
-/// its own.
+/// Weights (pressure, length, intersection, bending) tried with the textbook; the first are its
+/// own.
 struct Weights {
   double pressure, length, intersection, bending;
 };
@@ -36,14 +36,14 @@ double mean_rmse(const std::vector<Metrics>& all) {
   return sum / static_cast<double>(all.size());
 }
 
-/// A control loses when no metric that judges the shape of the field prefers it.
+/// Returns true if no metric of the field's shape prefers the control.
 bool loses(const Metrics& control, const Metrics& plan) {
   return control.rmse > plan.rmse && control.correlation < plan.correlation &&
          control.skill_0 < plan.skill_0 && control.skill_8 < plan.skill_8 &&
          control.overlap < plan.overlap;
 }
 
-/// What each planner planned for one frame, and the paths of the other target.
+/// Scores the plans for one frame.
 class FrameScorer {
  public:
   FrameScorer(const TargetField& target, const PlanSettings& settings)
@@ -83,8 +83,8 @@ void add_controls(const TargetField& target, const Plan& other, int frame, int f
   }
 }
 
-/// Textbook and planners in turn on one scored frame, so that what else the machine does weighs on
-/// all alike. Each seed of the textbook is a turn; planners that are not warm take every fourth.
+/// Measures textbook and planners in turn on one scored frame, so that other load on the machine
+/// affects all alike. Each seed of the textbook is a turn; cold planners take every fourth turn.
 void measure_frame(const TargetField& target, std::vector<Contender>& contenders,
                    const std::vector<Plan>& warm_plans, int seeds, SequenceOutcome& outcome) {
   const PlanSettings settings;
@@ -113,7 +113,8 @@ void measure_frame(const TargetField& target, std::vector<Contender>& contenders
   }
 }
 
-/// The textbook's medians on the scored frames with each other set of weights; keeps the best.
+/// Scores the textbook's medians on the scored frames with every other set of weights; keeps the
+/// best.
 void tune_textbook(const std::vector<TargetField>& targets, int seeds, SequenceOutcome& outcome) {
   outcome.tuned.metrics = outcome.textbook.metrics;
   std::size_t best = 0;
@@ -179,7 +180,7 @@ SequenceOutcome measure(const Sequence& sequence, const TargetField& other,
   PlanStats stats;
   contenders.front().plan(other, other_plan, stats);
 
-  // planners that are warm see every frame, in order; the others only those that are scored
+  // warm planners see every frame, in order; the others only the scored ones
   std::vector<TargetField> scored;
   const int frames = static_cast<int>(outcome.frames.size());
   for (int frame = 0; frame <= outcome.frames.back(); ++frame) {

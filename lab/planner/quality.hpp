@@ -16,8 +16,8 @@
 namespace prostm::bench {
 
 struct QualityOptions {
-  int frames = 20;  ///< scored, of each sequence
-  int seeds = 20;   ///< of the textbook planner
+  int frames = 20;  ///< scored frames per sequence
+  int seeds = 20;   ///< number of seeds of the textbook planner
 };
 
 /// Stage times of Table I [µs].
@@ -28,24 +28,24 @@ struct StageTimes {
   Summary total() const { return stage[kStages - 1].summary(); }
 };
 
-/// One planner on one sequence. Vectors have an entry for each scored frame.
+/// One planner on one sequence. Vectors have one entry per scored frame.
 struct Outcome {
   std::string name;
   bool warm = false;
   StageTimes times;
   std::vector<Metrics> metrics;
-  std::vector<std::vector<Metrics>> disturbed;  ///< of each disturbance
+  std::vector<std::vector<Metrics>> disturbed;  ///< by disturbance
   Violations violations;
-  int controls_lost = 0, controls = 0;  ///< controls that lost in every metric, of how many
+  int controls_lost = 0, controls = 0;  ///< controls that lost in every metric, and all controls
 };
 
 /// All planners on one sequence.
 struct SequenceOutcome {
   std::string name;
-  std::vector<int> frames;        ///< the scored ones
-  Outcome textbook;               ///< each metric's median over the seeds
+  std::vector<int> frames;        ///< the scored frames
+  Outcome textbook;               ///< the median of each metric over the seeds
   Outcome tuned;                  ///< the same with the weights of least RMSE on this sequence
-  std::string tuned_weights;      ///< which those are
+  std::string tuned_weights;      ///< those weights
   std::vector<Outcome> planners;  ///< the first is paper-valid
   std::vector<Control> controls;  ///< means over the scored frames
 };
@@ -54,11 +54,11 @@ struct SequenceOutcome {
 SequenceOutcome measure(const Sequence& sequence, const TargetField& other,
                         std::vector<Contender>& contenders, const QualityOptions& options);
 
-/// A sequence's tables.
+/// Prints a sequence's tables.
 void print(const SequenceOutcome& outcome);
-/// Means over all sequences, the share of disturbances survived, and violations.
+/// Prints means over all sequences, the share of disturbances survived, and violations.
 void print_summary(const std::vector<SequenceOutcome>& outcomes);
-/// Times and errors of each planner beside the textbook's.
+/// Appends times and errors of each planner, with the textbook's as the baseline.
 void append_rows(const std::vector<SequenceOutcome>& outcomes, std::vector<Row>& rows);
 
 /// Adds `share` of each metric to that of `sum`.

@@ -9,9 +9,9 @@
 namespace prostm::bench {
 namespace {
 
-constexpr int kWarmFrom = 10;  // planners that are warm are judged from this frame on
+constexpr int kWarmFrom = 10;  // first frame on which warm planners are judged
 
-/// Metrics of one planner and of what it is compared with, averaged over the same frames.
+/// Metrics of one planner and of its baselines, averaged over the same frames.
 struct Comparison {
   double frames = 0, frames_worse = 0;  // RMSE or S_8.5 worse than both baselines on that frame
   Metrics ours;
@@ -25,7 +25,7 @@ bool counts(const Outcome& outcome, int frame) {
   return !outcome.warm || frame >= kWarmFrom;
 }
 
-/// Against the better, metric by metric, of paper-valid and the textbook's medians.
+/// Compares with the better, metric by metric, of paper-valid and the textbook's medians.
 Comparison compare(const Outcome& ours, const SequenceOutcome& all) {
   const Outcome& valid = all.planners.front();
   Comparison c;
@@ -79,7 +79,7 @@ void print_outcome(const Outcome& outcome, const SequenceOutcome& all, bool comp
   fmt::print("\n");
 }
 
-/// Where the paper names the scene, its stages beside ours.
+/// For the scenes of the paper, prints its stage times beside ours.
 void print_stages(const SequenceOutcome& all) {
   constexpr std::array kNames{"init", "k-means", "tour", "split", "resample", "refine", "total"};
   struct PaperRow {
@@ -111,12 +111,12 @@ double mean_of(const std::vector<Metrics>& all, double Metrics::*member) {
   return all.empty() ? 0.0 : sum / static_cast<double>(all.size());
 }
 
-/// One planner over all sequences: each counts alike.
+/// One planner over all sequences, with equal weight for each.
 struct Means {
   Metrics ours;
   double rmse = 0, blur_error = 0, sequences = 0, textbook_rmse = 0;
   double time = 0, textbook_time = 0, longest = 0;  // sums of medians, largest p99 [µs]
-  double least_coverage = HUGE_VAL;  // smallest difference to the baselines' of any sequence
+  double least_coverage = HUGE_VAL;  // smallest difference to the baselines' in any sequence
   double frames = 0, frames_worse = 0;
   int worse_rmse = 0, worse_skill = 0, worse_coverage = 0;
 };
@@ -173,7 +173,8 @@ void print_means(const std::vector<SequenceOutcome>& outcomes) {
   }
 }
 
-/// S_8.5 and RMSE of each planner under each disturbance, and how often it beats paper-valid.
+/// Prints S_8.5 and RMSE of each planner under each disturbance, and how often it beats
+/// paper-valid.
 void print_disturbances(const std::vector<SequenceOutcome>& outcomes) {
   const std::vector<Disturbance> list = disturbances(PlanSettings{}.sigma);
   fmt::print(

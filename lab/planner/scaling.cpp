@@ -12,7 +12,7 @@
 namespace prostm::bench {
 namespace {
 
-/// Points that are planned for: on skin, above the share of the maximum that counts as pressure.
+/// Counts the points to plan for: on skin, with at least the share of the maximum that counts.
 int target_points(const TargetField& field) {
   const double least = PlanSettings{}.weak_pressure * max_pressure(field);
   int count = 0;
@@ -22,7 +22,7 @@ int target_points(const TargetField& field) {
   return count;
 }
 
-/// Times of every planner at one size [µs]: the last is the textbook's.
+/// Measures the times of every planner at one size [µs]; the last is the textbook's.
 std::vector<Summary> times_at(const TargetField& field, int paths, int repeats) {
   std::vector<Contender> contenders = presets(paths);
   for (Contender& contender : contenders) contender.begin(field.size());
@@ -45,10 +45,10 @@ std::vector<Summary> times_at(const TargetField& field, int paths, int repeats) 
   return out;
 }
 
-/// One table: a line for each size.
+/// A table with a line for each size.
 struct Table {
-  std::string quantity;            // that is varied
-  std::vector<std::string> names;  // of the planners
+  std::string quantity;            // the varied quantity
+  std::vector<std::string> names;  // names of the planners
   std::vector<double> sizes;
   std::vector<std::vector<Summary>> times;  // [size][planner]
 
@@ -61,7 +61,7 @@ struct Table {
       fmt::print("\n{:>12.0f}", sizes[i]);
       for (const Summary& t : times[i]) fmt::print(" {:>14.1f}", t.p50);
     }
-    // d log t / d log n between the largest size and the largest of at most a third of it
+    // d log t / d log n between the largest size and the largest one of at most a third of it
     std::size_t third = sizes.size() - 1;
     while (third > 0 && sizes[third] > sizes.back() / 3.0) --third;
     fmt::print("\n{:>12}", "slope");
@@ -107,7 +107,7 @@ std::vector<std::string> planner_names() {
 
 void measure_scaling(const std::string& figure, std::vector<Row>& rows) {
   constexpr int kRepeats = 5;
-  // one plume covers 38 % of the raster with pressure: from 10³ points to 10⁵
+  // pressure covers 38 % of one plume's raster: from 10³ points to 10⁵
   Table points{"target points", planner_names(), {}, {}};
   for (const int cells : {52, 91, 162, 288, 516}) {
     const TargetField field = fields::make(fields::Pattern::OnePlume, 0, cells);

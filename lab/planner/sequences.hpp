@@ -13,19 +13,18 @@ namespace prostm::bench {
 struct Sequence {
   std::string name;
   int frames = 0;
-  std::size_t cells = 0;  ///< of its largest raster
+  std::size_t cells = 0;  ///< number of cells of its largest raster
   std::function<TargetField(int frame)> field;
 };
 
-/// The nine of bench/fields.
+/// Returns the nine generated sequences of tests/fields.
 std::vector<Sequence> gallery();
 
-/// The fields of a file: of a recording (.h5) the first patch of each frame that has pressure on
-/// it, of any other field file its one field. @throws InputError: no such file, or no pressure in
-/// it.
+/// Reads the fields of a file: from a recording (.h5) the first patch with pressure of each frame,
+/// from any other field file its one field. @throws InputError: no such file, or no pressure in it.
 Sequence read_sequence(const std::string& file);
 
-/// n frames spread evenly over a sequence, from 0 up; all of them when it has no more.
+/// Returns n frames spread evenly over a sequence, from 0 up; all of them if it has no more.
 std::vector<int> spread(int frames, int n);
 
 }  // namespace prostm::bench

@@ -17,15 +17,15 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kInstant = 125e-6;   // between instants: 0.9 mm of a path [s]
-constexpr double kSampleRate = 40e3;  // of the emission [Hz]
+constexpr double kInstant = 125e-6;   // time between instants: 0.9 mm along a path [s]
+constexpr double kSampleRate = 40e3;  // sample rate of the emission [Hz]
 constexpr std::size_t kSamplesPerPlan = 1600, kSamplesPerInstant = 5;
 constexpr float kHeard = 0.01F;  // intensity
-constexpr int kDraws = 10;       // of random starts, for each plan
+constexpr int kDraws = 10;       // random starts per plan
 
 using Sounding = boost::container::static_vector<Vec3, kMaxPaths>;
 
-/// A path by arc length.
+/// A path parametrised by arc length.
 class Lap {
  public:
   explicit Lap(const FocalPath& path) : path_(path) {
@@ -36,7 +36,7 @@ class Lap {
       s += (path.points[(i + 1) % n] - path.points[i % n]).norm();
     }
   }
-  /// Adds where the focal point is at time t, if it sounds.
+  /// Adds the focal point's place at time t, if it sounds.
   void add(double t, double silent_below, Sounding& out) const {
     const double laps = t / path_.period, s = at_.back() * (laps - std::floor(laps));
     const auto after = std::upper_bound(at_.begin() + 1, at_.end() - 1, s);
@@ -72,7 +72,7 @@ void print_lines(const std::string& title, const std::vector<Line>& lines, std::
                   lines[1].name, 100.0 * lines[1].distances.share_below(2.0 * kWavelength)});
 }
 
-/// Plans of single fields, followed from the start.
+/// Follows plans of single fields from their start.
 void measure_plans(Contender& contender, int frames, double seconds, std::vector<Row>& rows) {
   std::vector<Line> lines{{"as planned", {}}, {"random starts", {}}, {"random starts, senses", {}}};
   Random random(1);
@@ -95,12 +95,12 @@ void measure_plans(Contender& contender, int frames, double seconds, std::vector
   print_lines(fmt::format("{}, {:g} ms", contender.name(), 1e3 * seconds), lines, rows);
 }
 
-/// The emission of a sequence of plans.
+/// Emits a sequence of plans.
 class Emission {
  public:
   explicit Emission(const EmitSettings& settings) : emitter_(settings, kSampleRate) {}
 
-  /// Plays the plan until the next is due. @return the distances while it is played.
+  /// Plays the plan until the next is due. @return the distances while it plays.
   LeastDistances play(const Plan& plan, const TargetFrame& targets) {
     LeastDistances out;
     LiftedPlan& draft = emitter_.draft();
@@ -125,7 +125,7 @@ class Emission {
   std::int64_t plans_ = 0;
 };
 
-/// A second of plans that continue, as they are emitted.
+/// Measures a second of consecutive warm plans as they are emitted.
 void measure_emission(Contender& contender, std::vector<Row>& rows) {
   constexpr int kFrames = 25;
   std::vector<Line> first{{"as planned", {}}, {"random starts, senses", {}}}, all = first;

@@ -1,5 +1,5 @@
 #pragma once
-/// How near the focal points of a plan come to each other at the same time.
+/// Distances between the focal points of a plan at the same time.
 
 #include <cstddef>
 #include <span>
@@ -11,20 +11,20 @@
 
 namespace prostm::bench {
 
-/// One wavelength of 40 kHz [m]: an array cannot show two nearer foci as two.
+/// One wavelength at 40 kHz [m]: an array cannot separate two foci nearer than this.
 inline constexpr double kWavelength = 8.6e-3;
 
-/// The least distance of any two sounding focal points, instant by instant.
+/// The least distance between any two sounding focal points, instant by instant.
 class LeastDistances {
  public:
-  /// Adds an instant. @param sounding where those are that sound [m]; of fewer than two nothing is
-  /// added.
+  /// Adds an instant. @param sounding places of the sounding focal points [m]; fewer than two add
+  /// nothing.
   void add(std::span<const Vec3> sounding);
   void add(const LeastDistances& other);
 
   std::size_t instants() const { return least_.size(); }
-  double share_below(double distance) const;  ///< of the instants
-  /// By the nearest-rank rule [m]; 0 when there is no instant.
+  double share_below(double distance) const;  ///< share of the instants
+  /// Returns a quantile by the nearest-rank rule [m]; 0 without instants.
   double quantile(double share) const;
   double least() const { return quantile(0.0); }
 
@@ -32,11 +32,11 @@ class LeastDistances {
   std::vector<double> least_;  // [m]
 };
 
-/// The path begun at point `first`, the other way round if `reversed`.
+/// Returns the path begun at point `first`, in the other direction if `reversed`.
 FocalPath begun_at(const FocalPath& path, int first, bool reversed);
 
-/// The plan with every path begun at a random point; the other way round as often as not, if
-/// `senses`.
+/// Returns the plan with every path begun at a random point, and, if `senses`, in a random
+/// direction.
 Plan begun_anywhere(const Plan& plan, Random& random, bool senses);
 
 /// Follows the plan's focal points from the paths' first points on for `seconds`, each in its own
@@ -45,9 +45,9 @@ void follow(const Plan& plan, double seconds, double silent_below, LeastDistance
 
 /// Prints the share of time in which any two sounding focal points are nearer than one and than two
 /// wavelengths, and the least and the 5 % distance, over plans of the generated fields: for the
-/// starts as planned, for random starts, and for random starts and senses; and the same in the
-/// emission of plans that continue, from silence on.
-/// @param frames of each pattern's sequence.
+/// starts as planned, for random starts, and for random starts and directions. Prints the same for
+/// consecutive plans emitted from silence on.
+/// @param frames number of frames per pattern.
 void measure_simultaneous(int frames, std::vector<Row>& rows);
 
 }  // namespace prostm::bench

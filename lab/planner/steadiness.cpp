@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kArcs = 40;
 using Loop = std::array<Vec2, kArcs>;
 
-/// The closed path at equal arcs.
+/// Returns points of the closed path at equal arc lengths.
 Loop at_equal_arcs(const FocalPath& path) {
   const std::size_t n = path.points.size();
   const double step = closed_length(path) / kArcs;
@@ -68,7 +68,7 @@ struct Steadiness {
 };
 
 Steadiness follow_moved(Contender& contender, fields::Pattern pattern) {
-  constexpr int kLast = 59, kFrom = 10;  // once round the circle, after what was there at first
+  constexpr int kLast = 59, kFrom = 10;  // one turn of the circle, after the planner has settled
   contender.begin(static_cast<std::size_t>(fields::kMovedCells) * fields::kMovedCells);
   Steadiness out;
   Plan before;
@@ -87,7 +87,7 @@ Steadiness follow_moved(Contender& contender, fields::Pattern pattern) {
   return out;
 }
 
-/// Share of the second contact's pressure that is rendered where it exceeds half of its maximum.
+/// Returns the rendered share of the second contact's pressure where it exceeds half its maximum.
 double rendered_share(const fields::Appearing& target, const Plan& plan, const PlanSettings& s) {
   std::vector<double> rendered(target.field.size());
   quasi_static_field(plan, 0, target.field, s.sigma, s.gain_law(), rendered);
@@ -103,8 +103,8 @@ double rendered_share(const fields::Appearing& target, const Plan& plan, const P
 
 constexpr int kPatience = 6;  // updates
 
-/// Updates from the first with the second contact to the first that renders it; kPatience + 1 when
-/// none of them does.
+/// Counts updates from the first with the second contact to the first that renders it; returns
+/// kPatience + 1 if that takes longer.
 int updates_to_render(Contender& contender, int which) {
   constexpr int kBefore = 15;
   contender.begin(static_cast<std::size_t>(fields::kCells) * fields::kCells);
@@ -176,7 +176,7 @@ double motion(const Plan& before, const Plan& after) {
   const bool grows = after.paths.size() > before.paths.size();
   const Plan &more = grows ? after : before, &fewer = grows ? before : after;
   if (fewer.paths.empty()) return 0.0;
-  MatchCosts costs{};  // a path without a partner costs nothing: there are always as many
+  MatchCosts costs{};  // unpaired paths cost nothing: their number is fixed
   for (std::size_t m = 0; m < more.paths.size(); ++m) {
     const Loop loop = at_equal_arcs(more.paths[m]);
     for (std::size_t f = 0; f < fewer.paths.size(); ++f) {

@@ -23,7 +23,7 @@ std::vector<Vec2> in_mm(const FocalPath& path) {
   return points;
 }
 
-/// Arc length from the first point to each [m].
+/// Returns the arc length from the first point to each point [m].
 std::vector<double> arc_lengths(const FocalPath& path) {
   std::vector<double> at(path.points.size(), 0.0);
   for (std::size_t i = 1; i < at.size(); ++i) {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kWeight = 4.0;
 
-/// Mean squared errors over the skin of the rows in the lower and the upper half, over max p*.
+/// Mean squared errors over the skin in the lower and the upper half of the rows, relative to max
+/// p*.
 struct Halves {
   double lower = 0.0, upper = 0.0;
 };
@@ -38,7 +39,7 @@ Halves errors_of(const TargetField& field, Planner& planner) {
   return {sum[0] / cells[0], sum[1] / cells[1]};
 }
 
-/// RMSE over all frames of one field, or means of fields.
+/// RMSE over all frames of one field, or sums over fields.
 struct Line {
   Halves without, with;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What weights buy where they are greater, and cost where they are less.
+/// The benefit of weights where they are greater, and their cost elsewhere.
 
 #include <vector>
 
@@ -8,8 +8,8 @@
 namespace prostm::bench {
 
 /// Prints, for preset best on every generated field with the upper half of its rows weighed four
-/// times, the RMSE over the skin of either half beside that of the plan without weights.
-/// @param frames of each pattern's sequence.
+/// times, the RMSE over the skin of each half beside that of the plan without weights.
+/// @param frames number of frames per pattern.
 void measure_weights(int frames, std::vector<Row>& rows);
 
 }  // namespace prostm::bench

@@ -1,4 +1,4 @@
-/// Circles against speed.
+/// Perceived intensity of circles against speed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr std::size_t kNominal = 4;
 struct Curve {
   std::vector<double> intensity;     ///< [m]
   std::vector<double> displacement;  ///< largest rms on the palm [m]
-  std::vector<double> velocity;      ///< the same [m/s]
+  std::vector<double> velocity;      ///< largest rms on the palm [m/s]
 };
 
 std::vector<double> speeds() {
@@ -51,7 +51,7 @@ void append(SkinResponse& response, const Palm& palm, const PressureLoop& loop, 
   curve.velocity.push_back(*std::max_element(map.begin(), map.end()));
 }
 
-/// What a circle does on each of the nine skins, and on the nominal one with memoryless
+/// Curves of a circle on each of the nine skins, and on the nominal one with memoryless
 /// transducers.
 struct CircleCurves {
   std::vector<Curve> skins;
@@ -74,7 +74,7 @@ CircleCurves compute(double circumference, const StmField& field, const Palm& pa
   return curves;
 }
 
-/// "6.2 (4.9 – 8.8)": where a quantity of the nine skins has its peak.
+/// Returns the speed at a quantity's peak as "6.2 (4.9 – 8.8)": nominal, and range of nine skins.
 std::string peaks(const CircleCurves& curves, std::vector<double> Curve::*quantity) {
   double low = HUGE_VAL, high = 0.0;
   for (const Curve& curve : curves.skins) {

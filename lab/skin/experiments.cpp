@@ -1,4 +1,4 @@
-/// What the experiments share, and what a response of the skin costs.
+/// Shared parts of the experiments, and the cost of a response of the skin.
 #include "skin/experiments.hpp"
 
 #include "prostm/core/random.hpp"
@@ -24,7 +24,7 @@ double peak_place(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 void measure_response(std::vector<Row>& rows) {
-  // 20 harmonics of 50 Hz on 64 × 64 cells, as a path of 140 mm at 7 m/s has
+  // 20 harmonics of 50 Hz on 64 × 64 cells, like a path of 140 mm at 7 m/s
   constexpr int kCells = 64, kSamples = 64;
   Random random(1);
   std::vector<double> pressure(kCells * kCells * kSamples);

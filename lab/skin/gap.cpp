@@ -1,4 +1,4 @@
-/// Two foci, amplitude modulated at 200 Hz: when are they two?
+/// The gap from which two foci, amplitude modulated at 200 Hz, are felt as two.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,18 +14,18 @@ namespace prostm::bench {
 namespace {
 
 constexpr double kRate = 200.0;   // [Hz]
-constexpr int kSamples = 16;      // of a period of the modulation
-constexpr double kNoticed = 0.8;  // middle over the peaks: a dip of a Weber fraction of 0.2
+constexpr int kSamples = 16;      // per period of the modulation
+constexpr double kNoticed = 0.8;  // middle over the peaks: a dip by a Weber fraction of 0.2
 const SkinPatch kPatch{49, 65, 1.5e-3};
 
-/// Between two foci: the middle over the higher of the peaks, along their line. 1 is one place.
+/// Returns the middle over the higher peak, along the line of two foci; 1 means a single place.
 double dip(const std::vector<double>& map) {
   const auto row = static_cast<std::size_t>(kPatch.rows / 2 * kPatch.cols);
   const auto first = map.begin() + static_cast<std::ptrdiff_t>(row);
   return first[kPatch.cols / 2] / *std::max_element(first, first + kPatch.cols);
 }
 
-/// (1 + cos ωt)/2 of full drive in every transducer, so its square of the pressure at rest.
+/// Returns the square of (1 + cos ωt)/2, each transducer's drive, times the pressure at rest.
 std::vector<double> modulated(const std::vector<double>& at_rest) {
   std::vector<double> pressure;
   for (int k = 0; k < kSamples; ++k) {
@@ -35,7 +35,7 @@ std::vector<double> modulated(const std::vector<double>& at_rest) {
   return pressure;
 }
 
-/// First gap from which on the dip is at or below a level, between the gaps tried; 0 where never.
+/// Returns the gap from which the dip stays at or below a level, interpolated; 0 if it never does.
 double gap_where(const std::vector<double>& gaps, const std::vector<double>& dips, double level) {
   for (std::size_t i = gaps.size(); i-- > 0;) {
     if (dips[i] <= level) continue;

@@ -1,4 +1,4 @@
-/// A focal point on a straight line: how far its waves reach ahead and behind.
+/// A focal point on a straight line: the reach of its waves ahead and behind.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ constexpr int kFastest = 12;  // [m/s]
 constexpr double kShown[] = {2, 4, 6, 7, 8, 10};
 const SkinPatch kPatch{101, 151, 2e-3};
 constexpr int kFocusRow = 50, kFocusCol = 110;
-constexpr double kUsxLevel = 1125.0;  // the highest that was measured in a focus [Pa rms]
+constexpr double kUsxLevel = 1125.0;  // highest level measured in a focus [Pa rms]
 
-/// The array's focus at 200 mm in the moving patch, as it is at rest: what the transducers' lag
-/// takes from it, (A9), is in the loops of the other experiments.
+/// Returns the pressure of the array's focus at 200 mm in the moving patch, as if it were at rest.
+/// The loss by the transducers' lag, (A9), is included in the loops of the other experiments.
 std::vector<double> focus() {
   constexpr int kCells = 41;  // the focus and its first side lobes
   const Palm palm{SkinPatch{kCells, kCells, kPatch.cell}};
@@ -35,12 +35,12 @@ std::vector<double> focus() {
   return pressure;
 }
 
-/// How far waves reach: the rms distance along the line of ẇ², ahead of the focus and behind it
-/// [m].
+/// Reach of the waves: the rms distance along the line of ẇ², ahead of the focus and behind it [m].
 struct Reach {
   double ahead = 0.0, behind = 0.0;
 };
-/// Of the patch from `first_col` on: it reaches 80 mm ahead of the focus and 220 mm behind it.
+/// Evaluates the patch from `first_col` on. The patch reaches 80 mm ahead of the focus and 220 mm
+/// behind it.
 Reach reach_of(const std::vector<double>& velocity, int first_col = 0) {
   double energy[2] = {0.0, 0.0}, moment[2] = {0.0, 0.0};
   for (int j = 0; j < kPatch.rows; ++j) {

@@ -1,4 +1,4 @@
-/// Squares of 1 and 3 cm.
+/// Skin velocity under squares of 1 and 3 cm.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,13 +17,13 @@ constexpr double kSides[] = {0.01, 0.03};  // [m]
 constexpr int kFastest = 12;               // [m/s]
 constexpr double kShown[] = {2, 4, 6, 8, 10, 12};
 
-/// What the map of rms velocity of a square looks like.
+/// Shape of a square's map of skin velocity.
 struct Look {
   double outline = 0.0;      ///< mean along the square [m/s]
   double inside = 0.0;       ///< largest in the inner half, over the largest of the map
-  double middle = 0.0;       ///< over the mean along the square
+  double middle = 0.0;       ///< centre over the mean along the square
   bool peak_inside = false;  ///< a local maximum lies in the inner half
-  double half_width = 0.0;   ///< of the area above half of the largest, as a square's side [m]
+  double half_width = 0.0;   ///< side of a square with the area above half of the largest [m]
 };
 
 double value_at(const std::vector<double>& map, const Palm& palm, const Vec2& x) {
@@ -68,7 +68,7 @@ Look look_at(const std::vector<double>& map, const Palm& palm, double side) {
   return look;
 }
 
-/// Velocity of the skin in every cell over a lap: rms, and the largest [m/s].
+/// Velocity of the skin in every cell over a lap: rms and largest [m/s].
 struct VelocityMaps {
   std::vector<double> rms, largest;
 };
@@ -98,7 +98,7 @@ VelocityMaps velocity_maps(const StmField& field, const Palm& palm, SkinResponse
   return maps;
 }
 
-/// Speeds, of 1 to 12 m/s, at which something holds: "8, 9".
+/// Returns the speeds from 1 to 12 m/s at which `holds` is true: "8, 9".
 template <class Holds>
 std::string speeds_where(const std::vector<Look>& looks, Holds holds) {
   std::string text;
@@ -138,7 +138,7 @@ void print_looks(double side, const std::vector<Look>& rms, const std::vector<Lo
   }
 }
 
-/// One size on the nine skins; the nominal one's maps go into the picture.
+/// Computes one size on the nine skins; the nominal skin's maps go into the picture.
 void compute_square(double side, const StmField& field, const Palm& palm, MapFigure& picture,
                     std::vector<Row>& rows) {
   fmt::print(

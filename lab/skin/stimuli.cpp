@@ -11,7 +11,7 @@
 namespace prostm::bench {
 namespace {
 
-/// G from every transducer to every cell, (A1).
+/// Computes G from every transducer to every cell, (A1).
 Eigen::MatrixXcd propagation_to_palm(const TransducerArray& array, const Palm& palm) {
   const Medium air;
   const Wave sound = wave(array, air);
@@ -78,13 +78,13 @@ std::vector<double> StmField::pressure(const Lap& lap, double period, bool memor
   std::vector<double> phases(count);
   std::vector<std::complex<double>> drives(count);
   Eigen::MatrixXcd sounding(static_cast<Eigen::Index>(count), kSamples);
-  // laps until what was before has faded: 12 time constants
+  // extra laps at the start until the initial state has faded: 12 time constants
   const double fade = 12.0 * time_constant(settings);
   const int laps_before = memoryless ? 0 : static_cast<int>(std::ceil(fade / period));
   for (int n = 0; n < (laps_before + 1) * kSamples * per_sample; ++n) {
     const int in_lap = n % (kSamples * per_sample);
     if (n >= laps_before * kSamples * per_sample && n % per_sample == 0) {
-      // what sounds at this moment is where the drives up to it have led
+      // the output at this moment results from the drives up to it
       sounding.col(in_lap / per_sample) = Eigen::Map<const Eigen::VectorXcd>(
           dynamics.output().data(), static_cast<Eigen::Index>(count));
     }
@@ -115,7 +115,7 @@ std::vector<double> foci_pressure(const TransducerArray& array, const Palm& palm
   std::vector<Vec3> places;
   for (const Vec2& x : foci) places.emplace_back(x.x(), x.y(), palm.height);
   const Propagation g = propagation_to(array, air, places);
-  // more than the array can do: the level is then as high as it can be
+  // beyond the array's capability, so that the level is as high as possible
   const Eigen::VectorXd target = Eigen::VectorXd::Constant(g.rows(), 1e5);
   FocusSettings settings;
   settings.method = FocusMethod::LevenbergMarquardt;

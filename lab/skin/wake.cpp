@@ -11,9 +11,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMargin = 0.6;  // between a patch and its copies [m]
+constexpr double kMargin = 0.6;  // margin between a patch and its copies [m]
 
-/// The m-th wave number of a transform of length n.
+/// Returns the m-th wave number of a transform of length n.
 double wave_number(int m, int n, double cell) {
   return 2.0 * kPi * (2 * m < n ? m : m - n) / (n * cell);
 }
@@ -24,7 +24,7 @@ void check(const SkinModel& model, const SkinPatch& patch, std::size_t values, d
   require_between("cell", patch.cell, 0.1e-3, 20e-3, "m");
   require_between("speed", speed, 0.01, 100.0, "m/s");
   if (model.relaxation_time() == 0.0) {
-    throw std::invalid_argument("the skin must have a loss, or its wakes go on for ever");
+    throw std::invalid_argument("the skin must have a loss, or its wakes never fade");
   }
   if (values != static_cast<std::size_t>(patch.rows * patch.cols)) {
     throw std::invalid_argument("there must be a pressure for each cell of the patch");
@@ -49,7 +49,7 @@ std::vector<double> wake_velocity(const SkinModel& model, const SkinPatch& patch
   for (int j = 0; j < fft.rows(); ++j) {
     const double ky = wave_number(j, fft.rows(), patch.cell);
     for (int i = 0; i < fft.cols(); ++i) {
-      // at a fixed place a pattern that moves by has ω = −k_x v; T(−ω) is T's conjugate
+      // at a fixed place a passing pattern has ω = −k_x v; T(−ω) is the conjugate of T(ω)
       const double kx = wave_number(i, fft.cols(), patch.cell);
       const double k = std::hypot(kx, ky), omega = -kx * speed;
       Complex& value = field[static_cast<std::size_t>(j * fft.cols() + i)];

@@ -1,5 +1,5 @@
 #pragma once
-/// The skin under pressure that moves along a straight line for ever.
+/// The skin under pressure that moves steadily along an endless straight line.
 
 #include <span>
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace prostm {
 
-/// Velocity of the skin [m/s] in a patch that moves along with the pressure on it, at `speed` along
-/// +x, (S13): rows·cols. The skin goes on around the patch; copies of it are 0.6 m and more away.
+/// Returns the velocity of the skin [m/s] in a patch that moves with its pressure at `speed` along
+/// +x, (S13): rows·cols. The skin continues around the patch; copies of it are at least 0.6 m away.
 /// @param pressure rows·cols [Pa]
-/// @throws std::invalid_argument with a sentence: speed not in 0.01 to 100 m/s, cell not in 0.1 to
-/// 20 mm, rows or cols not in 1 to 1024, not a pressure for each cell, or a skin without loss.
+/// @throws std::invalid_argument with a message: speed not in 0.01 to 100 m/s, cell not in 0.1 to
+/// 20 mm, rows or cols not in 1 to 1024, not one pressure per cell, or a skin without loss.
 std::vector<double> wake_velocity(const SkinModel& model, const SkinPatch& patch,
                                   std::span<const double> pressure, double speed);
 
