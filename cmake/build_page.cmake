@@ -1,9 +1,9 @@
-# Builds the page in ${WEB} and writes ${OUT}, a source file that holds it; without ${PAGE} an empty table.
+# Builds the page in ${WEB} and writes ${OUT}, a source file that holds it, or an empty table if ${PAGE} is off.
 # Run by cmake -P from page.cmake, so that configuring needs neither node nor npm.
 get_filename_component(work ${OUT} DIRECTORY)
 file(MAKE_DIRECTORY ${work})
 
-# quietly(NAME COMMAND…): its output goes to a log that is shown only when it fails
+# quietly(NAME COMMAND…): runs COMMAND; its output goes to a log that is shown only if it fails
 function(quietly name)
   set(log ${work}/${name}.log)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${WEB} RESULT_VARIABLE result OUTPUT_FILE ${log} ERROR_FILE ${log})
@@ -20,7 +20,7 @@ if(PAGE)
   if(NOT npm OR NOT node)
     message(FATAL_ERROR "the page needs node (18 or newer) and npm: install nodejs and npm, or configure with -DPROSTM_PAGE=OFF")
   endif()
-  # npm leaves a lock file of its own in what it has installed
+  # npm leaves its own lock file in the folder that it installs into
   if("${WEB}/package-lock.json" IS_NEWER_THAN "${WEB}/node_modules/.package-lock.json")
     quietly(install ${npm} ci)
     file(TOUCH ${WEB}/node_modules/.package-lock.json)
@@ -35,14 +35,14 @@ set(type_js "text/javascript; charset=utf-8")
 set(type_css "text/css; charset=utf-8")
 set(type_svg "image/svg+xml")
 
-# .incbin lets the assembler read the bytes, and costs the compiler nothing
+# .incbin makes the assembler read the bytes, at no cost for the compiler
 set(bytes "")
 set(rows "")
 set(count 0)
 foreach(name IN LISTS names)
   string(REGEX REPLACE "^.*\\." "" ending ${name})
   if(NOT DEFINED type_${ending})
-    message(FATAL_ERROR "the page has a file ${name}, whose media type cmake/build_page.cmake does not know")
+    message(FATAL_ERROR "the page's file ${name} has a media type unknown to cmake/build_page.cmake")
   endif()
   set(path "/${name}")
   if(name STREQUAL "index.html")

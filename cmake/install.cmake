@@ -1,15 +1,15 @@
-# What `cmake --install` puts where others find it: headers, libraries, the CMake package and pkg-config's file of the
-# planner's library, and the program with what it is made of where that is built.
+# Installs headers, libraries, the CMake package and the pkg-config file of the planner's library, and, if it is built,
+# the program with its libraries.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/prostm)
 
-# prostm_install(EXPORT STAGE…): EXPORT is the file of targets
+# prostm_install(EXPORT STAGE…): EXPORT is the name of the targets' file
 function(prostm_install export)
   foreach(stage ${ARGN})
     target_include_directories(prostm_${stage} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     install(TARGETS prostm_${stage} EXPORT ${export} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-    # public headers may hold types of detail/, which therefore goes with them
+    # public headers may hold types of detail/, so it is installed with them
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/prostm/${stage} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/prostm
             FILES_MATCHING PATTERN *.hpp)
   endforeach()
@@ -24,7 +24,7 @@ prostm_install(prostmTargets core target plan am acoustics emit device score)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/prostmConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_SOURCE_DIR}/cmake/prostmConfig.cmake ${PROJECT_BINARY_DIR}/prostmConfigVersion.cmake
         DESTINATION ${package_folder})
-# the prefix as it is seen from pkg-config's file, so that the installed tree can be moved
+# the prefix relative to the pkg-config file, so that the installed tree can be moved
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
            OUTPUT_VARIABLE up_to_prefix)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/prostm.pc.in ${PROJECT_BINARY_DIR}/prostm.pc @ONLY)

@@ -1,4 +1,4 @@
-# The page of web/, built by npm and put into the program as bytes: the library prostm_page.
+# The library prostm_page: the page of web/, built by npm and embedded into the program as bytes.
 set(web ${PROJECT_SOURCE_DIR}/web)
 set(page_source ${PROJECT_BINARY_DIR}/page/page_files.cpp)
 if(PROSTM_PAGE)

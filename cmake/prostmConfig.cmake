@@ -1,12 +1,12 @@
-# find_package(prostm) gives the planner's library: prostm::core, target, plan, am, acoustics, emit, device and score.
-# find_package(prostm COMPONENTS pipeline) gives prostm::track, hand, contact, fluid and pipeline too.
+# find_package(prostm) provides the planner's library: prostm::core, target, plan, am, acoustics, emit, device and
+# score. find_package(prostm COMPONENTS pipeline) adds prostm::track, hand, contact, fluid and pipeline.
 foreach(component ${prostm_FIND_COMPONENTS})
   if(component STREQUAL "pipeline" AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/prostmPipelineTargets.cmake)
     set(prostm_pipeline_FOUND TRUE)
   elseif(prostm_FIND_REQUIRED_${component})
     set(prostm_FOUND FALSE)
-    string(CONCAT prostm_NOT_FOUND_MESSAGE "this prostm has no component '${component}'; there is one, pipeline, in a "
-           "prostm that was built with PROSTM_PROGRAM=ON, and the planner's libraries need none")
+    string(CONCAT prostm_NOT_FOUND_MESSAGE "this prostm has no component '${component}'; the only one is pipeline, "
+           "in a prostm built with PROSTM_PROGRAM=ON; the planner's libraries need no component")
     return()
   endif()
 endforeach()

@@ -1,9 +1,9 @@
-# What most sources include and what takes longest to read is read once, for libraries and for tests. Every source still
-# includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds too.
+# Headers that most sources include and that take longest to read are precompiled, once for the libraries and once for
+# the tests. Every source still includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds too.
 set(prostm_slow_headers <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp>)
 
-# prostm_precompile(TARGET HOST HEADER…): HOST is the target that makes the file; it has the flags of the others, and no
-# definition that one of them lacks
+# prostm_precompile(TARGET HOST HEADER…): HOST is the target that makes the precompiled header; it has the flags of the
+# others, and no definition that one of them lacks
 function(prostm_precompile target host)
   if(target STREQUAL host)
     target_precompile_headers(${target} PRIVATE ${ARGN})
@@ -12,14 +12,14 @@ function(prostm_precompile target host)
   endif()
 endfunction()
 
-# the libraries' host
+# the host of the libraries
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/slow_headers.cpp CONTENT "")
 add_library(prostm_slow_headers STATIC ${PROJECT_BINARY_DIR}/slow_headers.cpp)
 target_link_libraries(prostm_slow_headers PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json Threads::Threads)
 prostm_precompile(prostm_slow_headers prostm_slow_headers ${prostm_slow_headers})
 
-# One static library per folder of src/prostm/, with what is in folders of it. Which folder may include which is held by
-# tools/check_layers.py.
+# prostm_stage(NAME …): one static library per folder of src/prostm/, with its subfolders. tools/check_layers.py checks
+# which folder may include which.
 function(prostm_stage name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/prostm/${name}/*.cpp)
   add_library(prostm_${name} STATIC ${sources})
@@ -31,7 +31,7 @@ function(prostm_stage name)
   prostm_precompile(prostm_${name} prostm_slow_headers)
 endfunction()
 
-# One test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry.
+# prostm_test(NAME …): one test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry.
 function(prostm_test name)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
   if(PROSTM_SANITIZE STREQUAL "thread" AND DEFINED prostm_threaded_${name})

@@ -1,4 +1,4 @@
-# What of Boost's sockets is no template, compiled once: the library prostm_sockets.
+# The library prostm_sockets: the parts of Boost's sockets that are not templates, compiled once.
 set(sockets_source ${PROJECT_BINARY_DIR}/sockets.cpp)
 file(CONFIGURE OUTPUT ${sockets_source} CONTENT "#include <boost/asio/impl/src.hpp>\n#include <boost/beast/src.hpp>\n")
 add_library(prostm_sockets STATIC ${sockets_source})

@@ -4,7 +4,7 @@
 #include <prostm/plan/planner.hpp>
 
 int main() {
-  // A ring of pressure on 120 x 120 mm of flat skin, 200 mm above the array's middle.
+  // A ring of pressure on 120 x 120 mm of flat skin, 200 mm above the array's centre.
   prostm::TargetField field;
   field.cell = 0.005;  // [m]
   field.resize(24, 24);

@@ -1,4 +1,4 @@
-// How well paths draw a field, and what that is worth beside paths that must lose.
+// Scores a plan, and compares it with control paths that must score worse.
 #include <cstdio>
 #include <prostm/plan/planner.hpp>
 #include <prostm/score/score.hpp>
@@ -29,7 +29,7 @@ int main() {
     print(control.name.c_str(), control.metrics);
   }
 
-  // The weak bump counts five times as much: the planner gives up some of the strong one for it.
+  // The weak bump counts five times as much: the planner sacrifices some of the strong one for it.
   prostm::TargetField weighted = field;
   for (std::size_t i = 0; i < field.size(); ++i) {
     weighted.weight.push_back(field.position(i).x() > 0.01 ? 5.0 : 1.0);

@@ -1,4 +1,4 @@
-// The same field by moving focal points (PRO-STM) and by still ones (amplitude modulation).
+// Renders one field by moving focal points (PRO-STM) and by still ones (amplitude modulation).
 #include <cstdio>
 #include <prostm/am/am_planner.hpp>
 #include <prostm/plan/planner.hpp>

@@ -1,4 +1,4 @@
-// A plan as an array plays it: 40000 samples a second of every focal point.
+// Samples a plan as an array plays it: 40000 samples a second of every focal point.
 #include <algorithm>
 #include <cstdio>
 #include <prostm/emit/loop_samples.hpp>
@@ -7,7 +7,7 @@
 #include "two_bumps.hpp"
 
 int main() {
-  prostm::TargetFrame frame;  // what is felt at one time: a field for each hand
+  prostm::TargetFrame frame;  // the target at one time: a field for each hand
   frame.patches.push_back(two_bumps());
   prostm::PlanSettings settings;
   prostm::Planner planner(settings, frame.patches[0].size());
@@ -15,7 +15,7 @@ int main() {
   prostm::PlanStats stats;
   planner.plan(frame, plan, stats);
 
-  prostm::LiftedPlan lifted;  // in the array's frame, on the skin's heights
+  prostm::LiftedPlan lifted;  // in the array's frame, at the skin's heights
   prostm::lift(plan, frame, lifted);
   prostm::EmitSettings emission;
   emission.full_scale_pressure = settings.gain * prostm::max_pressure(frame.patches[0]);

@@ -1,4 +1,4 @@
-// A device of one's own, and what it is given to play.
+// A device of your own, and the samples that it receives.
 #include <cstdio>
 #include <prostm/prostm.hpp>
 
@@ -13,7 +13,7 @@ class PrintedArray final : public Device {
     info_ = {.name = "printed", .sample_rate = 4e3, .block_samples = 80, .max_foci = 4};
     info_.loads_segments = true;
     info_.keeps_time = false;  // it plays when pull() says so
-    info_.decimation = 10;     // of the 40000 samples a second that an emitter makes
+    info_.decimation = 10;     // from the 40000 samples a second of an emitter
   }
   DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override {
     const FocusSample& last = samples.back();
@@ -44,13 +44,13 @@ int main() {
 
   const auto device = as_stream(std::make_unique<PrintedArray>());
   EmitSettings emission;
-  emission.full_scale_pressure = 2.0;  // what is played at intensity 1
+  emission.full_scale_pressure = 2.0;  // pressure played at intensity 1
   const auto emitter = make_emitter(Method::ProStm, emission, device->info().emission_rate());
   lift(plan, frame, emitter->draft());
   emitter->submit();
 
   const auto chain = make_sample_chain(*emitter, device->info(), {});
   device->start(*chain);  // loads the first 20 ms
-  device->pull(5);        // plays them, and four more; then no new plan has come for 100 ms
+  device->pull(5);        // plays them and four more; then 100 ms have passed without a new plan
   device->stop();
 }

@@ -6,7 +6,7 @@
 inline prostm::TargetField two_bumps() {
   prostm::TargetField field;
   field.cell = 0.005;                         // [m]
-  field.origin = prostm::Vec2(-0.06, -0.06);  // the array's middle is below the skin's
+  field.origin = prostm::Vec2(-0.06, -0.06);  // the array's centre is below the skin's
   field.resize(24, 24);
   for (std::size_t i = 0; i < field.size(); ++i) {
     const prostm::Vec2 x = field.position(i);

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const TransducerArray back = array_from_json(array_to_json(array), "back.json");
     if (back.position.size() != array.position.size()) std::abort();
   } catch (const InputError&) {
-    // what bad input must answer
+    // the required answer to bad input
   }
   return 0;
 }

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (back.pressure != field.pressure || back.skin != field.skin || back.weight != field.weight)
       std::abort();
   } catch (const InputError&) {
-    // what bad input must answer
+    // the required answer to bad input
   }
   return 0;
 }

@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     validate(field_from_png({reinterpret_cast<const char*>(data), size}, "fuzz.png", 5.0));
   } catch (const InputError&) {
-    // what bad input must answer
+    // the required answer to bad input
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-/// prostm-foci/1: any text is focal points that some drives within 1 make, or a sentence.
+/// prostm-foci/1: any text is a set of focal points that drives of at most 1 produce, or an error.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -21,9 +21,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!(std::abs(q) <= 1.0 + 1e-9)) std::abort();
     }
   } catch (const InputError&) {
-    // what bad input must answer
+    // the required answer to bad input
   } catch (const std::invalid_argument&) {
-    // and focal points that cannot be
+    // and to impossible focal points
   }
   return 0;
 }

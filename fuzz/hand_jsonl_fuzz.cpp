@@ -1,4 +1,4 @@
-/// Neutral hand recordings: whatever the bytes, a recording or an InputError.
+/// Neutral hand recordings: any bytes are a recording or an InputError.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include "prostm/io/hand_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // most inputs would fail at the header, so one is given
+  // most inputs would fail at the header, so the first test supplies it
   std::string text = R"({"format":"hand-frames","version":1,"units":"m"})";
   text += '\n';
   text.append(reinterpret_cast<const char*>(data), size);

@@ -1,4 +1,4 @@
-/// Messages of a live Leap service: whatever the bytes, hands that can be, or a sentence.
+/// Messages of a live Leap service: any bytes give plausible hands, or a message about the problem.
 
 #include <cstddef>
 #include <cstdint>

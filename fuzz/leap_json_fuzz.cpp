@@ -1,4 +1,4 @@
-/// Leap recordings: whatever the bytes, a recording or an InputError.
+/// Leap recordings: any bytes are a recording or an InputError.
 
 #include <cstddef>
 #include <cstdint>

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (back.plan.paths.size() != file.plan.paths.size()) std::abort();
     if (back.plan.foci.size() != file.plan.foci.size()) std::abort();
   } catch (const InputError&) {
-    // what bad input must answer
+    // the required answer to bad input
   }
   return 0;
 }

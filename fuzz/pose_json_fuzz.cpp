@@ -1,4 +1,4 @@
-/// prostm-pose/1: any text is a pose that survives being written and read, or a sentence.
+/// prostm-pose/1: any text is a pose that survives a round trip, or an InputError.
 
 #include <cmath>
 #include <cstddef>
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!((back.X_DT.matrix() - pose.X_DT.matrix()).norm() < 1e-9)) std::abort();
     if (!(std::abs(pose.X_DT.linear().determinant() - 1.0) < 1e-9)) std::abort();
   } catch (const InputError&) {
-    // what bad input must answer
+    // the required answer to bad input
   }
   return 0;
 }

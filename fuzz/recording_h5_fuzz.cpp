@@ -1,6 +1,5 @@
-/// Recordings: whatever the datasets hold, a frame is valid or an InputError. The bytes become the
-/// numbers of a recording and not the file itself: what broken HDF5 structure does is libhdf5's
-/// matter.
+/// Recordings: whatever the datasets hold, a frame is valid or gives an InputError. The input
+/// becomes the numbers of a recording, not the file itself: broken HDF5 structure is up to libhdf5.
 #include <unistd.h>
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace {
 
-/// The next number of the input; 0 when it is used up.
+/// Takes the next number of the input; 0 if it is used up.
 template <class T>
 T take(std::string_view& bytes) {
   T value{};
@@ -24,7 +23,7 @@ T take(std::string_view& bytes) {
   return value;
 }
 
-/// A field whose shape, numbers and sizes need not belong together.
+/// Makes a field whose shape, numbers and sizes may contradict each other.
 prostm::TargetField any_field(std::string_view& bytes) {
   prostm::TargetField field;
   field.rows = take<std::int16_t>(bytes);
@@ -63,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       for (const TargetField& field : reader.frame(i).patches) validate(field);
     } catch (const InputError&) {
-      // what bad input must answer
+      // the required answer to bad input
     }
   }
   ::unlink(path.c_str());

@@ -1,4 +1,4 @@
-/// Settings: any text sets fields of every type, or is an InputError.
+/// Settings: any text sets fields of every type, or gives an InputError.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!std::isfinite(plan.sigma)) std::abort();
     static_cast<void>(settings_to_json(groups).size());
   } catch (const InputError&) {
-    // what bad input must answer
+    // the required answer to bad input
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-/// A page's text message: any bytes are a message within its bounds, or a sentence.
+/// A page's text message: any bytes are a message within its bounds, or give an error message.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

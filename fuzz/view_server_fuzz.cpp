@@ -1,5 +1,5 @@
 /// The whole server over loopback: any bytes as a request, as WebSocket frames, or as a page's
-/// messages. It must live on, and answer the next request.
+/// messages. The server must survive and answer the next request.
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -18,7 +18,7 @@ namespace {
 using namespace prostm;
 namespace asio = boost::asio;
 
-/// A run with nothing in it.
+/// A source without any data.
 class Nothing final : public ViewSource {
  public:
   void watch(bool) override {}
@@ -57,7 +57,7 @@ const std::string& handshake() {
   return kText;
 }
 
-/// The bytes as one masked text frame, with a mask of zeros.
+/// Returns the bytes as one masked text frame, with a mask of zeros.
 std::string as_message(const std::string& text) {
   std::string out = "\x81";
   out += static_cast<char>(0x80 | 126);
@@ -66,8 +66,8 @@ std::string as_message(const std::string& text) {
   return out + std::string(4, '\0') + text;
 }
 
-/// Another of the addresses of this machine each time: a connection that has ended keeps its port
-/// for a minute, and one address has too few for thousands of connections a second.
+/// Returns a different loopback address each time: a closed connection keeps its port for a minute,
+/// and one address has too few ports for thousands of connections a second.
 asio::ip::address_v4 next_address() {
   static std::uint32_t n = 0;
   return asio::ip::address_v4(0x7F000100U + n++ % 4096U);
@@ -95,7 +95,7 @@ std::string exchange(const std::string& bytes) {
   return answer;
 }
 
-/// The fuzzer's own alarm must not break off what waits for the server.
+/// Makes the fuzzer's own alarm restart interrupted calls that wait for the server.
 bool restart_after_alarms() {
   struct sigaction action {};
   if (sigaction(SIGALRM, nullptr, &action) != 0) return false;

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Tries this checkout on a bare Debian 12: minbase with git and ca-certificates, nothing else, entered by chroot.
+# Tries this checkout on a bare Debian 12: minbase with git and ca-certificates only, entered by chroot.
 set -euo pipefail
 
 usage() {
@@ -36,7 +36,7 @@ done
 command -v debootstrap >/dev/null || fail "needs debootstrap: apt-get install debootstrap"
 source=$(git -C "$(dirname "$0")" rev-parse --show-toplevel)
 
-# the first archive that this machine itself takes bookworm from
+# prints the first archive from which this machine itself takes bookworm
 mirror_of_host() {
   local files=(/etc/apt/sources.list.d/*.sources /etc/apt/sources.list /etc/apt/sources.list.d/*.list) file
   for file in "${files[@]}"; do
@@ -50,7 +50,7 @@ mirror_of_host() {
   done | head -n 1
 }
 
-# how this machine reaches archives: proxy and TLS settings of apt, certificates of its own, name servers
+# copies the machine's access to archives: proxy and TLS settings of apt, its own certificates, name servers
 copy_network_settings() {
   apt-config dump Acquire | grep -iE '^Acquire::(https?::|Retries)' >"$root/etc/apt/apt.conf.d/90host" || true
   if compgen -G '/usr/local/share/ca-certificates/*.crt' >/dev/null; then
@@ -61,11 +61,11 @@ copy_network_settings() {
   cp -L /etc/resolv.conf "$root/etc/resolv.conf"
 }
 
-# minbase has no /etc/hosts, so localhost is no name: whoever needs it is found out, unless a name server knows it
+# removes /etc/hosts, as in minbase, so that a test that needs the name localhost fails, unless a name server knows it
 forget_localhost() {
   rm -f "$root/etc/hosts"
   if in_chroot 'getent ahosts localhost >/dev/null'; then
-    say "the name server here knows localhost, so a test that needs this name is NOT found out"
+    say "the name server here knows localhost, so a test that needs this name is NOT detected"
   fi
 }
 
@@ -78,7 +78,7 @@ in_chroot() {
     "${proxies[@]}" chroot "$root" /bin/bash -c "$1"
 }
 
-# unmounts what was mounted, last first; the folder goes only when nothing is mounted in it any more
+# unmounts everything in reverse order; deletes the folder only if nothing is mounted in it any more
 mounted=()
 clean_up() {
   local i
@@ -128,7 +128,7 @@ mount -t tmpfs tmpfs "$root/dev/shm"
 mounted+=("$root/dev/shm")
 forget_localhost
 
-# a clone of this commit, through a bundle, so that nothing but the committed files gets in
+# a clone of this commit, through a bundle, so that only committed files get in
 git -C "$source" bundle create -q "$root/srv/prostm.bundle" HEAD
 rm -rf "$root/srv/prostm"
 step "git clone" in_chroot "cd /srv && git -c advice.detachedHead=false clone -q prostm.bundle prostm && git -C prostm log -1 --format='%h %s'"

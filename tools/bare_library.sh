@@ -1,5 +1,5 @@
 #!/bin/bash
-# Tries the planner's library alone on a bare Debian 12 that has a compiler, CMake, and what the library needs, no more.
+# Tries the planner's library alone on a bare Debian 12 with only a compiler, CMake and the library's dependencies.
 set -euo pipefail
 
 usage() {

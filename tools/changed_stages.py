@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Prints the stages whose sanitizers and fuzzers a change asks for, one a line; nothing means all of them.
+"""Prints the stages whose sanitizers and fuzzers a change needs, one per line; no output means all stages.
 
 usage: changed_stages.py COMMIT
 
-COMMIT is one whose whole run passed. A stage is a folder of src/prostm/ or tests/. pipeline, viewer and app (the command line)
-are always among them. All are asked for when COMMIT is no ancestor of HEAD, or when a file has changed that belongs to no
-stage and is built or run with all: CMake's files, the scripts, what tests share.
+COMMIT must have passed a whole run. A stage is a folder of src/prostm/ or tests/. pipeline, viewer and app (the command
+line) are always printed. All stages are needed if COMMIT is no ancestor of HEAD, or if a changed file belongs to no
+stage and is built or run with all of them: CMake's files, the scripts, the shared parts of tests.
 """
 
 import subprocess
@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 ALWAYS = {"pipeline", "viewer", "app"}
-# what no sanitizer or fuzzer looks at
+# files that no sanitizer or fuzzer covers
 ELSEWHERE = ("docs", "web", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md", "LICENSE", ".ci", ".gitignore")
 
 
@@ -23,7 +23,7 @@ def git(*arguments):
 
 
 def stage_of(path):
-    """The stage of a changed file; "" for one that is none's and matters to none, None for one that matters to all."""
+    """Returns the stage of a changed file; "" for a file that affects no stage, None for one that affects all."""
     parts = Path(path).parts
     if parts[:2] == ("tests", "fields") or parts[:3] == ("src", "prostm", "textbook"):
         return None  # tests of several stages link them
@@ -50,7 +50,7 @@ def changed_stages(since):
 
 def main():
     if len(sys.argv) != 2:
-        print("changed_stages: give one commit; see its first lines", file=sys.stderr)
+        print("usage: changed_stages.py COMMIT", file=sys.stderr)
         return 2
     for stage in sorted(changed_stages(sys.argv[1])):
         print(stage)

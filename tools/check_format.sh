@@ -1,5 +1,5 @@
 #!/bin/bash
-# Whether every tracked C++ file is as clang-format 14 with .clang-format would write it.
+# Checks that every tracked C++ file is formatted as clang-format 14 with .clang-format writes it.
 # usage: tools/check_format.sh [--fix]
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."

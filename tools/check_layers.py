@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Holds the code to the layers of the design: reads the #include lines and a few forbidden words.
+"""Checks the layers of the design: reads the #include lines and looks for a few forbidden words.
 
 usage: check_layers.py [ROOT]     ROOT is the repository (default: the folder above this file)
 
-Prints one line for each violation, FILE:LINE: what is wrong and what would be right, and exits 1 if there is any.
+Prints one line for each violation, FILE:LINE: the problem and its solution, and exits 1 if there is any.
 """
 
 import re
 import sys
 from pathlib import Path
 
-# Which stages (folders of src/prostm/) a stage may include directly is what its prostm_stage(…) of CMakeLists.txt links;
-# core is open to all. Programs and modules may include every stage that their folder's CMakeLists.txt links, and what those
-# link. What lies in a folder detail/ is private to its stage; tests, benchmarks and the lab may look at it.
+# A stage (a folder of src/prostm/) may include directly the stages that its prostm_stage(…) in CMakeLists.txt links;
+# every stage may include core. Programs and modules may include every stage that their folder's CMakeLists.txt links,
+# directly or indirectly. A folder detail/ is private to its stage; tests, benchmarks and the lab may include it too.
 STAGE = re.compile(r"^\s*prostm_stage\((\w+)([^)]*)\)", re.M)
 LINKED = re.compile(r"^\s*(?:target_link_libraries|prostm_lab)\(([^)]*)\)", re.M)
 OURS = re.compile(r"\bprostm_(\w+)\b")
@@ -21,14 +21,14 @@ MAY_LOOK_INSIDE = ("tests", "bench", "lab")
 STAGES = "src/prostm/"
 OF_ALL = (STAGES + "prostm.hpp", STAGES + "version.hpp")
 
-# Rooms inside a stage: a folder of it -> the stage's folders and headers that it must not include.
+# Rooms inside a stage: a folder of it -> folders and headers of the stage that it must not include.
 ROOMS = {
     "plan/detail/paper": ("plan/detail/fit", "plan/planner.hpp"),
     "plan/detail/fit": ("plan/detail/paper", "plan/planner.hpp"),
     "plan/detail": ("plan/detail/paper", "plan/detail/fit", "plan/planner.hpp"),
 }
 
-# Threads, mutexes and clocks live here only.
+# Only these may use threads, mutexes and clocks.
 MAY_USE_THREADS = tuple(STAGES + place for place in
                         ("core/worker_pool.", "track/live/", "track/detail/", "device/", "pipeline/", "viewer/"))
 MAY_USE_CLOCKS = (STAGES + "core/stage_timer.",) + MAY_USE_THREADS[1:]
@@ -38,7 +38,7 @@ CLOCK_HEADERS = {"chrono", "ctime", "time.h", "sys/time.h"}
 PRINTING_HEADERS = {"iostream", "print", "syncstream"}
 LANGUAGE_HEADERS = {"format", "expected", "source_location", "generator", "coroutine"}
 
-# Words that need no header of their own: (pattern, where it is allowed, what is wrong).
+# Words that need no header of their own: (pattern, allowed places, problem).
 WORDS = [
     (re.compile(r"\bstd::(this_thread|j?thread|mutex|\w+_mutex|condition_variable\w*|async|call_once)\b"),
      MAY_USE_THREADS, "threads and mutexes live in core/worker_pool, track/live, device, pipeline and viewer"),
@@ -51,7 +51,7 @@ WORDS = [
     (re.compile(r"\bco_(await|yield|return)\b"), (), "coroutines are not used"),
 ]
 
-# Words of the language rule hold everywhere, the others in src/ only.
+# Words of the language rule are checked everywhere, the others in src/ only.
 EVERYWHERE = WORDS[3:]
 
 OLD_NAMES = re.compile(r"(_old\b|_old[_.]|[-_.]old\.|\.bak$|\.orig$|~$|_v[0-9]+(\.[0-9]+)*\.|_copy\.|_backup\b)")
@@ -61,7 +61,7 @@ TEXT_OR_COMMENT = re.compile(
 
 
 def read_layers(root):
-    """Stage -> the stages that it may include, from CMakeLists.txt; a stage comes after those that it links."""
+    """Returns stage -> the stages that it may include, from CMakeLists.txt; a stage comes after those that it links."""
     layers = {}
     for stage, linked in STAGE.findall((root / "CMakeLists.txt").read_text(encoding="utf-8")):
         names = OURS.findall(linked)
@@ -70,7 +70,7 @@ def read_layers(root):
 
 
 def reachable(layers, names):
-    """Stages among names, and all that they link, and those in turn."""
+    """Returns the stages among names, and all stages that they link, directly or indirectly."""
     found, queue = set(), [name for name in names if name in layers]
     while queue:
         name = queue.pop()
@@ -81,7 +81,7 @@ def reachable(layers, names):
 
 
 def read_programs(root, layers):
-    """Folder of programs -> the stages that it may include, from its CMakeLists.txt."""
+    """Returns folder of programs -> the stages that it may include, from its CMakeLists.txt."""
     out = {}
     for top in PROGRAMS:
         lists = root / top / "CMakeLists.txt"
@@ -92,17 +92,17 @@ def read_programs(root, layers):
 
 
 def without_text(source):
-    """The source with comments and string literals blanked out, lines kept."""
+    """Returns the source with comments and string literals blanked out, lines kept."""
     return TEXT_OR_COMMENT.sub(lambda m: "\n" * m.group(0).count("\n") or " ", source)
 
 
 def room_of(path):
-    """The innermost folder of ROOMS that holds a file or header, or None; `path` begins with the stage."""
+    """Returns the innermost folder of ROOMS that holds a file or header, or None; `path` begins with the stage."""
     return max((room for room in ROOMS if path.startswith(room + "/")), key=len, default=None)
 
 
 def check_stage_include(place, stage, header, layers):
-    """What is wrong when the file at place (in its stage) includes the header, both as stage/…, or None."""
+    """Returns the problem if the file at place (in its stage) includes the header, both as stage/…, or None."""
     layer = header.split("/")[0]
     allowed = [stage, "core"] + layers[stage]
     if layer not in allowed:
@@ -116,7 +116,8 @@ def check_stage_include(place, stage, header, layers):
 
 
 def check_program_include(top, header, layers, programs):
-    """The same of a file outside src/: only stages that its folder links, nothing private but in tests and the like."""
+    """The same for a file outside src/: it may include only stages that its folder links, and, except in tests,
+    benchmarks and the lab, nothing private."""
     layer = header.split("/")[0]
     if top in programs and layer not in programs[top]:
         return f"{top} must not include {layer}: no target of {top}/CMakeLists.txt links prostm_{layer}"
@@ -126,7 +127,7 @@ def check_program_include(top, header, layers, programs):
 
 
 def check_include(path, stage, quoted, name, layers, programs):
-    """What is wrong with one #include line, or None. `stage` is None outside src/."""
+    """Returns the problem of one #include line, or None. `stage` is None outside src/."""
     if name in LANGUAGE_HEADERS and not quoted:
         return f"<{name}> is not accepted by both compilers"
     header = name.removeprefix("prostm/")
@@ -145,12 +146,12 @@ def check_include(path, stage, quoted, name, layers, programs):
     if name.startswith("."):
         return f'"{name}" is relative: include from src/, as "prostm/stage/file.hpp"'
     if not is_ours:
-        return f'"{name}" is no header of a stage: stages include "prostm/stage/file.hpp"'
+        return f'"{name}" is not a header of a stage: stages include "prostm/stage/file.hpp"'
     return check_stage_include(path.removeprefix(STAGES), stage, header, layers)
 
 
 def check_file(root, file, layers, programs):
-    """Violations of one C++ file, as (line, sentence)."""
+    """Returns the violations of one C++ file, as (line, message)."""
     path = file.relative_to(root).as_posix()
     if path in OF_ALL:
         return []
@@ -175,7 +176,7 @@ def check_file(root, file, layers, programs):
 
 
 def check_tree(root):
-    """All violations below root, as 'file:line: sentence', sorted by file."""
+    """Returns all violations below root, as 'file:line: message', sorted by file."""
     layers = read_layers(root)
     programs = read_programs(root, layers)
     lines = []
@@ -204,7 +205,7 @@ def main():
     for line in lines:
         print(line)
     if not lines:
-        print("layers: every #include is of what CMake links")
+        print("layers: every #include is of a stage that CMake links")
     return 1 if lines else 0
 
 

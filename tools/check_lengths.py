@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Holds files of src/ and apps/ to 450 lines and their functions to 60.
+"""Limits files of src/ and apps/ to 450 lines and their functions to 60.
 
 usage: check_lengths.py [ROOT]     ROOT is the repository (default: the folder above this file)
 
-Prints one line for each that is longer, FILE:LINE: what is too long, and exits 1 if there is any. A function counts
-from the line where its declaration begins to that of its last brace, with the lambdas in it. Data in braces is no
-function.
+Prints one line for each that is longer, FILE:LINE: its length and the limit, and exits 1 if there is any. A function
+counts from the line where its declaration begins to that of its last brace, including its lambdas. Data in braces does
+not count.
 """
 
 import re
@@ -17,7 +17,7 @@ from check_layers import without_text
 MOST_FILE_LINES = 450
 MOST_FUNCTION_LINES = 60
 
-# Functions that only list, (file, name) -> what they list: a table is not easier to read in two parts.
+# Long functions that only list, (file, name) -> their contents: a table is not easier to read in two parts.
 TABLES = {
     ("src/prostm/pipeline/controls.cpp", "make_controls"): "the controls of a run, each with its limits and its help",
 }
@@ -29,7 +29,7 @@ NAME = re.compile(r"((?:[\w:]|<[^<>]*>)*(?:operator\s*(?:\(\)|[^\s\w(]+)|~?\b\w+
 
 
 def without_arguments(header):
-    """The header without what stands in round brackets, and without its template<…>."""
+    """Returns the header without the contents of round brackets, and without its template<…>."""
     header = re.sub(r"\boperator\s*(?:\(\)|[^\s\w(]+)", "operator_", header)
     while True:
         shorter = re.sub(r"\([^()]*\)", "\0", header)
@@ -47,8 +47,8 @@ def without_arguments(header):
 
 
 def kind_of(header):
-    """What a brace opens in a namespace or class, by what stands before it: scope, member (of a constructor's list),
-    function, or data."""
+    """Returns the kind of a brace in a namespace or class, by the header before it: scope, member (of a constructor's
+    list), function, or data."""
     bare = without_arguments(header)
     if SCOPE.search(bare) and not bare.rstrip().endswith("\0"):
         return "scope"
@@ -60,7 +60,7 @@ def kind_of(header):
 
 
 def name_of(header):
-    """The name in a function's header: what stands before its first round bracket that is not a specifier's."""
+    """Returns the name in a function's header: the words before its first round bracket that is not a specifier's."""
     for bracket in re.finditer(r"\(", header):
         name = NAME.search(header[:bracket.end()])
         if name and not name.group(1).endswith(("alignas", "decltype", "requires", "operator")):
@@ -69,7 +69,7 @@ def name_of(header):
 
 
 def functions(source):
-    """(name, first line, number of lines) of each function defined in a namespace or class."""
+    """Returns (name, first line, number of lines) of each function defined in a namespace or class."""
     text = DIRECTIVE.sub(lambda m: "\n" * m.group(0).count("\n"), without_text(source))
     found, scopes, start, position = [], [], 0, 0
     while position < len(text):
@@ -100,7 +100,7 @@ def functions(source):
 
 
 def closing(text, position):
-    """Where the brace at position is closed."""
+    """Returns the position where the brace at position is closed."""
     depth = 0
     for brace in re.finditer(r"[{}]", text[position:]):
         depth += 1 if brace.group(0) == "{" else -1
@@ -110,7 +110,7 @@ def closing(text, position):
 
 
 def check_tree(root):
-    """All that is too long below root, as 'file:line: sentence', and tables that are none any more."""
+    """Returns all excess lengths below root, as 'file:line: message', and tables that are no longer needed."""
     lines, tables = [], dict(TABLES)
     for top in ("src", "apps"):
         for file in sorted((root / top).rglob("*.?pp")):
@@ -122,7 +122,7 @@ def check_tree(root):
             for name, first, count in functions(source):
                 if count > MOST_FUNCTION_LINES and tables.pop((path, name), None) is None:
                     lines.append(f"{path}:{first}: {name} has {count} lines: at most {MOST_FUNCTION_LINES}")
-    return lines + [f"{path}:1: {name} is no long function any more: take it off the tables of check_lengths.py"
+    return lines + [f"{path}:1: {name} is no longer a long function: take it off TABLES in check_lengths.py"
                     for path, name in tables if (root / path).parent.is_dir()]
 
 

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Whether this build is slower than another: runs both in turns, A B A B …, and compares the p50 of every time.
+"""Tells whether this build is slower than another: runs both in turns, A B A B …, and compares the p50 of every time.
 
 usage: compare_benches.py OTHER_BUILD THIS_BUILD [NAME…] [--rounds N] [--bound PERCENT] [--json FILE]
 
 NAME is a benchmark, NAME_bench in the build folders, or "stages": the stages' times in a stepped run of the program.
-Without names it is the quick ones: stages, planner, contact and latency. Rows are matched by their names; those that
-only one build has are listed. For each row a round gives the ratio of this build's p50 to the other's, and the median
-over the rounds counts. The noise is that of the median, from how much rounds of the same build differ. Rows that are
-slower than the bound are marked, and those slower by more than the noise too fail: then it exits 1.
+The default is the quick ones: stages, planner, contact and latency. Rows are matched by their names; rows that only one
+build has are listed. In each round a row gives the ratio of this build's p50 to the other's; the median over the rounds
+counts. The noise of this median is estimated from the differences between rounds of the same build. Rows slower than
+the bound are marked; rows slower than the bound plus the noise make the script exit 1.
 
-./run bench --against COMMIT builds a commit and this tree, and calls this.
+./run bench --against COMMIT builds a commit and this tree, and calls this script.
 """
 
 import argparse
@@ -22,13 +22,13 @@ import tempfile
 from pathlib import Path
 
 QUICK = ["stages", "planner", "contact", "latency"]
-TIMES = ("ns", "us", "ms", "s")  # units of rows that are compared; what others say is for ./run same
+TIMES = ("ns", "us", "ms", "s")  # units of compared rows; ./run same checks the others
 SCENES = ("one-plume", "four-plumes")
 LEAST_ROUNDS = 3
 
 
 class Failed(Exception):
-    """A program did not do what it must; the text says which."""
+    """A program failed; the text says which and how."""
 
 
 def call(*command):
@@ -39,20 +39,20 @@ def call(*command):
 
 
 def stages(build, folder):
-    """Name -> p50 of the stages of a run in each scene [ms]."""
+    """Returns name -> p50 of the stages of a run in each scene [ms]."""
     times = {}
     for scene in SCENES:
         out = folder / "run.json"
         call(build / "prostm", "run", "--stepped", "--scene", scene, "--seconds", 4, "--json", out)
         for stage, summary in json.loads(out.read_text())["stage_ms"].items():
             if summary["p50"] > 0:
-                # the world's stage was called fluid before there could be another world
+                # in older builds the world's stage is called fluid
                 times[f"{scene}: {stage.replace('fluid', 'world')}"] = summary["p50"]
     return times
 
 
 def options_of(name, folder):
-    """What makes a benchmark quick, where it is long by itself."""
+    """Returns the options that make a long benchmark quick."""
     if name == "planner":
         return ["--frames", 10, "--seeds", 1, folder / "four-plumes.h5"]
     if name == "latency":
@@ -61,7 +61,7 @@ def options_of(name, folder):
 
 
 def measure(build, name, folder):
-    """Name -> p50 of every time that a benchmark gives."""
+    """Returns name -> p50 of every time that a benchmark reports."""
     if name == "stages":
         return stages(build, folder)
     out = folder / "rows.json"
@@ -70,15 +70,15 @@ def measure(build, name, folder):
 
 
 def noise_of(builds):
-    """Of the median over the rounds of a ratio of two builds, as a share: twice its standard deviation, which comes from
-    the ratios of each build's rounds to its own next ones."""
+    """Returns the noise of the median ratio of two builds over the rounds, as a share: twice its standard deviation,
+    estimated from the ratios of consecutive rounds of each build."""
     steps = [abs(math.log(after / before)) for rounds in builds for before, after in zip(rounds, rounds[1:])]
     deviation = 1.4826 * statistics.median(steps)
     return 2.0 * 1.2533 * deviation / math.sqrt(len(builds[0]))
 
 
 def compare(name, other, this, bound):
-    """A row's figures; `other` and `this` are its times in each round."""
+    """Returns a row's figures; `other` and `this` are its times in each round."""
     ratio, noise = statistics.median(b / a for a, b in zip(other, this)), noise_of((other, this))
     slower = ratio > 1.0 + bound
     return {"name": name, "other_p50": statistics.median(other), "this_p50": statistics.median(this), "ratio": ratio,
@@ -86,7 +86,7 @@ def compare(name, other, this, bound):
 
 
 def run_rounds(builds, names, rounds, folder):
-    """For each build a list of rounds, each name -> p50."""
+    """Returns for each build a list of rounds, each name -> p50."""
     found = ([], [])
     for count in range(rounds):
         if sys.stderr.isatty():
@@ -106,7 +106,7 @@ def compare_all(given):
     with tempfile.TemporaryDirectory(prefix="compare_benches.") as scratch:
         folder = Path(scratch)
         if "planner" in given.names:
-            # one recording for both
+            # both builds read the same recording
             call(builds[1] / "prostm", "capture", "--scene", "four-plumes", "--frames", 40, "--out",
                  folder / "four-plumes.h5")
         other, this = run_rounds(builds, given.names, given.rounds, folder)

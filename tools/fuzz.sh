@@ -1,7 +1,7 @@
 #!/bin/bash
 # Fuzzes one parser of the fuzz build (./run test --full builds it).
 # usage: tools/fuzz.sh NAME SECONDS          e.g. tools/fuzz.sh field_json_fuzz 600
-# Starts from fuzz/corpus/NAME where that is there; an input that breaks the parser is kept in build/fuzz/findings.
+# Starts from fuzz/corpus/NAME if it exists; inputs that break the parser are kept in build/fuzz/findings.
 set -euo pipefail
 [[ $# -eq 2 ]] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 name=$1 seconds=$2
@@ -9,7 +9,7 @@ root=$(dirname "$(readlink -f "$0")")/..
 findings=$root/build/fuzz/findings
 mkdir -p "$findings"
 
-# new inputs are for this run alone: the committed corpus stays as it is
+# new inputs are used in this run only: the committed corpus stays unchanged
 corpus=$(mktemp -d)
 trap 'rm -rf "$corpus"' EXIT
 if [[ -d $root/fuzz/corpus/$name ]]; then cp -r "$root/fuzz/corpus/$name/." "$corpus"; fi

@@ -1,6 +1,6 @@
-/// Loaded before a program (LD_PRELOAD), this keeps its kernels to the vector instructions that
-/// ONLY_VECTORS names, or to the plain code for "none". So programs of any commit can be limited,
-/// and the shipped one needs no switch for it.
+/// Limits a program's kernels to the vector instructions that ONLY_VECTORS names, or to the plain
+/// code for "none", when it is loaded before the program (LD_PRELOAD). It works with programs of
+/// any commit, so the shipped program needs no switch for it.
 
 #include <hwy/targets.h>
 #include <strings.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kPlain = HWY_EMU128 | HWY_SCALAR;
 
-/// Calls back with each set of vector instructions that this processor has, the best one first.
+/// Calls `visit` with each set of vector instructions of this processor, the best one first.
 template <class Visit>
 void for_each_target(Visit visit) {
   for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS & ~kPlain; left != 0;
@@ -40,7 +40,7 @@ void for_each_target(Visit visit) {
 
 }  // namespace
 
-/// Their names into `out`, with spaces between.
+/// Writes the names of these sets to `out`, separated by spaces.
 extern "C" void list_vectors(char* out, int size) {
   int used = 0;
   for_each_target([&](std::int64_t target) {

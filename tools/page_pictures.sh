@@ -1,5 +1,5 @@
 #!/bin/bash
-# Takes the pictures of the page that the README and docs show, with the release build in Chromium: tools/page_pictures.sh
+# Takes the page's pictures for the README and docs, with the release build in Chromium: tools/page_pictures.sh
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 export PROSTM=$root/build/release/prostm

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Draws the pictures of the README and of docs with the release build: tools/pictures.sh
+# Draws the pictures of the README and docs with the release build: tools/pictures.sh
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 prostm=$root/build/release/prostm

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Compares the results of two builds to the bit: targets, plans, and the samples of their emission at 40 kHz.
+"""Compares the results of two builds bit by bit: targets, plans, and the samples of their emission at 40 kHz.
 
 usage: same_results.py OTHER_BUILD [THIS_BUILD] [--seconds S] [--hands FOLDER] [--vectors NAME…]
 
-A build is a folder like build/release (the default of THIS_BUILD), with the program and its Python module. Both run the
-scripted hand in two scenes, and in one of them each recorded hand of FOLDER (default: ../shared/data/hands; without it
-they are left out), stepped, on each set of vector instructions that this processor has, and without any. What is
-compared is what they record. The samples are what the emitter of each build's Python module makes of the plans that it
-recorded, handed over at the times of the run, a block at a time; of the recording's own counters some must agree with
-that emission. Exits 1 where anything differs, and 2 where nothing could be compared.
+A build is a folder like build/release (the default of THIS_BUILD), with the program and its Python module. Both builds
+play the scripted hand in two scenes, and each recorded hand of FOLDER (default: ../shared/data/hands) in one of them,
+stepped, with each set of vector instructions of this processor, and without any. The recordings of these runs are
+compared. The samples come from the emitter of each build's Python module, which plays the recorded plans: they are
+handed over at the times of the run, a block at a time. Some of the recording's own counters must agree with that
+emission. Exits 1 if anything differs, and 2 if nothing could be compared.
 
-./run same COMMIT builds a commit and this tree, and calls this.
+./run same COMMIT builds a commit and this tree, and calls this script.
 """
 
 import argparse
@@ -32,17 +32,17 @@ SCENES = ("one-plume", "four-plumes")
 RECORDED_IN = "four-plumes"
 TARGETS = ("frame", "hand", "target")
 PLANS = ("plan",)
-TAKE_TIME = ("plan/stage_time",)  # of this run's own clock
-FULL_SCALE = 0.7  # [Pa], given, so that the recording's settings are all that the emission needs
+TAKE_TIME = ("plan/stage_time",)  # measured by each run's own clock
+FULL_SCALE = 0.7  # [Pa], fixed, so that the recording's settings suffice for the emission
 RATE, BLOCK = 40e3, 40
 
 
 class Failed(Exception):
-    """A program did not do what it must; the text says which."""
+    """A program failed; the text says which and how."""
 
 
 def call(command, environment):
-    """The output of a program that must succeed."""
+    """Returns the output of a program that must succeed."""
     words = [str(part) for part in command]
     done = subprocess.run(words, env={**os.environ, **environment}, stdin=subprocess.DEVNULL, text=True,
                           capture_output=True)
@@ -52,7 +52,7 @@ def call(command, environment):
 
 
 def target_frame(prostm, file, frame):
-    """The target of one recorded frame."""
+    """Returns the target of one recorded frame."""
     target, patches = file["target"], []
     first = file["frame/first_patch"][frame]
     for patch in range(first, first + file["frame/patches"][frame]):
@@ -65,7 +65,7 @@ def target_frame(prostm, file, frame):
 
 
 def recorded_plan(prostm, file, frame):
-    """The plan of paths of one recorded frame; None where there was none."""
+    """Returns the plan of paths of one recorded frame; None if it has no plan."""
     plan, paths = file["plan"], []
     for path in range(plan["paths"][frame]):
         points = plan["samples"][frame, path]
@@ -75,7 +75,7 @@ def recorded_plan(prostm, file, frame):
 
 
 def emission(recording):
-    """Digest and counters of the samples that the recorded plans give, by the module that this process finds."""
+    """Returns digest and counters of the samples of the recorded plans, by the module that this process imports."""
     import prostm
     digest = hashlib.sha256()
     with h5py.File(recording) as file:
@@ -107,7 +107,7 @@ class Build:
                 raise Failed(f"{self.folder} has no {needed}: build it with -DPROSTM_PYTHON=ON")
 
     def play(self, case, seconds, settings, environment, out):
-        """Plays one case into a recording. What the emission of its plans is."""
+        """Plays one case into a recording. Returns the result of emission() for its plans."""
         scene, hand = case
         call([self.folder / "prostm", "run", "--stepped", "--scene", scene, "--hand", hand, "--seconds", seconds,
               "--settings", settings, "--record", out], environment)
@@ -116,7 +116,7 @@ class Build:
 
 
 def contents(file, groups):
-    """Every dataset of the groups, as type, shape and bytes."""
+    """Returns every dataset of the groups, as type, shape and bytes."""
     found = {}
     for group in groups:
         for name, data in file[group].items():
@@ -126,13 +126,13 @@ def contents(file, groups):
 
 
 def differences(files, groups):
-    """Names of the datasets that are not the same in both files."""
+    """Returns the names of the datasets that differ between the files."""
     one, other = (contents(file, groups) for file in files)
     return sorted(name for name in one.keys() | other.keys() if one.get(name) != other.get(name))
 
 
 def compare(builds, case, seconds, environment, folder):
-    """One line of the table, and whether all is the same."""
+    """Returns one line of the table, and whether everything is the same."""
     settings = folder / "settings.toml"
     settings.write_text(f"[emit]\nfull_scale_pressure = {FULL_SCALE}\n")
     recordings = [folder / f"{number}.h5" for number in range(2)]
@@ -153,18 +153,18 @@ def compare(builds, case, seconds, environment, folder):
 
 
 def check_replay(file, made):
-    """The module's emission must be the run's own, as far as the run counted it."""
+    """Checks that the module's emission agrees with the run's own counters."""
     summary = json.loads(file.attrs["summary"])
     counted = [name for name in ("samples", "saturated") if name in summary]
     if not counted:
-        raise Failed("the run's summary counts nothing that the emission of its plans has")
+        raise Failed("the run's summary has no counter to compare with the emission of its plans")
     for name in counted:
         if summary[name] != made[name]:
-            raise Failed(f"the run counts {summary[name]} {name}, and the emission of its plans {made[name]}")
+            raise Failed(f"the run counts {summary[name]} {name}, but the emission of its plans {made[name]}")
 
 
 def vector_sets(folder):
-    """The library that limits a program, and the names that it knows on this processor."""
+    """Returns the library that limits a program, and the names that it knows on this processor."""
     library = folder / "only_vectors.so"
     source = Path(__file__).with_name("only_vectors.cpp")
     call(["g++", "-std=c++20", "-shared", "-fPIC", source, "-o", library, "-lhwy"], {})
@@ -176,7 +176,7 @@ def vector_sets(folder):
 def recorded_hands(folder):
     hands = sorted(folder.glob("*.hands.jsonl"))
     if not hands:
-        print(f"same_results: without recorded hands: they are no part of the project, and {folder} has none",
+        print(f"same_results: no recorded hands: they are not part of the project, and {folder} contains none",
               file=sys.stderr)
     return hands
 
@@ -207,7 +207,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("other", metavar="OTHER_BUILD")
     parser.add_argument("this", metavar="THIS_BUILD", nargs="?", default=ROOT / "build" / "release")
-    parser.add_argument("--seconds", type=float, default=1.2, help="of each run (default: 1.2)")
+    parser.add_argument("--seconds", type=float, default=1.2, help="duration of each run [s] (default: 1.2)")
     parser.add_argument("--hands", type=Path, default=ROOT.parent / "shared" / "data" / "hands")
     parser.add_argument("--vectors", nargs="+", metavar="NAME", help="only these, e.g. AVX2 none")
     try:

@@ -52,7 +52,7 @@ def tree(tmp_path):
 
 
 def test_accepts_a_tree_that_keeps_the_rules(tree):
-    assert check(tree()) == (0, ["layers: every #include is of what CMake links"])
+    assert check(tree()) == (0, ["layers: every #include is of a stage that CMake links"])
 
 
 @pytest.mark.parametrize("name, text, line, word", [
@@ -62,8 +62,8 @@ def test_accepts_a_tree_that_keeps_the_rules(tree):
     ("src/prostm/acoustics/a.cpp", '  #  include "prostm/emit/emitter.hpp"\n', 1, "acoustics must not include emit"),
     ("src/prostm/plan/a.cpp", '#include <prostm/target/field.hpp>\n', 1, "with quotes"),
     ("src/prostm/plan/a.cpp", '#include "../target/field.hpp"\n', 1, "relative"),
-    ("src/prostm/plan/a.cpp", '#include "field.hpp"\n', 1, "no header of a stage"),
-    ("src/prostm/plan/a.cpp", '#include "prostm/run.hpp"\n', 1, "no header of a stage"),
+    ("src/prostm/plan/a.cpp", '#include "field.hpp"\n', 1, "not a header of a stage"),
+    ("src/prostm/plan/a.cpp", '#include "prostm/run.hpp"\n', 1, "not a header of a stage"),
     ("src/prostm/magic/a.cpp", "\n", 1, "in no layer"),
     ("src/prostm/emit/a.cpp", '#include "prostm/acoustics/array.hpp"\n', 1, "emit must not include acoustics"),
     ("apps/prostm/a.cpp", '\n#include "prostm/fluid/fluid.hpp"\n', 2, "apps must not include fluid"),

@@ -172,7 +172,7 @@ int main() {
 
 
 @pytest.mark.parametrize("text, words", [
-    ("find_package(prostm REQUIRED COMPONENTS plan)", ["no component 'plan'", "there is one, pipeline"]),
+    ("find_package(prostm REQUIRED COMPONENTS plan)", ["no component 'plan'", "the only one is pipeline"]),
     ("find_package(prostm 0.2 REQUIRED)", ["0.2", "version: 0.1"]),
     ("find_package(prostm 0.0 REQUIRED)", ["0.0", "version: 0.1"]),
 ])
