@@ -1,5 +1,5 @@
-# Builds the page in ${WEB} and writes ${OUT}, a source file that holds it, or an empty table if ${PAGE} is off.
-# Run by cmake -P from page.cmake, so that configuring needs neither node nor npm.
+# Builds the page in ${WEB} and writes ${OUT}, a source file that holds it, or an empty table if ${PAGE} is off. Run by
+# cmake -P from page.cmake, so that configuring needs neither node nor npm.
 get_filename_component(work ${OUT} DIRECTORY)
 file(MAKE_DIRECTORY ${work})
 

@@ -31,7 +31,7 @@ function(prostm_stage name)
   prostm_precompile(prostm_${name} prostm_slow_headers)
 endfunction()
 
-# prostm_test(NAME …): one test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry.
+# prostm_test(NAME …): one test program per folder of tests/, from all its *_test.cpp; each case becomes a ctest entry.
 function(prostm_test name)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
   if(PROSTM_SANITIZE STREQUAL "thread" AND DEFINED prostm_threaded_${name})

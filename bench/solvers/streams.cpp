@@ -23,7 +23,7 @@ enum class Ask { AsTheyMove, All };
 struct Streamed {
   Distribution error;         ///< largest error of a share in a sample [%]
   Distribution each, sum;     ///< (p/p alone)² of each focal point, and their Σ
-  std::vector<double> steps;  ///< of drives' phases from sample to sample [°]
+  std::vector<double> steps;  ///< phase steps of the drives between samples [°]
 };
 
 std::vector<LiveFocus> at_sample(const fields::MovingFoci& moving, int sample, Ask ask) {

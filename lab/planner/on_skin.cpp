@@ -17,7 +17,7 @@ constexpr double kTolerance = 0.5e-3;  // accepted excess over L [m]
 /// The paths of one planner on one skin.
 struct OnSkin {
   Distribution length;        // on the skin [mm]
-  Distribution period_error;  // of the stated period, relative to that on the skin [%]
+  Distribution period_error;  // error of the stated period on the skin [%]
   Distribution planar_speed;  // on the skin, if laps took length / speed of the plane [m/s]
   int too_long = 0;
 

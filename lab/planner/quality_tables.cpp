@@ -15,7 +15,7 @@ constexpr int kWarmFrom = 10;  // first frame on which warm planners are judged
 struct Comparison {
   double frames = 0, frames_worse = 0;  // RMSE or S_8.5 worse than both baselines on that frame
   Metrics ours;
-  double rmse = 0, blur_error = 0, coverage = 0;  // of the better baseline; blur error = 1 − S_8.5
+  double rmse = 0, blur_error = 0, coverage = 0;  // the better baseline's; blur error = 1 − S_8.5
   double textbook_rmse = 0;
   double rmse_ratio() const { return ours.rmse / rmse; }
   double blur_ratio() const { return (1.0 - ours.skill_8) / blur_error; }

@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// Pressure of the focused array at p.
+/// Returns the pressure of the focused array at p.
 std::complex<double> focused_field(const TransducerArray& array, const Medium& air,
                                    const std::vector<double>& phases, const Vec3& p) {
   std::complex<double> sum = 0.0;
@@ -39,7 +39,7 @@ TEST(Array, UsxIsACentredGridOf256) {
               1e-12);
 }
 
-// 1/r from spreading, e^{−αr} from the air.
+// 1/r from spreading, e^{−αr} from absorption in air.
 TEST(Array, PressureFallsWithDistanceAndTurnsWithKr) {
   const TransducerArray array = usx_array();
   const Medium air;
@@ -65,8 +65,9 @@ TEST(Array, FocusIsTheMaximumAlongTheThreeAxes) {
   const Medium air;
   Random random(3);
   for (int round = 0; round < 5; ++round) {
-    // beside the axis the largest pressure lies on the axis of the beam, so look there for x and y,
-    // and for z on the axis only below the distance at which spreading draws it towards the array
+    // off the axis the largest pressure lies on the beam's axis, so check x and y there; check z on
+    // the axis only, nearer than the distance at which spreading shifts the maximum towards the
+    // array
     const Vec3 focus(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), 0.15);
     const auto phases = phases_for(array, air, focus);
     const double peak = std::abs(focused_field(array, air, phases, focus));

@@ -1,4 +1,4 @@
-/// The field of arrays against what can be known without this project's kernels.
+/// The field of arrays, compared with closed forms that do not use this project's kernels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,8 +21,8 @@ std::vector<Complex> focused(const TransducerArray& array, const Vec3& focus) {
   return drives;
 }
 
-/// Rayleigh's integral over the faces of all pistons, each 5 rings of 6 … 30 pieces of equal area,
-/// with the wave number and absorption of 20 °C, 50 %. Its far field on axis is A/r.
+/// Computes Rayleigh's integral over the faces of all pistons, each 5 rings of 6 … 30 pieces of
+/// equal area, with the wave number and absorption of 20 °C, 50 %. Its far field on axis is A/r.
 double rayleigh_pressure(const TransducerArray& array, const std::vector<Complex>& drives,
                          const Vec3& p) {
   const double k = 2.0 * kPi * 40e3 / 343.2368, alpha = 0.1518;
@@ -55,7 +55,7 @@ double our_pressure(const PackedArray& packed, const std::vector<Complex>& drive
   return static_cast<double>(std::abs(acoustic_pressure(packed, std::vector{p}, q)[0]));
 }
 
-/// Distance from the focus along x at which `pressure` is half of that at the focus [m].
+/// Returns the distance from the focus along x at which `pressure` is half of its value there [m].
 template <class F>
 double half_width(F&& pressure) {
   const double half = 0.5 * pressure(0.0);
@@ -72,7 +72,7 @@ TEST(ClosedForms, FieldAndWidthOfAFocusAreThoseOfRayleighsIntegral) {
   const PackedArray packed(array, Medium());
   for (const double z : {0.10, 0.15, 0.20, 0.25, 0.30}) {
     for (const double off : {0.0, 0.04}) {
-      if (off > 0.0 && z < 0.12) continue;  // there a piston's far field is 1.03 % off at one place
+      if (off > 0.0 && z < 0.12) continue;  // the far field is 1.03 % off at one place there
       const Vec3 focus(off, 0.5 * off, z);
       const std::vector<Complex> drives = focused(array, focus);
       const auto ours = [&](double x) {
@@ -109,8 +109,8 @@ TEST(ClosedForms, TheFirstMinimumIsNearTheParaxialOne) {
   EXPECT_NEAR(at, paraxial, 0.08 * paraxial);
 }
 
-// Where source and receiver change places the pressure is the same, when they face each other
-// alike.
+// The pressure stays the same when source and receiver, equally directed to each other, change
+// places.
 TEST(ClosedForms, Reciprocity) {
   Random random(8);
   const auto direction = [&] {
@@ -123,7 +123,7 @@ TEST(ClosedForms, Reciprocity) {
     const Vec3 way = (b - a).normalized();
     here.position = {a};
     there.position = {b};
-    // the piston's axis turned by the same angle from the way to the other
+    // turns the piston's axis by the same angle from the line to the other one
     const Vec3 across = way.cross(direction()).normalized();
     const double theta = random.uniform(0.0, 1.4);
     here.normal = {Eigen::AngleAxisd(theta, across) * way};

@@ -55,7 +55,7 @@ TEST(Directivity, IsOneOnAxisAndZeroBehind) {
 TEST(Directivity, DataSheetIsMetAtEveryTenDegrees) {
   const double values[] = {1, 1, 1, .891, .708, .501, .355, .251, .200, .178};
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(sheet(10.0 * i), values[i], 1e-9) << 10 * i << "°";
-  // in between, from an independent solution of the spline's equations
+  // between the data points, from an independent solution of the spline's equations
   EXPECT_NEAR(sheet(25.0), 0.9591533573806882, 1e-9);
   EXPECT_NEAR(sheet(45.0), 0.6012466981132076, 1e-9);
   EXPECT_NEAR(sheet(85.0), 0.18733412874583796, 1e-9);

@@ -19,7 +19,7 @@ std::vector<Complex> random_raster(int rows, int cols) {
   return raster;
 }
 
-/// The sum of fft2.hpp, term by term.
+/// Returns the sum of fft2.hpp, term by term.
 Complex transformed(const std::vector<Complex>& raster, int rows, int cols, int u, int v) {
   Complex sum = 0.0;
   for (int j = 0; j < rows; ++j) {

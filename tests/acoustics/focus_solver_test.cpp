@@ -28,7 +28,7 @@ FocusSettings with(FocusMethod method) {
   return settings;
 }
 
-/// Focal points about 200 mm above the array, each at least `apart` [m] from the others.
+/// Returns focal points about 200 mm above the array, each at least `apart` [m] from the others.
 std::vector<Vec3> random_foci(Random& random, int count, double apart) {
   std::vector<Vec3> foci;
   while (static_cast<int>(foci.size()) < count) {
@@ -81,8 +81,8 @@ TEST(FocusSolver, DrivesStayWithinOneAndPressuresAreTheirs) {
   }
 }
 
-/// Means over random sets: the largest error of any focal point, and how much of its share of the
-/// array's power each gets at full drive, (level · a_m)² summed over that of each alone.
+/// Means over random sets: the largest error of any focal point, and the power at full drive, the
+/// sum of (level · a_m)² over that of each focal point alone.
 struct Means {
   double worst = 0.0, power = 0.0;
 };
@@ -122,7 +122,7 @@ TEST(FocusSolver, TheReferenceIsExactAndIterationsUseMoreOfTheArray) {
   }
 }
 
-// (A4). Low over the array, focal points far apart have more than 1/P each of what one has alone.
+// (A4). Close to the array, focal points far apart each get more than 1/P of a single one's power.
 TEST(FocusSolver, FocalPointsFarApartShareTheArrayAsTheirTransducersDiffer) {
   const auto bound_and_power = [](double height) {
     std::vector<Vec3> corners;
@@ -200,7 +200,7 @@ TEST(FocusSolver, FocalPointsThatCancelGetNothing) {
 }
 
 TEST(FocusSolver, StartsAtThePhasesOfTheSolutionBefore) {
-  // the phases that it ends with are a fixed point, or near one: drives hardly move
+  // the solution's phases are near a fixed point, so the drives hardly change
   Random random(5);
   std::vector<Vec3> foci = random_foci(random, 4, 15e-3);
   const Eigen::VectorXd target = 100.0 * random_targets(random, 4);
@@ -209,12 +209,12 @@ TEST(FocusSolver, StartsAtThePhasesOfTheSolutionBefore) {
   const Propagation g = propagation_to(foci);
   const Eigen::VectorXd phases =
       before.pressure.unaryExpr([](const auto& p) { return std::arg(p); });
-  // over all drives: one that is weak may turn by anything
+  // compared over all drives, since the phase of a weak one may turn freely
   const auto moved = [&](const FocusSolution& s) {
     return (s.drive - before.drive).norm() / before.drive.norm();
   };
   EXPECT_LT(moved(solve_foci(g, target, with(FocusMethod::GsPat), phases)), 0.2);
-  // from others they do
+  // from other phases the drives change
   const Eigen::VectorXd others = phases + Eigen::Vector4d(0.0, 2.0, -2.0, 3.0);
   EXPECT_GT(moved(solve_foci(g, target, with(FocusMethod::GsPat), others)), 0.4);
 }

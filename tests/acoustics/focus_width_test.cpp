@@ -15,8 +15,8 @@ FocusWidth facing(const PackedArray& packed, const Vec3& focus) {
   return focus_width(packed, Medium(), focus, -Vec3::UnitZ(), Vec3::UnitX());
 }
 
-// A square aperture gives sin²X/X², X = 2π x sin α/λ, whose Gaussian of least squares is narrower
-// than its half width says by a known factor; here only that it grows as (A6) does.
+// A square aperture gives sin²X/X², X = 2π x sin α/λ. Its least-squares Gaussian is narrower than
+// its half width by a known factor; this test checks only that it grows like (A6).
 TEST(FocusWidth, GrowsWithHeightAsTheApertureSays) {
   const PackedArray packed(usx_array(), Medium());
   const double half_side = 0.5 * 16 * 10.5e-3;
@@ -40,7 +40,7 @@ TEST(FocusWidth, IsRoundAboveTheMiddleAndWiderBesideItAndOnATilt) {
   const double tilt = 40.0 * kPi / 180.0;
   const std::array<double, 1> heights{0.2}, offsets{0.0}, tilts{tilt};
   const FocusWidth tilted = focus_width_table(packed, Medium(), heights, offsets, tilts)[0].width;
-  // the beam's cross section is seen at a slant, as far as it is long
+  // the tilt stretches the beam's cross section, as far as the beam is long
   EXPECT_GT(tilted.along, 1.15 * middle.along);
   EXPECT_LT(tilted.along, 1.02 * middle.along / std::cos(tilt));
   EXPECT_NEAR(tilted.across, middle.across, 0.03 * middle.across);

@@ -73,7 +73,7 @@ Eigen::VectorXd amplitudes(const std::vector<LiveFocus>& foci) {
   return a;
 }
 
-/// |y| over what each focal point has alone.
+/// Returns |y| relative to each focal point alone.
 Eigen::VectorXd shares(const Propagation& g, const Eigen::VectorXcd& q) {
   return (g * q).cwiseAbs().cwiseQuotient(g.cwiseAbs().rowwise().sum());
 }
@@ -92,7 +92,7 @@ TEST(LiveFocusSolver, FindsTheDrivesOfTheReference) {
       const Eigen::VectorXcd q = drives_of(solver);
       const double likeness =
           std::abs(q.dot(reference.drive)) / (q.norm() * reference.drive.norm());
-      // iterations carry roundings on
+      // iterations amplify rounding errors
       const double unlike = method == FocusMethod::Superposition ? 1e-9 : 1e-3;
       EXPECT_GT(likeness, 1.0 - unlike) << i << ", " << foci.size();
       const Eigen::VectorXd a = amplitudes(foci);
@@ -114,7 +114,7 @@ TEST(LiveFocusSolver, OneFocalPointGetsWhatItAsksFor) {
   }
 }
 
-/// What is seen of a stream.
+/// Measurements of a stream.
 struct Seen {
   double worst = 0.0;  ///< mean over samples of the largest error of a share
   double power = 0.0;  ///< mean of Σ (y / y alone)²

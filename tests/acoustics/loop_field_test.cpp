@@ -16,8 +16,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// A raster of side² points with 3 mm between them on a plane 200 mm above the array, turned about
-/// x by `tilt` [rad].
+/// Returns a raster of side² points, 3 mm apart, on a plane 200 mm above the array, turned about x
+/// by `tilt` [rad].
 SurfacePoints raster(int side, double tilt = 0.0) {
   SurfacePoints out;
   const Eigen::AngleAxisd turn(tilt, Vec3::UnitX());
@@ -41,7 +41,7 @@ Eigen::VectorXcf focused(const TransducerArray& array, const Vec3& focus) {
   return q;
 }
 
-/// Two focal points on circles of 15 and 8 mm, superposed.
+/// Returns drives for two superposed focal points on circles of 15 and 8 mm.
 LoopDrives two_circles(const TransducerArray& array, int samples) {
   LoopDrives drives(static_cast<Eigen::Index>(array.position.size()), samples);
   for (int k = 0; k < samples; ++k) {
@@ -62,7 +62,7 @@ LoopDrives random_drives(int transducers, int samples, std::uint64_t seed) {
   return drives;
 }
 
-/// (A20) of every sample by `propagate`, points × samples.
+/// Computes (A20) of every sample by `propagate`, points × samples.
 Eigen::MatrixXd direct(const TransducerArray& array, const LoopDrives& drives,
                        const SurfacePoints& surface) {
   const Medium air;
@@ -160,7 +160,7 @@ TEST(DriveBasis, RefusesWhatIsNoLoop) {
   refused(drives, 1e-6);
 }
 
-// Not a point above 0, and no division by it.
+// The pressure is 0 everywhere, without a division by it.
 TEST(LoopField, OfSilenceIsNothing) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(1);
@@ -194,7 +194,7 @@ TEST(LoopField, IsThatOfEverySampleByItself) {
   }
 }
 
-// Drives without any structure have full rank: then it is only slower.
+// Drives without any structure have full rank: the computation is slower, but holds.
 TEST(LoopField, HoldsForDrivesOfFullRank) {
   WorkerPool pool(2);
   const TransducerArray array = usx_array();
@@ -221,7 +221,7 @@ TEST(LoopField, DoesNotDependOnTheNumberOfThreads) {
             mean_radiation_pressure(packed, Medium(), drives, surface, three));
 }
 
-// Far from one transducer the wave is plane: cos² of the angle of incidence.
+// Far from a single transducer the wave is plane: cos² of the angle of incidence.
 TEST(LoopField, APlaneWavePressesByTheSquaredCosine) {
   TransducerArray array = usx_array();
   array.position = {Vec3::Zero()};
@@ -239,7 +239,7 @@ TEST(LoopField, APlaneWavePressesByTheSquaredCosine) {
   }
 }
 
-// The momentum of a focus: level and tilted by 40°, over (A5).
+// Momentum of a focus on a level surface and on one tilted by 40°, over (A5).
 TEST(LoopField, AFocusPressesLessOnATiltedSurface) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(1);

@@ -1,4 +1,4 @@
-/// Arrays of several parts: where placing puts the transducers, and what does not depend on it.
+/// Arrays of several parts: the placing of transducers, and results that do not depend on it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ TEST(Arrays, Autd3IsTheGridWithoutThreePlaces) {
   ASSERT_EQ(array.normal.size(), 249u);
   EXPECT_NO_THROW(validate(array));
   const double pitch = 10.16e-3;
-  // in steps from transducer 0, which is AUTD3's own origin
+  // in multiples of the pitch from transducer 0, AUTD3's own origin
   const auto steps = [&](std::size_t i) -> Vec3 {
     return (array.position[i] - array.position[0]) / pitch;
   };
@@ -56,7 +56,7 @@ TEST(Arrays, Autd3IsTheGridWithoutThreePlaces) {
   EXPECT_NEAR(std::abs(propagate(array, Wave{700.0, 0.0}, 100, above)), 4.386 / 0.2, 1e-12);
 }
 
-// Where the array stands does not matter to who moves with it.
+// The field in the array's frame does not depend on the array's pose.
 TEST(Arrays, TheFieldMovesWithTheArray) {
   Random random(21);
   const Medium air;
@@ -88,7 +88,7 @@ TEST(Arrays, PlacesComposeAndKeepNormalsOfLengthOne) {
   }
 }
 
-// What source i sounds at j, heard with j's own directivity, is what j sounds at i, heard with i's.
+// Source i and receiver j, both with their directivities, can be exchanged.
 TEST(Arrays, SourceAndReceiverCanBeExchanged) {
   Random random(23);
   const Medium air;

@@ -31,7 +31,7 @@ Vec3 random_direction(Random& random) {
   return Vec3(random.normal(), random.normal(), random.normal()).normalized();
 }
 
-/// Points all around at distances up to `reach`, none on a transducer.
+/// Returns points all around at distances up to `reach`, not on a transducer.
 std::vector<Vec3> points_around(const TransducerArray& array, double reach, std::uint64_t seed) {
   Random random(seed);
   std::vector<Vec3> points;
@@ -44,7 +44,7 @@ std::vector<Vec3> points_around(const TransducerArray& array, double reach, std:
   return points;
 }
 
-/// Largest |ours − (A1)| over what the array gives on axis at that distance.
+/// Returns the largest |ours − (A1)| relative to the array's on-axis value at that distance.
 double worst_error(const PackedArray& packed, const Matrix& g, std::span<const Vec3> points,
                    std::span<const Vec3> normals = {}) {
   double worst = 0.0;
@@ -52,7 +52,7 @@ double worst_error(const PackedArray& packed, const Matrix& g, std::span<const V
     for (std::size_t n = 0; n < packed.transducers(); ++n) {
       const Vec3 way = points[m] - packed.array.position[n];
       const double r = way.norm();
-      // within the rounding of the table's last step this side of 90° or that is a matter of taste
+      // at 90°, within rounding, either side of the table's last step is correct
       if (std::abs(way.dot(packed.array.normal[n])) < 1e-6 * r) continue;
       std::complex<double> expected = propagate(packed.array, packed.wave, n, points[m]);
       if (!normals.empty()) expected *= std::max(-way.dot(normals[m]) / r, 0.0);
@@ -120,7 +120,7 @@ TEST(PropagationKernels, ArraysFarApartAreTheSame) {
   EXPECT_LT(worst_error(packed, rows_of(propagation_rows, packed, points), points), 1e-6);
 }
 
-// Where the polynomial does not do, the table does.
+// Beyond the polynomial's range the table is used.
 TEST(PropagationKernels, WidePistonsAreAsGoodAsTheirTable) {
   for (const double radius : {4.5e-3, 10e-3, 20e-3, 50e-3}) {
     TransducerArray array = usx_array();
@@ -135,7 +135,7 @@ TEST(PropagationKernels, WidePistonsAreAsGoodAsTheirTable) {
   }
 }
 
-// (A20), and nothing from behind the surface.
+// (A20); the back of the surface receives nothing.
 TEST(PropagationKernels, SurfaceNormalsWeighByTheCosineOfIncidence) {
   const PackedArray packed(usx_array(), Medium());
   const std::vector<Vec3> points = points_around(packed.array, 0.5, 9);
@@ -149,7 +149,7 @@ TEST(PropagationKernels, SurfaceNormalsWeighByTheCosineOfIncidence) {
   }
 }
 
-// 1/r and phase, without the reference: along the axis of one transducer.
+// 1/r and phase along the axis of one transducer, without the reference.
 TEST(PropagationKernels, OneTransducerFallsAsOneOverRAndTurnsByKr) {
   TransducerArray array = usx_array();
   array.position = {Vec3::Zero()};
@@ -182,7 +182,7 @@ TEST(PropagationKernels, RowsAreFilledUpWithSilence) {
   }
 }
 
-// What a point's row is does not depend on which points are asked for beside it.
+// A point's row does not depend on the other requested points.
 TEST(PropagationKernels, RowsStandForThemselves) {
   const PackedArray packed(usx_array(), Medium());
   const std::vector<Vec3> points = points_around(packed.array, 0.4, 12);

@@ -10,7 +10,7 @@
 
 namespace prostm::test {
 
-/// A focus of 1 N, p ∝ e^{−r²/2σ²}, that runs round a circle about the patch's middle.
+/// A focus of 1 N, p ∝ e^{−r²/2σ²}, that circles around the patch's middle.
 struct CirclingFocus {
   double radius = 10e-3, sigma = 4e-3;  ///< [m]
   double period = 10e-3;                ///< [s]
@@ -25,7 +25,7 @@ struct CirclingFocus {
   }
 };
 
-/// The centre of cell (row, col) from the patch's middle [m].
+/// Returns the centre of cell (row, col) from the patch's middle [m].
 inline Vec2 cell_centre(const SkinPatch& patch, int row, int col) {
   return patch.cell * Vec2(col - 0.5 * (patch.cols - 1), row - 0.5 * (patch.rows - 1));
 }
@@ -43,7 +43,7 @@ inline std::vector<double> sampled(const CirclingFocus& focus, const SkinPatch& 
   return pressure;
 }
 
-/// The response to a focus on a circle, up to `highest` [Hz].
+/// Computes the response to a focus on a circle, up to `highest` [Hz].
 inline SkinResponse response_to(const CirclingFocus& focus, const SkinModel& skin,
                                 const SkinPatch& patch, int samples, double highest = 1000.0) {
   SkinResponse response(skin, patch);

@@ -28,7 +28,7 @@ TEST(SkinModel, HasTheSpeedsAndTheLossThatItWasGiven) {
   }
 }
 
-// what docs/design.md states of the nominal skin
+// values of the nominal skin stated in docs/design.md
 TEST(SkinModel, SpeedRisesToItsPlateau) {
   const SkinModel skin{SkinSettings{}};
   const double frequency[] = {10, 25, 50, 100, 200}, speed[] = {4.43, 5.92, 6.62, 6.89, 6.97};
@@ -48,8 +48,8 @@ TEST(SkinModel, SpeedRisesToItsPlateau) {
 }
 
 TEST(SkinModel, ComplianceHasItsPoleAtTheSurfaceWave) {
-  // 1/T continued to complex k vanishes at k_R: Cauchy-Riemann from the real axis is not enough for
-  // that, so the Rayleigh function is written out here
+  // 1/T continued to complex k vanishes at k_R. Cauchy-Riemann from the real axis is not enough for
+  // that, so the Rayleigh function is written out here.
   Random random(41);
   for (int trial = 0; trial < 200; ++trial) {
     SkinSettings settings;
@@ -67,7 +67,7 @@ TEST(SkinModel, ComplianceHasItsPoleAtTheSurfaceWave) {
     const Complex two = 2.0 * real * real - shear;
     const Complex r = two * two - 4.0 * real * real * real * std::sqrt(real * real - shear);
     const Complex expected = -real * shear / (skin.shear_modulus(w) * r);
-    // R itself loses digits where k_S is small against k
+    // R itself loses digits if k_S is small against k
     EXPECT_LT(std::abs(skin.compliance(real, w) - expected),
               1e-12 * std::abs(expected) * std::abs(real * real / shear + 1.0) + 1e-18);
   }
@@ -81,10 +81,10 @@ TEST(SkinModel, SlowPressureIndentsAsTheElasticHalfSpace) {
     EXPECT_NEAR(std::abs(skin.compliance(k, 1e-3)) * 2.0 * relaxed * k, 1.0, 1e-4);
   }
   EXPECT_EQ(skin.compliance(0.0, omega(100)),
-            Complex(0.0));  // the half-space cannot be moved as one
+            Complex(0.0));  // the half-space cannot move as a whole
 }
 
-// A passive body takes work from the pressure: Re(P* iωW) ≥ 0, so Im T ≤ 0 for every pattern.
+// A passive body absorbs work of the pressure: Re(P* iωW) ≥ 0, so Im T ≤ 0 for every pattern.
 TEST(SkinModel, TakesEnergyAndGivesNone) {
   Random random(42);
   for (const SkinSettings& settings : skin_settings_interval()) {

@@ -27,7 +27,7 @@ TEST(SkinPercept, SensitivityHasItsSlopes) {
   }
 }
 
-/// A patch that one harmonic moves, with a focus that is modulated in place.
+/// Returns the response of a patch to one harmonic, a focus that is modulated in place.
 SkinResponse modulated(const SkinPatch& patch, double frequency, double force) {
   SkinResponse response(SkinModel{SkinSettings{}}, patch);
   response.prepare(1.0 / frequency, 4, frequency);
@@ -62,9 +62,8 @@ TEST(SkinPercept, IntensityAddsOverAreaWhereItShould) {
   }
 }
 
-// Amplitude modulation goes the same way as moving focal points: the best rate lies where threshold
-// measurements with modulated ultrasound have it, near 200 Hz, though nothing here was made for
-// that.
+// Amplitude modulation uses the same model as moving focal points: the best rate is near 200 Hz, as
+// in threshold measurements with modulated ultrasound, although nothing was fitted to them.
 TEST(SkinPercept, AModulatedFocusIsFeltBestNearTwoHundredHertz) {
   const SkinPatch patch{41, 41, 2.5e-3};
   double best = 0.0, most = 0.0;

@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Displacement [m] at a cell and a time, from the harmonics.
+/// Computes the displacement [m] at a cell and a time from the harmonics.
 double displacement_at(const SkinResponse& response, int cell, double time) {
   double sum = 0.0;
   for (int n = 1; n <= response.harmonics(); ++n) {
@@ -27,9 +27,8 @@ double displacement_at(const SkinResponse& response, int cell, double time) {
 }
 
 // The same focus in time, without harmonics: w(x, t) = (2π)⁻² ∫∫ w_k(t) e^{ikx} d²k, where the
-// focus presses on the pattern e^{−ikx} with e^{−k²σ²/2 − ik x_f(t)}. Turning k by an angle is
-// waiting for as long as the focus takes to go round by it, so one direction is stepped for each
-// |k|.
+// focus presses on the pattern e^{−ikx} with e^{−k²σ²/2 − ik x_f(t)}. Turning k by an angle equals
+// waiting until the focus has circled by that angle, so one direction is stepped for each |k|.
 class SteppedFocus {
  public:
   SteppedFocus(const SkinModel& skin, const test::CirclingFocus& focus, int angles)
@@ -41,7 +40,8 @@ class SteppedFocus {
       course_.push_back(lap(skin, k, angles, every));
     }
   }
-  /// Without its mean over a lap. @param moment whole numbers of period/angles
+  /// Returns the displacement without its mean over a lap. @param moment whole number of
+  /// period/angles
   double displacement(const Vec2& x, int moment) const {
     double sum = 0.0;
     for (std::size_t m = 0; m < course_.size(); ++m) {
@@ -61,7 +61,7 @@ class SteppedFocus {
  private:
   static constexpr double kStep = 8.0;  // [rad/m]: a copy of the focus every 0.79 m
 
-  /// w_k over one lap, in the steady state, for k along x; its mean is taken off.
+  /// Returns w_k over one lap in the steady state, for k along x, without its mean.
   std::vector<Complex> lap(const SkinModel& skin, double k, int angles, int every) const {
     const double step = focus_.period / (angles * every);
     SkinStepper real(skin, k, step), imaginary(skin, k, step);
@@ -109,7 +109,7 @@ TEST(SkinResponse, IsWhatSteppingInTimeGives) {
   EXPECT_LT(difference, 1e-3 * largest) << difference / largest;
 }
 
-/// A focus at rest whose pressure is F (1 + cos ωt)/2 with F = 1 N: harmonic 1 is the answer.
+/// Returns a focus at rest with pressure F (1 + cos ωt)/2, F = 1 N: harmonic 1 is the response.
 std::vector<double> modulated_focus(const SkinPatch& patch, int row, int col, double sigma,
                                     int samples) {
   std::vector<double> pressure;
@@ -127,7 +127,7 @@ std::vector<double> modulated_focus(const SkinPatch& patch, int row, int col, do
   return pressure;
 }
 
-// Far from a focus that is modulated in place the phase turns with Re k_R, and the amplitude falls
+// Far from a focus that is modulated in place, the phase turns with Re k_R and the amplitude falls
 // as e^{−αr}/√r: the surface wave.
 TEST(SkinResponse, APointSourceSendsTheSurfaceWave) {
   for (const SkinSettings& settings : skin_settings_interval()) {
@@ -141,7 +141,7 @@ TEST(SkinResponse, APointSourceSendsTheSurfaceWave) {
     const auto at = [&](int cells) {
       return response.displacement(1)[static_cast<std::size_t>(4 * patch.cols + 6 + cells)];
     };
-    // from 4 to 10 wavelengths away, phase from cell to cell
+    // from 4 to 10 wavelengths away, phase differences between cells
     double phase = 0.0;
     for (int r = 25; r < 65; ++r) phase -= std::arg(at(r + 1) / at(r));
     const double path = 40 * patch.cell;
@@ -195,7 +195,7 @@ TEST(SkinResponse, IsReciprocal) {
   }
 }
 
-// Skin goes on around the patch: what is seen through a window does not depend on the window.
+// Skin continues around the patch: the response does not depend on the patch's size.
 TEST(SkinResponse, TheEdgeOfThePatchSendsNothingBack) {
   const SkinModel skin{SkinSettings{}};
   test::CirclingFocus focus;
@@ -245,7 +245,7 @@ TEST(SkinResponse, ConvergesWithTheCell) {
     }
     return worst / largest;
   };
-  // σ = 4 mm is band-limited enough by cells of 2 and 3 mm, not by 6 mm
+  // cells of 2 and 3 mm resolve σ = 4 mm, cells of 6 mm do not
   EXPECT_LT(error(2e-3), 1e-3);
   EXPECT_LT(error(3e-3), 1e-2);
   EXPECT_GT(error(6e-3), error(3e-3));
@@ -272,7 +272,7 @@ TEST(SkinResponse, MapsAndSpectraAreThoseOfTheHarmonics) {
   std::vector<double> map(21 * 21), spectrum(10);
   rms_velocity(response, map);
   for (const int cell : {0, 100, 220, 440}) {
-    // over a lap in time, by differences
+    // over a lap, by differences in time
     double squares = 0.0;
     const int steps = 4000;
     for (int k = 0; k < steps; ++k) {

@@ -11,12 +11,12 @@
 namespace prostm {
 namespace {
 
-// a layer that takes up what goes down lies between these depths [m]; the bottom is held
+// an absorbing layer lies between these depths [m]; the bottom is held
 constexpr double kClear = 0.08, kDepth = 0.5;
 constexpr double kCoarsest = 5e-3;  // element [m]
-constexpr double kGrowth = 1.2;     // of the elements with depth, at most
+constexpr double kGrowth = 1.2;     // largest growth of the elements with depth
 
-/// Heights of the elements, fine at the surface, where patterns fall off as e^{−kz}.
+/// Returns the heights of the elements, fine at the surface, where patterns fall off as e^{−kz}.
 std::vector<double> elements(double finest) {
   std::vector<double> heights;
   double depth = 0.0;
@@ -27,13 +27,13 @@ std::vector<double> elements(double finest) {
   return heights;
 }
 
-/// Damping rate of the layer at a depth [1/s].
+/// Returns the damping rate of the layer at a depth [1/s].
 double drag(double depth, double speed) {
   const double into = std::max(0.0, (depth - kClear) / (kDepth - kClear));
   return 24.0 * speed / (kDepth - kClear) * into * into * into;
 }
 
-/// Cubic Hermite functions at s in 0..1 of an element of height h, and their derivatives by depth.
+/// Cubic Hermite functions at s in 0..1 of an element of height h, and their depth derivatives.
 struct Shape {
   std::array<double, 4> value, slope, curvature;
 };
@@ -64,7 +64,7 @@ SkinStepper::SkinStepper(const SkinModel& model, double wave_number, double step
   keep_ = tau > 0.0 ? std::exp(-step / tau) : 0.0;
   renew_ = tau > 0.0 ? (1.0 - keep_) * tau / step : 0.0;
 
-  // elements as fine as the step is stable for, but no finer than they need be
+  // elements as fine as the step's stability permits, but not finer than needed
   const double speed = std::sqrt(slow_ + rise_);
   const double finest = std::min(std::max(0.15 / wave_number, 7.0 * speed * step), kCoarsest);
   if (finest * wave_number > 0.6 || finest < 7.0 * speed * step) {

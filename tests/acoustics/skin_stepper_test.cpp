@@ -14,7 +14,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// W/P of the stepper under P = cos(ωt) [m/Pa], over the last period before 0.15 s + 2.5 m⁻¹ s/k.
+/// Returns W/P of the stepper under P = cos(ωt) [m/Pa], over the last period before
+/// 0.15 s + 2.5 m⁻¹ s/k.
 Complex stepped_compliance(const SkinModel& skin, double k, double frequency, double longest) {
   const int per_period = static_cast<int>(std::ceil(1.0 / (frequency * longest)));
   const double step = 1.0 / (frequency * per_period);
@@ -26,7 +27,7 @@ Complex stepped_compliance(const SkinModel& skin, double k, double frequency, do
     if (n >= (periods - 1) * per_period) {
       sum += stepper.displacement() * std::polar(2.0 / per_period, -phase);
     }
-    // grows slowly, so that little else than this frequency is set off
+    // grows slowly, so that hardly any other frequency is excited
     const double rise = std::min(1.0, n * step / 0.03);
     stepper.step(std::cos(phase) * rise * rise * (3.0 - 2.0 * rise));
   }
@@ -50,7 +51,7 @@ TEST(SkinStepper, SettlesToTheClosedForm) {
   }
 }
 
-/// Of the straight line with the least squares.
+/// Returns the slope of the least-squares line.
 double fitted_slope(const std::vector<double>& x, const std::vector<double>& y) {
   const auto n = static_cast<double>(x.size());
   double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
@@ -63,15 +64,15 @@ double fitted_slope(const std::vector<double>& x, const std::vector<double>& y) 
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-// A pattern that is struck and left alone rings as the surface wave of its wave number: its energy
-// falls as e^{−2 Im Ω t} and it moves with Re Ω, (S5).
+// A pattern that is excited and then left alone rings as the surface wave of its wave number: its
+// energy falls as e^{−2 Im Ω t} and it oscillates with Re Ω, (S5).
 TEST(SkinStepper, EnergyDecaysAsTheDampingSays) {
   for (const SkinSettings& settings : {SkinSettings{}, skin_settings_interval()[8]}) {
     const SkinModel skin(settings);
     const double k = 250.0, step = 1e-5;
     const Complex wave = skin.surface_frequency(k);
     SkinStepper stepper(skin, k, step);
-    // fifteen periods at Ω set it off: shear waves have left after as many more
+    // fifteen periods at Ω excite it; after as many more the shear waves have left
     const double period = 2.0 * kPi / wave.real();
     const auto count = [&](double periods) { return static_cast<int>(periods * period / step); };
     std::vector<double> times, logs, crossings, course;
@@ -79,7 +80,7 @@ TEST(SkinStepper, EnergyDecaysAsTheDampingSays) {
       stepper.step(n < count(15.0) ? std::sin(wave.real() * n * step) : 0.0);
       course.push_back(stepper.displacement());
     }
-    // the tissue also creeps back, slowly, so the acceleration is looked at
+    // the tissue also creeps back slowly, so the acceleration is evaluated
     const auto acceleration = [&](int n) {
       const auto i = static_cast<std::size_t>(n);
       return course[i + 1] - 2.0 * course[i] + course[i - 1];
@@ -87,7 +88,7 @@ TEST(SkinStepper, EnergyDecaysAsTheDampingSays) {
     for (int n = count(30.0); n + 1 < count(40.0); ++n) {
       const double before = acceleration(n - 1), now = acceleration(n);
       if ((now > 0.0) != (before > 0.0)) crossings.push_back((n - now / (now - before)) * step);
-      // of a decaying oscillation y, without ripple: y² + (y' + Im Ω y)²/(Re Ω)²
+      // for a decaying oscillation y, without ripple: y² + (y' + Im Ω y)²/(Re Ω)²
       const double middle = 0.5 * (now + before);
       const double quadrature = ((now - before) / step + wave.imag() * middle) / wave.real();
       times.push_back(n * step);

@@ -15,13 +15,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// The output of one transducer for a drive held for n samples.
+/// Returns the output of one transducer after a drive is held for n samples.
 Complex held(TransducerDynamics& one, Complex drive, int n) {
   for (int i = 0; i < n; ++i) one.step(std::span(&drive, 1));
   return one.output()[0];
 }
 
-// a(t) = q (1 − e^{−t/τ}), to the last sample, whatever the sampling rate.
+// a(t) = q (1 − e^{−t/τ}) up to the last sample, at any sampling rate.
 TEST(Transducer, StepResponseIsTheExponential) {
   for (const double rate : {20e3, 40e3, 160e3}) {
     TransducerSettings settings;
@@ -40,8 +40,8 @@ TEST(Transducer, StepResponseIsTheExponential) {
   }
 }
 
-// With a drive e^{iωnT} held over each sample the output at its end is e^{iωnT} (1 − d)/(1 − d
-// e^{−iωT}), d = e^{−T/τ}; without holding it would be 1/(1 + iωτ).
+// If a drive e^{iωnT} is held over each sample, the output at the sample's end is
+// e^{iωnT} (1 − d)/(1 − d e^{−iωT}), d = e^{−T/τ}; without holding it would be 1/(1 + iωτ).
 TEST(Transducer, SteadyModulationHasItsClosedForm) {
   TransducerSettings settings;
   settings.sample_rate = 400e3;
@@ -61,7 +61,7 @@ TEST(Transducer, SteadyModulationHasItsClosedForm) {
   }
 }
 
-// Half the power at f/(2Q) beside the carrier: a resonance that is off by as much.
+// Half the power at a detuning of f/(2Q).
 TEST(Transducer, HalfBandwidthIsFOver2Q) {
   TransducerSettings settings;
   settings.detuning = settings.frequency / (2.0 * settings.quality);
@@ -70,7 +70,7 @@ TEST(Transducer, HalfBandwidthIsFOver2Q) {
   const Complex output = held(one, 1.0, 500);
   EXPECT_NEAR(std::abs(output), std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(std::arg(output), -0.25 * kPi, 1e-12);
-  // let go, it sounds at its own frequency: the phase turns by −2πδ a second, as in e^{−iωt}
+  // undriven it sounds at its own frequency: the phase turns by −2πδ a second, as in e^{−iωt}
   const Complex next = held(one, 0.0, 1);
   EXPECT_NEAR(std::arg(next / output), -2.0 * kPi * settings.detuning / settings.sample_rate,
               1e-12);
@@ -135,9 +135,9 @@ TEST(Transducer, SettingsAreChecked) {
   refused([](auto& s) { s.sample_rate = 0.0; });
 }
 
-/// Where along x, and how strong, the field of a focus at the origin of x is that moves at v.
+/// Lag and strength of the field of a focus that moves through the origin along x at v.
 struct Moving {
-  double lag, share;  ///< [m] behind the asked place, of a focus at rest
+  double lag, share;  ///< [m] behind the requested place; relative to a focus at rest
 };
 Moving moving_focus(double v) {
   const TransducerArray array = usx_array();
@@ -150,7 +150,7 @@ Moving moving_focus(double v) {
   std::vector<Complex> drives(count);
   constexpr int kSamples = 200;
   for (int n = 1; n <= kSamples; ++n) {
-    // the middle of each sample, so that at the end of the last one x = 0 is asked for
+    // the middle of each sample, so that x = 0 is requested at the end of the last one
     const double x = v * (n - 0.5 - kSamples) / settings.sample_rate;
     focus_phases(array, air, Vec3(x, 0.0, 0.2), phases);
     for (std::size_t i = 0; i < count; ++i) drives[i] = std::polar(1.0, phases[i]);

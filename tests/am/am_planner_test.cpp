@@ -45,7 +45,7 @@ TargetField skin(int rows, int cols, double cell = 5e-3) {
   return target;
 }
 
-/// (B1) to (B3) as they are written down, one loop each.
+/// Computes (B1) to (B3) literally, with one loop each.
 Plan plain_am(const TargetField& target, int count, double sigma) {
   std::vector<Vec2> centre;
   while (static_cast<int>(centre.size()) < count) {
@@ -106,9 +106,9 @@ TEST(AmPlanner, IsThePlainAlgorithm) {
                              : skin(8 + random.below(20), 8 + random.below(20));
     if (trial >= 9) {
       test::add_blobs(target, random);
-      for (double& p : target.pressure) p += 1e-6;  // what is below 1e-12 of the highest is none
+      for (double& p : target.pressure) p += 1e-6;  // below 1e-12 of the highest counts as 0
     }
-    // both decide on the same numbers
+    // both decide by the same numbers
     const double most = max_pressure(target);
     for (double& p : target.pressure) p = pressure_share(p, most);
     const int count = 1 + random.below(8);
@@ -170,7 +170,7 @@ TEST(AmPlanner, FourBlobsGetAFocusEach) {
 }
 
 TEST(AmPlanner, AWideFlatFieldGetsTwiceItsPressure) {
-  // Σ φ / Σ φ² is 2 for a Gaussian that ends on the field
+  // Σ φ / Σ φ² is 2 for a Gaussian that ends within the field
   TargetField target = skin(61, 61, 2e-3);
   target.pressure.assign(target.size(), 3.0);
   const Plan plan = plan_of(target, settings_of(1));
@@ -189,12 +189,12 @@ TEST(AmPlanner, OddFieldsAreOrdinary) {
   EXPECT_EQ(plan.foci[0].position, one.position(2, 3));
   EXPECT_EQ(plan.foci[0].pressure, 7.0);
 
-  // two cells farther than σ from each other, and two that are not
+  // two cells farther apart than σ, then nearer
   test::touch(one, 2, 1, 5.0);
   EXPECT_EQ(plan_of(one, settings_of(4)).foci.size(), 2u);
   EXPECT_EQ(plan_of(one, settings_of(4, 11e-3)).foci.size(), 1u);
 
-  // equal pressures: the first of the raster starts, and the same again gives the same
+  // equal pressures: the raster's first cell is chosen first, repeatably
   TargetField flat = skin(9, 9);
   flat.pressure.assign(flat.size(), 1.0);
   plan = plan_of(flat, settings_of(3));
@@ -214,7 +214,7 @@ TEST(AmPlanner, OddFieldsAreOrdinary) {
   }
   plan_of(ring, settings_of(1), PlanStatus::EmptyTarget);
 
-  // nothing to do, and nothing that can be done
+  // empty and invalid targets
   plan_of(skin(4, 4), settings_of(4), PlanStatus::EmptyTarget);
   TargetField broken = skin(4, 4);
   broken.pressure[5] = std::numeric_limits<double>::quiet_NaN();
@@ -271,7 +271,7 @@ TEST(AmPlanner, TwoHandsShareTheFoci) {
   EXPECT_GE(on[0], 1);
   EXPECT_GE(on[1], 1);
   EXPECT_EQ(on[0] + on[1], 4);
-  // each as it would be alone
+  // each patch as if it were alone
   const Plan alone = plan_of(frame.patches[0], settings_of(on[0]));
   for (std::size_t k = 0; k < alone.foci.size(); ++k)
     EXPECT_EQ(plan.foci[k].position, alone.foci[k].position);

@@ -1,4 +1,4 @@
-"""What every test of the command line uses: the program, a way to run it, and markers."""
+"""Shared fixtures of the command line's tests: the program, a way to run it, and markers."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ def pytest_configure(config):
 
 @pytest.fixture(scope="session")
 def program():
-    """The path of the program under test, from the environment variable PROSTM."""
+    """Returns the path of the program under test, from the environment variable PROSTM."""
     path = Path(os.environ.get("PROSTM", ROOT / "build" / "release" / "prostm"))
     assert path.is_file(), f"PROSTM names no program: {path}"
     return path
@@ -27,7 +27,7 @@ def program():
 
 @pytest.fixture
 def prostm(program, tmp_path):
-    """Runs `prostm ARGUMENTS…` in an empty folder; gives its exit status, stdout and stderr as text."""
+    """Returns a function that runs `prostm ARGUMENTS…` in an empty folder and returns its result with text output."""
 
     def run(*arguments, status=0, timeout=300):
         result = subprocess.run([str(program), *map(str, arguments)], cwd=tmp_path, text=True,
@@ -40,7 +40,7 @@ def prostm(program, tmp_path):
 
 @pytest.fixture
 def refuses(prostm):
-    """Checks that `prostm ARGUMENTS…` exits 2 with one sentence on stderr that holds every one of `words`."""
+    """Returns a check that `prostm ARGUMENTS…` exits 2 with one sentence on stderr that contains all of `words`."""
 
     def check(*arguments, words=()):
         result = prostm(*arguments, status=2)
@@ -55,7 +55,7 @@ def refuses(prostm):
 
 
 def shared_file(name):
-    """A file of ../shared, which is not part of the project; skips the test when it is absent."""
+    """Returns a file of ../shared, which is not part of the project; skips the test if it is missing."""
     path = ROOT.parent / "shared" / name
     if not path.exists():
         pytest.skip(f"needs {name} in ../shared, which is not part of the project")

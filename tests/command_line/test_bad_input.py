@@ -1,4 +1,4 @@
-"""Bad input gets one clear sentence and exit status 2; nothing crashes, nothing is left half-written."""
+"""Bad input gets one clear sentence and exit status 2, without crashes or half-written files."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Which stages a change asks sanitizers and fuzzers for: tools/changed_stages.py on small repositories."""
+"""tools/changed_stages.py on small repositories: the stages that a change needs sanitizers and fuzzers for."""
 import shutil
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The layer check itself: it finds what it is there to find, and nothing in a tree that keeps the rules."""
+"""The layer check itself: it finds violations, and accepts a tree that keeps the rules."""
 
 import subprocess
 import sys
@@ -32,14 +32,14 @@ GOOD = {
 
 
 def check(root):
-    """Exit status and the lines that the tool prints about the tree in `root`."""
+    """Returns the exit status and the lines that the tool prints about the tree in `root`."""
     result = subprocess.run([sys.executable, str(TOOL), str(root)], capture_output=True, text=True)
     return result.returncode, result.stdout.splitlines()
 
 
 @pytest.fixture
 def tree(tmp_path):
-    """A function that writes files into a tree that keeps every rule, and gives its root."""
+    """Returns a function that writes files into a tree that keeps every rule, and returns its root."""
 
     def write(files=()):
         for name, text in {**GOOD, **dict(files)}.items():

@@ -1,4 +1,4 @@
-"""The length check itself: it counts a function's lines whatever stands around it, and knows what is none."""
+"""The length check itself: it counts a function's lines in any context, and recognises other braces."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ LINE = "  f();\n"
 
 
 def check(root, name="src/prostm/plan/a.cpp", text=""):
-    """Exit status and the lines that the tool prints about a tree of one file."""
+    """Returns the exit status and the lines that the tool prints about a tree of one file."""
     path = root / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)

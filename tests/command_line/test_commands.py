@@ -1,4 +1,4 @@
-"""What each command does with good input: files that open, numbers that agree, the same result twice."""
+"""Every command with good input: files that open, numbers that agree, the same result twice."""
 
 import json
 import math
@@ -114,7 +114,7 @@ def test_weights_draw_the_path_to_where_errors_count_more(prostm, field, tmp_pat
     assert "by the field's weights" in prostm("plan", path).stdout
     assert "by the field's weights" not in prostm("plan", field).stdout
 
-    # where none of the pressure counts there is nothing to plan
+    # if no pressure has a weight there is nothing to plan
     two["weight"] = (pressure == 0).astype(int).tolist()
     path.write_text(json.dumps(two))
     assert "no pressure where its weight is above 0" in prostm("plan", path).stdout
@@ -145,7 +145,7 @@ def test_every_field_format_gives_the_same_plan(prostm, field, tmp_path):
     from_npy = plan_of(prostm, tmp_path / "blob.npy", "--cell-mm", "5")
     assert from_json["paths"] == from_npy["paths"]
 
-    # a PNG has 8 bits: the same field rounded to them, row 0 at the largest y
+    # a PNG has 8 bits: the field rounded to them, with row 0 at the largest y
     grey = np.round(255 * pressure / pressure.max()).astype(np.uint8)
     write_grey_png(tmp_path / "blob.png", grey[::-1])
     np.save(tmp_path / "grey.npy", grey.astype(float))
@@ -330,7 +330,7 @@ def test_solve(prostm, tmp_path, array, solver):
     result = json.loads(out)
     assert all(0 <= amplitude <= 1 for amplitude, _ in result["drives"])
     assert len(result["drives"]) == len(result["transducers_mm"]) == {"usx": 256, "autd3": 249, "plate.json": 256}[array]
-    # one factor for both: together they reach what was asked for
+    # one factor for both: together they reach the requested pressures
     asked = np.array([800, 400])
     assert asked @ result["reached_pa"] == pytest.approx(result["level"] * asked @ asked)
     if solver in ("weighted", "lm"):
@@ -424,11 +424,11 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
     envelope, mean = np.array(result["envelope_pa"]), np.array(result["mean_pa"])
     assert envelope.shape == mean.shape == (24, 30)
-    # the largest values lie between the middles of the cells
+    # the largest values lie between the cells' centres
     assert 1.0 <= result["envelope"]["largest_pa"] / envelope.max() < 1.1
     assert 1.0 <= result["mean"]["largest_pa"] / mean.max() < 1.1
     assert np.all(envelope >= mean) and envelope.max() > 3 * mean.max() > 0
-    # it is the target's shape, and that of both foci, in both
+    # both have the shape of the target, and of both foci
     assert result["envelope"]["metrics"]["correlation"] > 0.6 and result["mean"]["metrics"]["skill_8"] > 0.4
     assert set(result["envelope"]["metrics"]) == {"rmse", "correlation", "coverage", "skill_0", "skill_8", "overlap", "spill"}
     felt = result["felt"]
@@ -447,7 +447,7 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     told = prostm("field", "plan.json", "--field", field).stdout
     assert "which judges nothing" in told and "worst side lobe" in told
 
-    # what is felt of a plan as soon as there is an array, where nothing else asks for it
+    # with an array the percept of a plan is reported, even if no other option needs it
     told = prostm("plan", field, "--array", "usx", "--json", "felt.json").stdout
     plan = json.loads((tmp_path / "felt.json").read_text())
     assert " felt" in told and "felt_skill" not in plan["planned_metrics"]
@@ -483,7 +483,7 @@ def test_widths_of_a_focus(prostm, field, tmp_path):
     assert plan["sigma_mm"] == pytest.approx(1e3 * plan["settings"]["plan"]["sigma"])
     [at] = plan["metrics_at"]
     assert at["sigma_mm"] == 8.6 and at["metrics"]["rmse"] != plan["metrics"]["rmse"]
-    # the paper's presets keep their width, and say what they are at the array's
+    # the paper's presets keep their width, and report metrics at the array's
     paper = plan_of(prostm, field, "--array", "usx", "--preset", "paper-valid")
     assert paper["sigma_mm"] == 8.6 and paper["metrics_at"][0]["sigma_mm"] == pytest.approx(plan["sigma_mm"])
     assert "focus of usx on the skin" in prostm("plan", field, "--array", "usx").stdout
@@ -509,9 +509,9 @@ def test_the_plan_of_the_documentation_has_a_field(prostm, tmp_path):
 
 
 def test_the_program_is_compiled_for_no_machine_in_particular(program):
-    """What is in it for newer machines is chosen where it runs, and not by the compiler's options."""
+    """Code for newer machines is chosen at run time, not by compiler options."""
     commands = json.loads((program.parent / "compile_commands.json").read_text())
-    # only benchmarks, which are not installed, may be made for the machine that they run on
+    # only benchmarks, which are not installed, may be compiled for the build machine
     mine = [c for c in commands if "/bench/" not in c["file"]]
     assert any("/textbook/" in c["file"] for c in mine) and any("/apps/" in c["file"] for c in mine)
     assert [c["file"] for c in mine if re.search(r" -m(arch|cpu|tune|avx|sse|fma)", c["command"])] == []

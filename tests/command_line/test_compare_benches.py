@@ -1,4 +1,4 @@
-"""The guard of the benchmarks: it finds what is slower, and does not take noise for it."""
+"""The guard of the benchmarks: it finds slower rows, and does not mistake noise for them."""
 
 import json
 import subprocess
@@ -9,7 +9,7 @@ import pytest
 
 TOOL = Path(__file__).resolve().parents[2] / "tools" / "compare_benches.py"
 
-# A benchmark that takes its next times from a list with each run, over and over.
+# A benchmark that takes its next times from a list in each run, cyclically.
 BENCH = """#!{python}
 import json, pathlib, sys
 count = pathlib.Path(__file__).with_name("count")
@@ -22,7 +22,7 @@ pathlib.Path(sys.argv[sys.argv.index("--json") + 1]).write_text(json.dumps(rows)
 
 @pytest.fixture
 def build(tmp_path):
-    """A function that makes a build folder with one benchmark of the rows (name, unit, times)."""
+    """Returns a function that makes a build folder with one benchmark of the rows (name, unit, times)."""
 
     def make(name, *rows):
         folder = tmp_path / name
@@ -35,7 +35,7 @@ def build(tmp_path):
 
 
 def compare(*arguments):
-    """Exit status, verdict of each row by its name, and all that was printed."""
+    """Returns the exit status, the verdict of each row by name, and the whole output."""
     done = subprocess.run([sys.executable, *map(str, (TOOL, *arguments))], text=True, capture_output=True)
     rows = [line for line in done.stdout.splitlines() if line.startswith("contact: ")]
     return done.returncode, {line.split()[1]: line.split()[-1] for line in rows}, done.stdout + done.stderr

@@ -1,4 +1,4 @@
-"""How commands end early: by signals and by disks that are full. What was made until then is kept, and told."""
+"""Early ends of commands, by signals and full disks: finished results are kept and reported."""
 
 import json
 import resource
@@ -13,7 +13,7 @@ from conftest import wait_for
 
 
 def start(program, folder, *arguments, limit=None):
-    """A run that would take ten minutes, and records; no file grows beyond `limit` [bytes]."""
+    """Starts a recorded run that would take ten minutes; no file grows beyond `limit` [bytes]."""
 
     def prepare():
         signal.signal(signal.SIGHUP, signal.SIG_DFL)

@@ -1,4 +1,4 @@
-"""What the files of a command may be: no output is an input or another output, and all is known before any work."""
+"""Conflicts between a command's files: no output is an input or another output, which is checked before any work."""
 
 import itertools
 import json
@@ -12,12 +12,12 @@ import pytest
 from test_bad_input import foci_file, hand_lines
 
 COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices"]
-# options that are texts and yet no files; one that is not among these must say that it is INPUT or OUTPUT
+# metavars of texts that are not files; the help of all others must say INPUT or OUTPUT
 WORDS = {"NAME", "ADDRESS"}
 
 
 def options_of(program, command):
-    """The options and positionals of a command, with what its help says that they are."""
+    """Returns the options and positionals of a command, with the metavars in its help."""
     text = subprocess.run([str(program), command, "--help"], capture_output=True, text=True, check=True).stdout
     found = re.findall(r"^  (--[a-z-]+|[a-z]+) ([A-Z|]+)\b", text, re.MULTILINE)
     assert found, text
@@ -45,7 +45,7 @@ def test_no_output_may_be_another_file_of_the_command(program, refuses, tmp_path
         if not both_outputs:
             path.write_text("{}")
         arguments = [command]
-        # what must be given, and is not what is tried
+        # required arguments other than the tested one
         for name in ("field", "plan", "foci", "files"):
             if name in options and name != other:
                 (tmp_path / "given.json").write_text("{}")
@@ -74,7 +74,7 @@ def test_links_and_other_names_are_the_same_file(refuses, tmp_path):
     for name in ("field.npy", "./field.npy", "here/field.npy", "soft.json", "hard.json", "here/soft.json"):
         refuses("plan", field, "--cell-mm", "5", "--json", name, words=["one file", "--json"])
         assert field.read_bytes() == before
-    # two outputs that are not there yet
+    # two outputs that do not exist yet
     (tmp_path / "later.svg").symlink_to("a.svg")
     for name in ("a.svg", "here/a.svg", "later.svg"):
         refuses("plan", field, "--cell-mm", "5", "--json", "a.svg", "--figure", name, words=["one file"])
@@ -93,7 +93,7 @@ def test_a_file_that_the_settings_name_is_an_input_too(prostm, refuses, tmp_path
 
 def test_other_outputs_do_not_meet(prostm, tmp_path):
     field = field_npy(tmp_path)
-    for _ in range(2):  # the second time both are there
+    for _ in range(2):  # both exist the second time
         prostm("plan", field, "--cell-mm", "5", "--json", "a.json", "--figure", "a.svg")
     prostm("plan", field, "--cell-mm", "5", "--json", "/dev/null")
 
@@ -102,7 +102,7 @@ def test_a_tracker_file_may_be_calibrated_again(refuses, tmp_path):
     pose = tmp_path / "pose.json"
     pose.write_text(json.dumps({"format": "prostm-pose/1", "position_mm": [0, 121, 0], "quaternion": [0, 0, 0, 1]}))
     arguments = ["run", "--view", "--tracker", pose, "--tracker-file", "./pose.json", "--seconds"]
-    refuses(*arguments, "-1", words=["--seconds"])  # and not the files
+    refuses(*arguments, "-1", words=["--seconds"])  # not about the files
     (tmp_path / "s.toml").write_text('[pipeline]\ntracker = "pose.json"\n')
     refuses("run", "--view", "--settings", "s.toml", "--tracker-file", "pose.json", "--seconds", "-1",
             words=["--seconds"])
@@ -124,7 +124,7 @@ def test_protected_files_are_kept(refuses, tmp_path):
 
 
 def test_outputs_are_tried_before_the_inputs_are_read(refuses, tmp_path):
-    """Every input is nonsense: whoever reads it first does not come to the output."""
+    """All inputs are nonsense: a command that reads one first never reaches the output."""
     for name in ("bad.json", "bad.h5", "bad.jsonl", "bad.toml"):
         (tmp_path / name).write_text("nonsense")
     for arguments in (["run", "--settings", "bad.toml"], ["run", "--hand", "bad.jsonl"], ["plan", "bad.json"],

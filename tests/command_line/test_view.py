@@ -1,4 +1,4 @@
-"""prostm run --view: its options, and a run that is looked at and ended from outside."""
+"""prostm run --view: its options, and a run that is viewed and ended from outside."""
 
 import json
 import signal
@@ -13,7 +13,7 @@ from conftest import wait_for
 
 
 def start(program, folder, *arguments, port="0"):
-    """A run with a page, on any free port unless told; gives the process and the page's address."""
+    """Starts a run with a page, on any free port by default; returns the process and the page's address."""
     process = subprocess.Popen([str(program), "run", "--view", "--view-port", port, "--grid", "32", *arguments], cwd=folder,
                                text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     line = process.stdout.readline()
@@ -24,7 +24,7 @@ def start(program, folder, *arguments, port="0"):
 
 
 def end(process):
-    """Ctrl-C; gives the exit status and what was printed since."""
+    """Sends Ctrl-C; returns the exit status and the output since."""
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=60)
     return process.returncode, out
@@ -60,7 +60,7 @@ def test_listens_on_this_machine_alone(program, tmp_path):
     try:
         assert numbers(address)["sequence"] >= 1
         port = int(address.rstrip("/").rsplit(":", 1)[1])
-        # 127.0.0.2 is this machine too, but not the address that was asked for
+        # 127.0.0.2 belongs to this machine too, but is not the requested address
         with pytest.raises(OSError):
             socket.create_connection(("127.0.0.2", port), timeout=5)
         with pytest.raises(urllib.error.HTTPError) as refused:
@@ -81,7 +81,7 @@ def test_a_run_that_nothing_touched_ends_whole_too(program, tmp_path):
 
 
 def page_says(address, message):
-    """A page that connects and says something; whoever closes what this gives has left."""
+    """Connects as a page and sends a message; closing the returned socket makes the page leave."""
     port = int(address.rstrip("/").rsplit(":", 1)[1])
     page = socket.create_connection(("127.0.0.1", port), timeout=60)
     page.sendall(f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"

@@ -17,12 +17,12 @@ namespace {
 
 constexpr double kStep = 0.02;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kCells = 32;  // eight times faster
+constexpr int kCells = 32;  // eight times faster than the default
 #else
 constexpr int kCells = 64;
 #endif
 
-/// A scripted hand in smoke, with everything that a target needs.
+/// A scripted hand in smoke, with all stages up to the target.
 struct Bench {
   explicit Bench(const ScriptedHandSettings& hand, const std::string& scene = "one-plume",
                  bool filter_on = true, int threads = 2, const ContactSettings& settings = {},
@@ -102,7 +102,7 @@ TEST(SkinContact, PointsLieOnTheSkinAndFaceTheArray) {
     }
   }
   EXPECT_GT(on_skin,
-            0.95 * static_cast<double>(stats.skin_cells));  // what the array sees is the underside
+            0.95 * static_cast<double>(stats.skin_cells));  // the array sees the underside only
 }
 
 TEST(SkinContact, PlaneAxesFollowTheDevice) {
@@ -120,14 +120,14 @@ TEST(SkinContact, PlaneAxesFollowTheDevice) {
       EXPECT_NEAR(R(1, 0), -R(0, 2) * R(1, 2) / std::sqrt(1.0 - R(0, 2) * R(0, 2)),
                   1e-12);  // x is D's x, projected
       const Vec3 to_origin = patch.X_DP.translation() - bench.fluid.grid().p_DF;
-      EXPECT_LT(to_origin.cross(R.col(2)).norm(), 1e-9);  // the foot of F's origin
+      EXPECT_LT(to_origin.cross(R.col(2)).norm(), 1e-9);  // the origin is the foot of F's
       ++patches;
     }
   }
   EXPECT_GT(patches, 50);
 }
 
-/// The cosine of the angle between the skin and the way to the array, by the exact distance.
+/// Returns the cosine of the angle between the skin's normal and the array, by the exact distance.
 double cosine_of(const HandShape& shape, const Vec3& p_D) {
   constexpr double kNear = 2e-3;  // [m]
   Vec3 gradient;
@@ -139,7 +139,7 @@ double cosine_of(const HandShape& shape, const Vec3& p_D) {
 }
 
 TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
-  // fine cells under sanitizers too: coarse ones fade nearly everywhere
+  // fine cells even under sanitizers: coarse ones fade nearly everywhere
   Bench bench(still_hand(), "one-plume", true, 2, {}, 64);
   for (int i = 0; i < 150; ++i) bench.step();
   bench.extract();
@@ -175,7 +175,7 @@ TEST(SkinContact, PressureIsThatOfTheFluidOutsideTheSkin) {
       }
       if (high < low) continue;
       EXPECT_LE(patch.pressure[c], std::max(high, 0.0) + 1e-9);
-      // steeper skin than 40° fades; so may a cell that has some within it
+      // skin steeper than 40° fades; so may cells that contain some
       if (cosine_of(shape, skin) < std::cos(20 * kPi / 180)) continue;
       EXPECT_GE(patch.pressure[c], std::max(low, 0.0) - 1e-9);
       ++facing;
@@ -217,7 +217,7 @@ TEST(SkinContact, TwoHandsAreTwoPatches) {
   }
 }
 
-/// The scripted hand and a second one whose fingers stand between its fingers.
+/// Shows the scripted hand and a second one whose fingers lie between its fingers.
 void interlock(Bench& bench, double time) {
   bench.source->sample(time, bench.hands);
   to_device(default_tracker_pose(), bench.hands);
@@ -229,10 +229,10 @@ void interlock(Bench& bench, double time) {
   bench.fluid.step(kStep, bench.rasteriser.raster());
 }
 
-/// The skin of a hand in a patch's raster, every ray marched and every point asked the plain way.
+/// The skin of a hand in a patch's raster, with every ray marched and every point queried directly.
 struct PlainSkin {
-  int cells = 0;      // steep ones too
-  int differing = 0;  // of the patch's skin, cells that are elsewhere here
+  int cells = 0;      // steep cells included
+  int differing = 0;  // cells of the patch's skin that lie elsewhere here
 };
 PlainSkin plain_skin(const Bench& bench, const std::vector<HandShape>& shapes, int hand) {
   const HandRaster& raster = bench.rasteriser.raster();
@@ -291,7 +291,7 @@ TEST(SkinContact, DoesNotDependOnTheThreadsAndAllocatesNothing) {
       interlock(*bench, 9.0 + i * kStep);
       const test::HeapGuard guard;
       bench->extract();
-      if (i > 3) {  // the patches have their size by then
+      if (i > 3) {  // the patches have reached their size
         EXPECT_EQ(guard.allocations(), 0u);
       }
     }
@@ -315,7 +315,7 @@ TEST(SkinContact, SkinHasTheWeightOfItsPartOfTheHand) {
     interlock(bench, 9.0 + i * kStep);
     const test::HeapGuard guard;
     bench.extract();
-    if (i > 3) {  // the patches have their size by then
+    if (i > 3) {  // the patches have reached their size
       EXPECT_EQ(guard.allocations(), 0u);
     }
   }
@@ -342,9 +342,9 @@ TEST(SkinContact, SkinHasTheWeightOfItsPartOfTheHand) {
         palm += w == 1.0 ? 1 : 0;
       }
     }
-    EXPECT_GT(tips, 0);  // few on the coarser grid of a sanitizer build
+    EXPECT_GT(tips, 0);  // few with the coarser grid of sanitizer builds
     EXPECT_GT(fingers, tips);
-    EXPECT_GT(palm, 0);  // little of it where a hand is tilted
+    EXPECT_GT(palm, 0);  // few on a tilted hand
   }
 }
 
@@ -380,8 +380,8 @@ TEST(SkinContact, NoHandNoPatch) {
   EXPECT_TRUE(bench.target.patches.empty());
 }
 
-/// rms change of the target from one 25 Hz update to the next, over its rms, for a hand that is
-/// held still.
+/// Returns the rms change of the target between 25 Hz updates, relative to its rms, for a hand that
+/// is held still.
 double flicker(double jitter, bool filter_on) {
   ScriptedHandSettings hand = still_hand();
   hand.jitter = jitter;
@@ -393,8 +393,7 @@ double flicker(double jitter, bool filter_on) {
     if (i < 150 || i % 2 != 0) continue;
     bench.extract();
     const TargetField& patch = bench.target.patches.at(0);
-    // compare on the columns of the device, which do not move with the plane; its cells lie near
-    // the middles of these
+    // compare on columns fixed to the device, whose middles are near the plane's cells
     std::vector<double> now(static_cast<std::size_t>(kCells) * kCells, 0.0);
     for (int row = 0; row < patch.rows; ++row) {
       for (int col = 0; col < patch.cols; ++col) {
@@ -432,7 +431,7 @@ TEST(SkinContact, TrackerNoiseDoesNotShakeTheTarget) {
       "%.0f %% unfiltered, %.0f %% without noise\n",
       100 * filtered, 100 * unfiltered, 100 * quiet);
   EXPECT_LE(filtered, 0.30);
-  EXPECT_GT(unfiltered, 2.0 * filtered);  // the filter is what does it
+  EXPECT_GT(unfiltered, 2.0 * filtered);  // due to the filter
 }
 
 TEST(SkinContact, RejectsBadSettings) {

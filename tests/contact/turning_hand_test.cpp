@@ -1,4 +1,4 @@
-// Targets of hands that turn: neither planes nor pressures may jump.
+// Targets of turning hands: neither planes nor pressures may jump.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,12 +38,13 @@ struct Air {
     return contact.extract(air, rasteriser.raster(), frame, target);
   }
 
-  /// Presses on `hand` as jets along z do, by Newton's law: ½ρv² cos² of the angle between the jet
-  /// and the skin. @param jets centres of jets of 18 mm, or none: one as wide as the box.
+  /// Presses on `hand` like jets along z, by Newton's law: ½ρv² cos² of the angle between jet and
+  /// skin.
+  /// @param jets centres of jets of 18 mm; empty: one jet as wide as the box.
   ContactStats blow(const Hand& hand, const std::vector<Vec2>& jets) {
     HandFrame frame;
     frame.hands.push_back(hand);
-    frame.hands[0].id = ++poses;  // sweeps nothing
+    frame.hands[0].id = ++poses;  // a new hand, without a swept volume
     rasteriser.rasterise(frame, pool);
     const CellBox& box = rasteriser.raster().box;
     for (int k = box.lower[2]; k < box.upper[2]; ++k) {
@@ -93,7 +94,8 @@ Hand flat_hand() {
   return frame.hands.at(0);
 }
 
-/// Turned rigidly about an axis through its middle, which is put 200 mm above the array.
+/// Returns the hand turned rigidly about an axis through its middle, which is put 200 mm above the
+/// array.
 Hand turned(Hand hand, double by, const Vec3& axis) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : hand.position) middle += p / kJointCount;
@@ -109,7 +111,7 @@ double force_of(const TargetField& patch) {
   return force;
 }
 
-/// What a hand feels at an angle.
+/// Target of a hand at an angle.
 struct Felt {
   Vec3 normal = Vec3::Zero();
   double force = 0.0, area = 0.0;
@@ -133,7 +135,7 @@ TEST(TurningHand, PlaneForceAndAreaChangeLittleFromDegreeToDegree) {
       force = std::max(force, now.force);
       area = std::max(area, now.area);
     }
-    // changes of a degree
+    // changes per degree
     double turn = 0.0, force_change = 0.0, area_change = 0.0;
     for (std::size_t n = 2; n < felt.size(); ++n) {
       const Felt &last = felt[n - 1], &now = felt[n];
@@ -153,7 +155,7 @@ TEST(TurningHand, PlaneForceAndAreaChangeLittleFromDegreeToDegree) {
   }
 }
 
-/// The largest angle between what a bone was and is.
+/// Returns the largest angle by which a bone has turned.
 double bones_turn(const Hand& before, const Hand& now) {
   double largest = 0.0;
   for (std::size_t j = 1; j < kJointCount; ++j) {
@@ -167,7 +169,7 @@ double bones_turn(const Hand& before, const Hand& now) {
   return largest;
 }
 
-/// The hand that a patch is the skin of: the one that a cell of it is nearest to.
+/// Returns the hand that a patch belongs to: the nearest one to one of its cells.
 const Hand& hand_of(const TargetField& patch, const HandFrame& frame) {
   std::size_t cell = 0;
   while (patch.skin[cell] == 0) ++cell;
@@ -225,8 +227,8 @@ struct Skill {
   double planned = 0.0, played = 0.0;
 };
 
-/// S_0 of a plan by its own model, with the array's own focal width as in a run, and of the
-/// envelope that the array puts on the skin by it.
+/// Returns S_0 of a plan by its own model, with the array's focal width as in a run, and S_0 of the
+/// envelope that the array produces on the skin.
 Skill skill_of(const TargetFrame& target) {
   constexpr double kRate = 40e3;  // [Hz]
   const TargetField& patch = target.patches.at(0);

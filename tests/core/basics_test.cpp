@@ -14,7 +14,7 @@ namespace {
 
 using namespace prostm::literals;
 
-// the last bit of a literal is that of one multiplication
+// a literal may differ in the last bit, by one multiplication
 void expect_same(double value, double expected) {
   EXPECT_NEAR(value, expected, 1e-15 * expected);
 }
@@ -35,7 +35,7 @@ TEST(Medium, AirAtRoomTemperature) {
   EXPECT_NEAR(air.density(), 1.204, 0.0005);
 }
 
-// c at 0 °C is 331.3 m/s; c goes with √T, ρ with p/T, and the ideal gas has ρc² = κp.
+// c at 0 °C is 331.3 m/s; c is proportional to √T, ρ to p/T, and the ideal gas has ρc² = κp.
 TEST(Medium, FollowsTheIdealGas) {
   Medium air;
   air.temperature = 273.15;
@@ -56,7 +56,7 @@ TEST(Geometry, CrossIsPositiveCounterClockwise) {
   EXPECT_EQ(cross(Vec2(3.0, 1.0), Vec2(6.0, 2.0)), 0.0);
 }
 
-// Each cell and each node has an index of its own, in a row without gaps, x fastest, then y.
+// Each cell and node has its own index, in a row without gaps, x fastest, then y.
 TEST(GridShape, IndicesAreARowWithoutGaps) {
   const GridShape grid{3, 4, 5, 0.01, Vec3(-0.1, 0.2, 0.3)};
   EXPECT_EQ(grid.cell_count(), 60u);
@@ -105,7 +105,7 @@ TEST(StageTimer, IsMonotoneAndLapsAddUp) {
     sum += laps.lap();
     const double now = whole.seconds();
     ASSERT_GE(now, previous);
-    // the whole began first and is read last
+    // the whole started first and is read last
     ASSERT_LE(sum, now + 1e-9);
     previous = now;
   }

@@ -13,8 +13,8 @@
 namespace prostm {
 namespace {
 
-// The nearest-rank quantile by its definition: the smallest value that at least a share q of the
-// values does not exceed.
+// The nearest-rank quantile by definition: the smallest value that is at least as large as a share
+// q of the values.
 double by_definition(const std::vector<double>& values, double q) {
   double best = 0.0;
   bool found = false;
@@ -80,8 +80,8 @@ TEST(Distribution, MaximumOfNegativeValues) {
   EXPECT_EQ(distribution.summary().max, -2.0);
 }
 
-// Past its capacity: moments stay exact, quantiles are those of values 0, s, 2s, …, s the smallest
-// power of two that fits.
+// Beyond its capacity the moments stay exact; the quantiles are those of values 0, s, 2s, …, where
+// s is the smallest sufficient power of two.
 TEST(Distribution, ThinsEvenlyWhenFull) {
   Random random(4);
   for (std::size_t capacity : {2, 3, 7, 8, 100}) {

@@ -68,7 +68,7 @@ TEST(WriteFile, SaysThatADiskIsFullAndKeepsWhatWasThere) {
 
 TEST(WriteFile, SaysThatAFolderIsNotWritable) {
   if (::geteuid() == 0) {
-    // root may write into any folder but those of the kernel
+    // root may write into any folder except the kernel's
     EXPECT_THAT(input_error([] { write_file("/proc/prostm", "x"); }),
                 HasSubstr("cannot be written"));
     return;
@@ -90,7 +90,7 @@ TEST(ReadFile, SaysWhatCannotBeRead) {
   write_file(folder.file("large"), std::string((3U << 20) + 1, 'x'));
   EXPECT_THAT(input_error([&] { read_file(folder.file("large"), 3U << 20); }),
               HasSubstr("larger than the 3 MB"));
-  // a file of the kernel that says nothing of its size
+  // a file of the kernel that does not report its size
   EXPECT_THAT(input_error([&] { read_file("/proc/self/maps", 10); }), HasSubstr("larger than"));
 }
 

@@ -17,13 +17,13 @@ Medium air_at(double celsius, double humidity) {
   return air;
 }
 
-/// What is left of (M5) where both relaxations are far too slow to follow.
+/// Returns the rest of (M5) if both relaxations are far too slow to follow.
 double classical(const Medium& air, double frequency) {
   return 1.84e-11 * frequency * frequency * std::sqrt(air.temperature / 293.15) * 101325.0 /
          air.pressure;
 }
 
-// ISO 9613-2:1996, Table 2: dB/km at the octave bands from 63 Hz to 8 kHz, whose exact middles are
+// ISO 9613-2:1996, Table 2: dB/km at the octave bands from 63 Hz to 8 kHz, whose exact centres are
 // 1000·10^{0.3n} Hz; the table has two or three digits.
 TEST(Absorption, AgreesWithTheTableOfTheStandard) {
   struct Row {
@@ -64,7 +64,7 @@ TEST(Absorption, DecibelsAndNepersSayTheSame) {
               1e-12);
 }
 
-// Absorption per wavelength is a function of frequency over pressure, at the same share of water.
+// For a fixed share of water, absorption per wavelength is a function of frequency over pressure.
 TEST(Absorption, FollowsFrequencyOverPressure) {
   Random random(11);
   for (int trial = 0; trial < 200; ++trial) {
@@ -77,7 +77,7 @@ TEST(Absorption, FollowsFrequencyOverPressure) {
   }
 }
 
-// Each term is positive, so that the sum exceeds the classical one and rises with frequency.
+// All terms are positive, so the sum exceeds the classical term and rises with frequency.
 TEST(Absorption, RisesWithFrequencyAboveTheClassicalPart) {
   Random random(12);
   for (int trial = 0; trial < 200; ++trial) {

@@ -13,7 +13,7 @@ struct Trip {
   int stops = 0;
   std::int64_t bumps = 0;
   double fastest = 0.0;  // [m/s]
-  double fuel = 1.0;     // left, 0..1
+  double fuel = 1.0;     // remaining share, 0..1
 };
 
 double bumps_per_km(const Trip& trip) {

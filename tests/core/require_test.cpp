@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// The sentence that `check` refuses with; empty when it does not.
+/// Returns the message with which `check` refuses; empty if it accepts.
 std::string refusal(const std::function<void()>& check) {
   try {
     check();

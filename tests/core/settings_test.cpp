@@ -63,7 +63,7 @@ TEST(Bounds, AreThoseOfTheList) {
   EXPECT_EQ(refusal([&] { require_bounds(paint); }), "coats = 0 must be between 1 and 5");
 }
 
-/// Sets every field to another value.
+/// Sets every field to a different value.
 class Changer : public SettingsWriter {
  public:
   void field(const Setting&, double& value) override { value *= 2.0; }

@@ -38,7 +38,7 @@ TEST(SpscRing, FullRefusesAndKeepsWhatItHolds) {
   EXPECT_EQ(ring.front(), nullptr);
 }
 
-// Random pushes and pops against std::deque, for several capacities, 1 included.
+// Random pushes and pops compared with std::deque, for several capacities, including 1.
 TEST(SpscRing, BehavesAsABoundedQueue) {
   Random random(1);
   for (std::size_t capacity : {1, 2, 3, 7, 64}) {
@@ -65,7 +65,7 @@ TEST(SpscRing, BehavesAsABoundedQueue) {
   }
 }
 
-// Every value arrives, whole, once and in order.
+// Every value arrives whole, once and in order.
 TEST(SpscRing, OrderedAndWholeBetweenThreads) {
   using Value = std::array<std::uint64_t, 8>;
   const std::uint64_t last = test::reduced(400000);

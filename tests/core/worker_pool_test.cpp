@@ -64,11 +64,11 @@ TEST(WorkerPool, TakesTheLargestRegion) {
   EXPECT_EQ(wrong, 0u);
 }
 
-// Regions alternate between two functions, each of which writes the region's number into cells of
-// its own, without atomics. Had a worker that wakes late run an index of another region, or with
-// the function of another one, a cell would hold another number (and the thread sanitizer would see
-// two writers); a lost wake-up or a lost index would hang. More threads than cores, so that workers
-// do lose their core inside a region.
+// Regions alternate between two functions, each of which writes the region's number into its own
+// cells, without atomics. If a worker that wakes late ran an index or the function of another
+// region, a cell would hold another number (and the thread sanitizer would see two writers). A lost
+// wake-up or index would hang. There are more threads than cores, so that workers lose their core
+// inside a region.
 TEST(WorkerPool, LateWorkersNeverTouchAnotherRegion) {
   WorkerPool pool(4);
   std::uint64_t region = 1, wrong = 0;
@@ -86,8 +86,8 @@ TEST(WorkerPool, LateWorkersNeverTouchAnotherRegion) {
   EXPECT_EQ(wrong, 0u);
 }
 
-// With a pause, the workers are asleep when a region comes; waiting inside an index for another
-// thread to take the next one hangs unless a sleeper is woken.
+// After a pause the workers are asleep when a region comes. An index that waits for another thread
+// to take the next one hangs unless a sleeper is woken.
 TEST(WorkerPool, WakesSleepingWorkers) {
   WorkerPool pool(2);
   for (int round = 0; round < 20; ++round) {
@@ -132,7 +132,7 @@ TEST(WorkerPool, EndsWhileSpinningOrAsleep) {
   }
 }
 
-// Counted on the caller and, from the first index that a worker runs, on each worker.
+// Counted on the caller and, from its first index on, on each worker.
 TEST(WorkerPool, AllocatesNothing) {
   WorkerPool pool(3);
   std::atomic<std::size_t> by_workers{0};

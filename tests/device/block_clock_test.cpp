@@ -32,14 +32,14 @@ TEST(BlockClock, LateWhenFilledAfterOnePeriod) {
 TEST(BlockClock, DryQueueCountsPeriodsAndShiftsTheSchedule) {
   BlockClock clock(kStart, 1ms, 8);
   EXPECT_FALSE(clock.fill(0, kStart).late);
-  // block 1 is played at 9 ms, comes at 20.5 ms: nothing to play at 9, 10, … 20 ms
+  // block 1, due at 9 ms, comes at 20.5 ms: blocks are missed at 9, 10, … 20 ms
   const auto filled = clock.fill(1, kStart + 20ms + 500us);
   EXPECT_TRUE(filled.late);
   EXPECT_EQ(filled.missed, 12);
   EXPECT_EQ(clock.play_time(1), kStart + 21ms);
-  EXPECT_EQ(clock.play_time(0), kStart + 8ms);  // as it was played
+  EXPECT_EQ(clock.play_time(0), kStart + 8ms);  // its actual time
   EXPECT_EQ(clock.play_time(2), kStart + 22ms);
-  // the queue fills up again at once: block 8 is asked for at 20 ms, block 9 when block 1 plays
+  // the queue refills at once: block 8 is asked for at 20 ms, block 9 when block 1 plays
   EXPECT_EQ(clock.ask_time(8), kStart + 20ms);
   EXPECT_EQ(clock.ask_time(9), kStart + 21ms);
   for (int k = 2; k <= 8; ++k) EXPECT_EQ(clock.fill(k, kStart + 20ms + 600us).missed, 0);
@@ -56,8 +56,8 @@ TEST(BlockClock, ManyShifts) {
   }
 }
 
-/// Fills blocks in order, each `delay` after it is asked for, and holds that none is missed and
-/// that they play without a gap, whatever becomes of the queue.
+/// Fills blocks in order, each `delay` after it is asked for, and checks that none is missed and
+/// that they play without a gap, whatever happens to the queue.
 class Filler {
  public:
   explicit Filler(BlockClock& clock) : clock_(clock) {}
@@ -76,7 +76,7 @@ class Filler {
 
  private:
   BlockClock& clock_;
-  std::int64_t block_ = 0;  // the next
+  std::int64_t block_ = 0;  // the next block
   BlockClock::Time now_ = kStart, played_;
 };
 
@@ -85,7 +85,7 @@ TEST(BlockClock, TheQueueBeginsLongAndShortensWhileTheMachineIsCalm) {
   EXPECT_EQ(clock.queue_blocks(), 10);
   EXPECT_EQ(clock.play_time(0), kStart + 10ms);
   Filler filler(clock);
-  filler.fill_until(2, 8ms);  // what a machine does that has just begun misses nothing
+  filler.fill_until(2, 8ms);  // slow blocks at the very beginning are not missed
   EXPECT_EQ(clock.queue_blocks(), 10);
 
   BlockClock calm(kStart, 1ms, 3, 10);
@@ -102,7 +102,7 @@ TEST(BlockClock, TheQueueBeginsLongAndShortensWhileTheMachineIsCalm) {
 TEST(BlockClock, DelaysAreRememberedForAWhile) {
   BlockClock clock(kStart, 1ms, 2, 10);
   Filler filler(clock);
-  // delays of up to 3.2 ms need five blocks: one more than the four periods they reach into
+  // delays of up to 3.2 ms need five blocks: one more than the four periods that they span
   filler.fill(1, 3200us);
   const auto remembered = static_cast<std::int64_t>(BlockClock::kRemembered) * BlockClock::kCalm;
   filler.fill_until(remembered - 1, 100us);
@@ -122,13 +122,13 @@ TEST(BlockClock, AQueueThatIsNearlyDryGrowsWithoutAMiss) {
   const BlockClock::Time asked = clock.ask_time(k + 1);
   filler.fill(1, 2500us);
   EXPECT_EQ(clock.queue_blocks(), 4);  // 2.5 ms into the third
-  // what comes is played as before, and asked for a period earlier
+  // the next block plays as before, and is asked for one period earlier
   EXPECT_EQ(clock.ask_time(k + 1), asked - 1ms);
-  // the blocks that were due before the queue grew are asked for when it grew: they are not late
+  // blocks that were due before the queue grew are asked for when it grew: they are not late
   const BlockClock::Time grown = clock.ask_time(k) + 2500us;
   for (int i = 1; i <= 3; ++i) EXPECT_FALSE(clock.fill(k + i, grown + 100us).late);
   EXPECT_EQ(clock.queue_blocks(), 4);
-  // no delay makes it longer than it may be
+  // no delay makes the queue longer than its limit
   for (int i = 4; i < 10; ++i) EXPECT_EQ(clock.fill(k + i, clock.play_time(k + i)).missed, 0);
   EXPECT_LE(clock.queue_blocks(), 10);
 }
@@ -140,16 +140,16 @@ TEST(BlockClock, AQueueThatRanDryGrowsByWhatItLacked) {
   ASSERT_EQ(clock.queue_blocks(), 3);
   const std::int64_t k = filler.block();
   const BlockClock::Time asked = clock.ask_time(k);
-  // a block that was to be played 3 ms later comes after 4.5 ms: played after 5 ms
+  // a block due 3 ms later comes after 4.5 ms and plays after 5 ms
   EXPECT_EQ(clock.fill(k, asked + 4500us).missed, 2);
   EXPECT_EQ(clock.queue_blocks(), 5);
   EXPECT_EQ(clock.play_time(k), asked + 5ms);
-  EXPECT_EQ(clock.ask_time(k), asked);  // as before
+  EXPECT_EQ(clock.ask_time(k), asked);  // unchanged
   EXPECT_EQ(clock.play_time(k - 1), asked + 2ms);
   EXPECT_EQ(clock.ask_time(k + 1), asked + 1ms);
   EXPECT_EQ(clock.play_time(k + 1), asked + 6ms);
   EXPECT_EQ(clock.fill(k + 1, asked + 4600us).missed, 0);
-  // 5 ms too late: the queue may grow by one block only, the schedule shifts by the other four
+  // 5 ms too late: the queue may grow by one block only, so the schedule shifts by the other four
   EXPECT_EQ(clock.fill(k + 2, clock.play_time(k + 2) + 4500us).missed, 5);
   EXPECT_EQ(clock.queue_blocks(), 6);
   EXPECT_EQ(clock.ask_time(k + 2), asked + 6ms);
@@ -168,7 +168,7 @@ TEST(BlockClock, RandomDelaysNeverBreakTheSchedule) {
           static_cast<int>(rare < 0.02 ? 20'000.0 * random.uniform() : 500.0 * rare));
       const auto filled = clock.fill(k, now);
       ASSERT_GE(clock.play_time(k), now) << seed;
-      // blocks play one after the other, apart by the periods that were missed between them
+      // blocks play one after the other, spaced by the periods missed between them
       if (k > 0) {
         ASSERT_EQ(clock.play_time(k), played + (1 + filled.missed) * 1ms) << seed;
       }

@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// Whatever a function of sample and focal point says.
+/// A source whose samples come from a function of sample and focal point.
 class Made final : public SampleSource {
  public:
   Made(int foci, FocusSample (*make)(std::int64_t, int)) : foci_(foci), make_(make) {}
@@ -28,7 +28,7 @@ class Made final : public SampleSource {
   FocusSample (*make_)(std::int64_t, int);
 };
 
-/// As emissions are: smooth, and within their power.
+/// Like an emission: smooth, and within its power limit.
 FocusSample smooth(std::int64_t sample, int focus) {
   const auto t = static_cast<double>(sample);
   const double intensity = 0.5 * (1.0 + focus % 2) * (1.0 - std::cos(0.04 * t + focus)) / 2.0;

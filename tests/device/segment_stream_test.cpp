@@ -7,7 +7,7 @@
 namespace prostm {
 namespace {
 
-/// Each sample says which one it is.
+/// A source whose samples carry their own number.
 class Counted final : public SampleSource {
  public:
   int foci() const override { return 2; }
@@ -50,7 +50,7 @@ TEST(SegmentStream, KeepsTimeAndPlaysEveryBlockInItsOrder) {
   EXPECT_LT(device.ask_time(4000), device.play_time(4000));
   device.stop();
   EXPECT_EQ(device.status(), DeviceStatus::Idle);
-  // blocks are whole, and none comes before one that it follows
+  // blocks are whole and in order
   const std::int64_t n = dynamic_cast<const SimulatedArray&>(*device.played()).samples() / 40 * 40;
   const std::vector<FocusSample> back = device.played()->read_back(0, n);
   float block = 0.0F;

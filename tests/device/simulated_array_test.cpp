@@ -145,7 +145,7 @@ TEST(SimulatedArray, RefusesWithASentence) {
       array.problem(),
       "Sample 1 of the segment has a number that is not finite or an intensity outside of 0 to 1.");
 
-  // what runs goes on running when something else is refused
+  // a refused start does not stop the running loop or stream
   ASSERT_EQ(array.start(two), DeviceStatus::Running);
   EXPECT_EQ(array.problem(), "");
   EXPECT_EQ(array.start(other), DeviceStatus::Refused);
@@ -202,8 +202,7 @@ TEST(SimulatedArray, KeepsRealTime) {
   };
   const double elapsed = Seconds(std::chrono::steady_clock::now() - start).count();
   EXPECT_GE(elapsed, 0.199);  // never ahead of time: block 199 is asked for at 199 ms
-  // what has been played lies in the past, and what has not in the future unless the machine was
-  // away
+  // played samples lie in the past, and later ones in the future unless the machine was busy
   EXPECT_LE(array.play_time(array.samples() - 1), now());
   EXPECT_TRUE(eventually([&] {
     const double before = now();
@@ -212,7 +211,7 @@ TEST(SimulatedArray, KeepsRealTime) {
   array.stop();
   const std::int64_t played = array.stats().blocks * 40;
   EXPECT_LE(array.samples(), played);
-  ASSERT_TRUE(eventually([&] { return array.samples() == played; }));  // what was queued plays on
+  ASSERT_TRUE(eventually([&] { return array.samples() == played; }));  // the queued blocks play on
   const auto samples = array.read_back(played - 40, 40);
   for (std::size_t i = 0; i < 40; ++i) {
     EXPECT_EQ(samples[2 * i].p_D.x(), static_cast<float>(played - 40) + static_cast<float>(i));
@@ -223,7 +222,7 @@ TEST(SimulatedArray, KeepsRealTime) {
 
 TEST(SimulatedArray, DelayMakesBlocksLateAndThenMissed) {
   SimulatedArraySettings settings;
-  settings.queue_blocks = 10;  // as long as it gets
+  settings.queue_blocks = 10;  // the largest queue
   SimulatedArray array = make(settings);
   SimulatedFaults faults;
   faults.delay = 3e-3;
@@ -280,7 +279,7 @@ TEST(SimulatedArray, StreamsPlansThatComeMeanwhile) {
   EXPECT_GT(stats.laps_started, 40);
 }
 
-/// Plays the same focal points for 20 ms. @return rms acoustic pressures at the end, at each.
+/// Plays the same focal points for 20 ms. @return the final rms acoustic pressure at each.
 std::vector<double> reached(const SimulatedArraySettings& settings,
                             const std::vector<FocusSample>& foci) {
   SimulatedArray array = make(settings);
@@ -298,7 +297,7 @@ TEST(SimulatedArray, HalfTheFocusGivesHalfTheRadiationPressureThroughTheModulati
   settings.full_scale_pressure = 10.0;
   SimulatedArraySettings simulated = by_hand();
   simulated.memoryless = true;
-  // the mean and the largest over a period
+  // the mean and the maximum over a period
   const auto reached = [&](double pressure) {
     SimulatedArray array = make(simulated);
     FocusEmitter emitter(settings, array.info().sample_rate);
@@ -318,7 +317,7 @@ TEST(SimulatedArray, HalfTheFocusGivesHalfTheRadiationPressureThroughTheModulati
   const auto full = reached(10.0), half = reached(5.0);
   EXPECT_NEAR(half.first / full.first, 0.5, 1e-4);
   EXPECT_NEAR(half.second / full.second, 0.5, 1e-4);
-  EXPECT_NEAR(full.first / full.second, 0.5, 1e-4);  // of sine-magnitude
+  EXPECT_NEAR(full.first / full.second, 0.5, 1e-4);  // sine-magnitude modulation
 }
 
 TEST(SimulatedArray, AtAZeroOfTheModulationTransducersStillRingAsTheirMemorySays) {
@@ -369,7 +368,7 @@ TEST(SimulatedArray, IntensityIsTheSamePressureEverywhereWithinTheBound) {
   const double here = pressure_at({0.0, 0.0, 0.2});
   EXPECT_NEAR(pressure_at({0.05, -0.04, 0.25}), here, 1e-3 * here);
   EXPECT_NEAR(pressure_at({0.0, 0.02, 0.12}), here, 1e-3 * here);
-  EXPECT_LT(pressure_at({0.0, 0.0, 0.8}), 0.9 * here);  // where the array makes a quarter of it
+  EXPECT_LT(pressure_at({0.0, 0.0, 0.8}), 0.9 * here);  // the array makes a quarter of it there
 }
 
 TEST(SimulatedArray, SeveralFociKeepTheirShares) {
@@ -388,11 +387,11 @@ TEST(SimulatedArray, SeveralFociKeepTheirShares) {
     power += std::pow(together[f] / alone, 2);
   }
   for (std::size_t f = 1; f < 4; ++f) EXPECT_NEAR(together[f] / together[0], 2.0, 0.01);
-  EXPECT_GT(power, 0.75);  // of (A4)
+  EXPECT_GT(power, 0.75);  // bound by (A4)
 }
 
 TEST(SimulatedArray, TransducersFollowTheirDrivesUnlessToldOtherwise) {
-  // silence, then a focal point: after a time constant 1 − 1/e of it is there
+  // silence, then a focal point: after a time constant it has reached 1 − 1/e
   std::vector<FocusSample> step(800, {Eigen::Vector3f(0.0F, 0.0F, 0.2F), 0.0F});
   for (std::size_t i = 400; i < 800; ++i) step[i].intensity = 1.0F;
   for (const bool memoryless : {false, true}) {

@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// 100 × 100 mm of skin at 5 mm that rises along x with this slope.
+/// Returns 100 × 100 mm of skin in 5 mm cells that rises along x with this slope.
 TargetFrame slope(double rise) {
   TargetFrame frame;
   frame.patches.emplace_back();

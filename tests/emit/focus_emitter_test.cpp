@@ -20,7 +20,7 @@ using test::Watch;
 constexpr double kRate = 40e3;
 constexpr std::size_t kPeriod = 200;
 
-/// An emitter of foci, pulled in blocks, with every sample kept.
+/// Pulls an emitter of foci in blocks and keeps every sample.
 struct Player {
   explicit Player(const EmitSettings& settings, double rate = kRate)
       : emitter(settings, rate),
@@ -86,7 +86,7 @@ TEST(FocusEmitter, TheRadiationPressureHasThePartsOfItsWaveform) {
     Player player(with_waveform(name));
     player.submit({focus_at(0.0, 0.0, 1.0)});
     player.play(20 * kPeriod);
-    // the parts of intensity² at 0, 1 and 2 times the frequency
+    // components of intensity² at 0, 1 and 2 times the frequency
     std::array<double, 3> part{};
     for (std::size_t h = 0; h < part.size(); ++h) {
       double re = 0.0, im = 0.0;
@@ -161,7 +161,7 @@ TEST(FocusEmitter, LossIsSilentFromTheNextZeroOn) {
   player.play(600);
   EXPECT_GT(player.intensity(399), 0.0);
   for (std::size_t k = 400; k < 850; ++k) EXPECT_EQ(player.intensity(k), 0.0) << k;
-  // and a plan brings it back at once
+  // a new plan restores the output at once
   player.submit({focus_at(0.0, 0.01, 1.0)}, 2);
   player.play(200);
   EXPECT_NEAR(player.intensity(850 + 100), 1.0, 1e-6);
@@ -218,7 +218,7 @@ TEST(FocusEmitter, BadPlansAreRefused) {
   }
   EXPECT_TRUE(player.watch.holds());
 
-  // nor does an emitter of paths take foci
+  // an emitter of paths does not take foci either
   test::Player other(settings_for(1));
   other.emitter.draft().paths.clear();
   other.emitter.draft().foci.push_back(focus_at(0.0, 0.0, 1.0));
@@ -270,7 +270,7 @@ TEST(FocusEmitter, GuaranteesHoldForAnySequenceOfPlans) {
     ASSERT_TRUE(player.watch.holds()) << trial << ": step " << player.watch.step << ", slew "
                                       << player.watch.slew << ", power " << player.watch.power;
     EXPECT_EQ(player.emitter.stats().max_focus_step, 0.0);
-    // a place changes only where the samples before and after it are silent
+    // a focal point moves only between two silent samples
     for (std::size_t k = 1; k < player.kept.size() / player.foci; ++k) {
       for (std::size_t f = 0; f < player.foci; ++f) {
         if (player.at(k, f).p_D == player.at(k - 1, f).p_D) continue;

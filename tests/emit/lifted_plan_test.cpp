@@ -16,7 +16,7 @@ namespace {
 
 using test::ring;
 
-/// A field of 40 × 40 cells of 5 mm, all skin, with the height that f gives [m].
+/// Returns a field of 40 × 40 cells of 5 mm, all skin, with the heights of f [m].
 template <class F>
 TargetFrame frame_with_height(F f) {
   TargetFrame frame;
@@ -57,7 +57,7 @@ TEST(Lift, AFocusGetsTheHeightOfTheSkinThere) {
   Plan plan;
   plan.foci.push_back({0, Vec2(0.0123, -0.0345), 2.5});
   LiftedPlan lifted;
-  lifted.paths.push_back(ring(Vec3::Zero(), 0.1, 20, 1.0));  // of a plan before
+  lifted.paths.push_back(ring(Vec3::Zero(), 0.1, 20, 1.0));  // left from an earlier plan
   lift(plan, frame, lifted);
   EXPECT_TRUE(lifted.paths.empty());
   ASSERT_EQ(lifted.foci.size(), 1u);
@@ -90,7 +90,7 @@ TEST(Lift, FlatSkinKeepsLengthAndPressure) {
 }
 
 TEST(Lift, SlopeMakesThePathLonger) {
-  // up and down a 30° slope: a path across it keeps its length, one along it grows by 1/cos 30°
+  // a 30° slope up and down: a path across it keeps its length, a path along it grows by 1/cos 30°
   const double slope = std::tan(kPi / 6.0);
   const TargetFrame frame = frame_with_height([&](const Vec2& x) { return slope * x.x(); });
   Plan plan;
@@ -105,7 +105,7 @@ TEST(Lift, SlopeMakesThePathLonger) {
   }
   LiftedPlan lifted;
   lift(plan, frame, lifted);
-  // the smoothing rounds the two turning points, over two cells each
+  // smoothing rounds the two turning points, over two cells each
   EXPECT_NEAR(lifted.paths[0].length, 0.140 / std::cos(kPi / 6.0), 0.004);
   EXPECT_GT(lifted.paths[0].length, 0.150);
   EXPECT_NEAR(lifted.paths[1].length, 0.140, 1e-9);
@@ -116,7 +116,7 @@ TEST(Lift, SlopeMakesThePathLonger) {
 }
 
 TEST(Lift, StairsOfARasterDoNotStretchThePath) {
-  // a 20° slope in voxels of 5 mm: a slope of stairs
+  // a 20° slope in voxels of 5 mm: stairs
   const double slope = std::tan(20.0 * kPi / 180.0);
   const auto smooth = frame_with_height([&](const Vec2& x) { return slope * x.x(); });
   const auto stairs = frame_with_height(
@@ -128,15 +128,15 @@ TEST(Lift, StairsOfARasterDoNotStretchThePath) {
   lift(plan, stairs, b);
   EXPECT_GT(a.paths[0].length, 0.141);
   EXPECT_NEAR(b.paths[0].length, a.paths[0].length, 0.015 * a.paths[0].length);
-  // what no smoothing would have made of the stairs
+  // the same path without smoothing of the stairs
   LiftedPath raw = b.paths[0];
   for (Vec3& p : raw.p_D) p.z() = height_at(stairs.patches[0], p.head<2>());
   measure(raw);
   EXPECT_GT(raw.length, 1.03 * a.paths[0].length);
 }
 
-/// Also where the kernel of (E1) is as wide as the path: a circle's opposite point is as near one
-/// way round as the other.
+/// Holds also if the kernel of (E1) is as wide as the path: the opposite point of a circle is
+/// equally near in both directions.
 TEST(Lift, LengthDoesNotDependOnWhereThePathBegins) {
   Random random(1);
   for (const double length : {0.010, 0.019, 0.021, 0.040, 0.140}) {
@@ -165,7 +165,7 @@ TEST(Lift, DegeneratePathsAreAtRest) {
   Plan plan;
   FocalPath path;
   path.speed = 7.0;
-  plan.paths.push_back(path);  // no point at all: left out
+  plan.paths.push_back(path);  // left out, since it has no points
   path.points.emplace_back(0.01, 0.02);
   path.pressure.push_back(3.0);
   plan.paths.push_back(path);
@@ -224,7 +224,7 @@ TEST(PointAt, WalksThePolygonAtUnitSpeed) {
     const PathPoint a = point_at(path, s), b = point_at(path, s + 0.175e-3);
     EXPECT_LE((b.p_D - a.p_D).norm(), 0.175e-3 + 1e-12);
     EXPECT_LT((point_at(path, s - 3 * path.length).p_D - a.p_D).norm(), 1e-12);
-    // all on the outline
+    // all points lie on the outline
     EXPECT_LT(nearest_place(path, a.p_D).distance, 1e-12);
     EXPECT_NEAR(std::remainder(nearest_place(path, a.p_D).s - s, path.length), 0.0, 1e-12);
   }

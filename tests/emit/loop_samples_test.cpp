@@ -19,7 +19,7 @@ EmitSettings settings() {
   return s;
 }
 
-/// Rings of these lengths, whose pressure goes from 0.4 to 1.
+/// Returns rings of these lengths whose pressure ranges from 0.4 to 1.
 LiftedPlan rings(const std::vector<double>& lengths) {
   LiftedPlan plan;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
@@ -33,7 +33,7 @@ LiftedPlan rings(const std::vector<double>& lengths) {
   return plan;
 }
 
-// 140 mm at 7 m/s are 800 samples: then nothing is adjusted, and the emitter gives the same.
+// 140 mm at 7 m/s take exactly 800 samples: nothing is adjusted, and the emitter gives the same.
 TEST(LoopSamples, IsWhatTheEmitterGivesOnceItRuns) {
   const LiftedPlan plan = rings({0.140, 0.070});
   const LoopSamples loop = loop_samples(plan, settings(), kRate);
@@ -47,7 +47,7 @@ TEST(LoopSamples, IsWhatTheEmitterGivesOnceItRuns) {
   emitter.submit();
   std::vector<FocusSample> block(2 * 2400);
   emitter.fill(0, block);
-  // both start at the sample after the silent one of the jump
+  // both start at the sample after the jump's silent one
   std::size_t offset = 0;
   double nearest = 1.0;
   for (std::size_t shift = 0; shift < 800; ++shift) {
@@ -81,7 +81,7 @@ TEST(LoopSamples, EveryPathClosesAndLittleIsAdjusted) {
     for (std::size_t f = 0; f < 4; ++f) {
       const double lap = lengths[f] / 7.0 * kRate;
       EXPECT_NEAR(loop.samples / (loop.laps[f] * lap) - 1.0, loop.stretch[f], 1e-9);
-      // the step over the seam is one like the others
+      // the step across the seam equals the others
       const std::size_t last = 4 * static_cast<std::size_t>(loop.samples - 1);
       const float seam = (loop.sample[f].p_D - loop.sample[last + f].p_D).norm();
       EXPECT_NEAR(seam, lengths[f] * loop.laps[f] / loop.samples, 1e-5);
@@ -134,7 +134,7 @@ TEST(LoopSamples, OfFociAreWholePeriodsOfTheirModulation) {
     }
     EXPECT_NEAR(sum, 1.25 * std::pow(std::sin(kPi * static_cast<double>(k) / 200.0), 2), 1e-6);
   }
-  // periods of 211 and of 1600 samples, of which the first is no multiple of the unit
+  // periods of 211 and 1600 samples; the first is not a multiple of the unit
   s.am_frequency = 190.0;
   EXPECT_EQ(loop_samples(plan, s, kRate).samples, 8 * 211);
   s.am_frequency = 25.0;

@@ -38,7 +38,7 @@ TEST(PathEmitter, ThePapersLoopTakes800SamplesOf175Micrometres) {
   EXPECT_EQ(kept[0].intensity, 0.0F);
   EXPECT_EQ(kept[40].intensity, 1.0F);  // faded up in 40 samples
   for (std::size_t i = 0; i + 800 < kept.size(); ++i) {
-    // the same place to the bit one lap later, and steps of 0.175 mm that only the corners shorten
+    // the same place to the bit one lap later; the corners shorten steps of 0.175 mm slightly
     EXPECT_EQ(kept[i].p_D, kept[i + 800].p_D);
     EXPECT_NEAR(distance(kept[i], kept[i + 1]), 0.175e-3, 0.3e-6);
   }
@@ -91,7 +91,7 @@ TEST(PathEmitter, PressureAlongThePathIsDriven) {
   }
   EXPECT_EQ(player.emitter.stats().saturated, 0);
 
-  // the same at a full scale of 4: the top is clipped and counted
+  // at a full scale of 4 the top is clipped and counted
   Player loud(settings_for(1, 4.0));
   loud.submit({path});
   loud.play(20);
@@ -105,7 +105,7 @@ TEST(PathEmitter, DriftingPathIsFollowedWithoutAFade) {
   player.submit({ring(kCentre, 0.140, 50, 1.0), ring(kCentre + Vec3(0.06, 0, 0), 0.1, 50, 0.8)});
   player.play(40);
   const std::int64_t faded = player.emitter.stats().faded;
-  EXPECT_EQ(faded, 2 * 40 - 4);  // up to sqrt(0.8) takes 36 samples
+  EXPECT_EQ(faded, 2 * 40 - 4);  // fading up to sqrt(0.8) takes 36 samples
   for (int k = 1; k <= 50; ++k) {
     const Vec3 drift(0.0, 0.003 * k, 0.001 * k);
     player.submit({ring(kCentre + drift, 0.140, 50, 1.0),
@@ -124,8 +124,8 @@ TEST(PathEmitter, FarPathIsReachedBySilenceAtTheLapsEnd) {
   player.play(10);
   player.submit({ring(kCentre + Vec3(0.1, 0, 0), 0.140, 50, 1.0)}, 2);
   player.play(60);
-  // full until the lap of 800 samples ends, silent 40 later, then full again after one silent
-  // sample and 40 up
+  // full until the lap of 800 samples ends, silent 40 samples later, then one silent sample, and
+  // full again after 40
   const auto& kept = player.kept;
   for (std::size_t i = 41; i <= 800; ++i) ASSERT_EQ(kept[i].intensity, 1.0F) << i;
   EXPECT_LT(kept[801].intensity, 1.0F);
@@ -191,13 +191,13 @@ TEST(PathEmitter, NewPathIsDrawnInTheDirectionOfTravel) {
   player.play(20);
   player.submit({back});
   player.play(40);
-  // the same circle listed the other way round: nothing changes
+  // the circle in the opposite direction changes nothing
   for (std::size_t i = 41; i + 800 < player.kept.size(); ++i) {
     EXPECT_LT(distance(player.kept[i], player.kept[i + 800]), 1e-6);
   }
 }
 
-/// Least and largest distance of the first two focal points while both sound.
+/// Returns the least and largest distance of the first two focal points while both sound.
 std::pair<double, double> distances(const Player& player, std::size_t foci, std::size_t from = 0) {
   std::pair<double, double> out(std::numeric_limits<double>::max(), 0.0);
   for (std::size_t i = from * foci; i < player.kept.size(); i += foci) {
@@ -218,11 +218,11 @@ TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
   player.submit({a, b});
   player.play(100);
   EXPECT_EQ(player.kept[0].p_D, a.p_D[0].cast<float>());
-  // so the distance that is planned stays
+  // the planned distance is kept
   EXPECT_NEAR(distances(player, 2).first, apart, 1e-6);
   EXPECT_NEAR(distances(player, 2).second, apart, 1e-6);
 
-  // also where other places would be farther apart
+  // even if other places would be farther apart
   LiftedPath turned = b;
   std::rotate(turned.p_D.begin(), turned.p_D.begin() + 20, turned.p_D.end());
   Player plain(settings_for(2));
@@ -232,7 +232,7 @@ TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
   EXPECT_EQ(plain.kept[0].p_D, a.p_D[0].cast<float>());
   EXPECT_EQ(plain.kept[1].p_D, turned.p_D[0].cast<float>());
 
-  // again after a loss, from wherever they came to rest
+  // again after a loss, from wherever the focal points rest
   player.emitter.lose();
   player.play(50);
   const std::size_t silent = player.kept.size() / 2;
@@ -245,7 +245,7 @@ TEST(PathEmitter, FocalPointsFromSilenceBeginAtTheFirstPoints) {
 }
 
 TEST(PathEmitter, AFocalPointBeginsWhereItKeepsAwayFromThoseThatRun) {
-  // another ring appears at any time of the first one's lap
+  // a second ring appears at any time of the first one's lap
   const double radius = 0.140 / (2.0 * kPi);
   const LiftedPath a = ring(kCentre, 0.140, 50, 1.0);
   for (const double apart : {0.055, 0.0}) {
@@ -258,8 +258,8 @@ TEST(PathEmitter, AFocalPointBeginsWhereItKeepsAwayFromThoseThatRun) {
       player.play(blocks);
       player.submit({a, b});
       player.play(140);
-      // of two equal rings the centres' distance, of a ring in another that of opposite sides; both
-      // to half of a 32nd of a lap
+      // the best distance is that of the centres for two equal rings, and that of opposite sides
+      // for a ring in another, each to half of a 32nd of a lap
       const double best = apart > 0.0 ? apart : radius + outline / (2.0 * kPi);
       const double off = 2.0 * radius * std::sin(kPi / 64.0);
       EXPECT_GT(distances(player, 2).first, best - off) << blocks;
@@ -269,7 +269,7 @@ TEST(PathEmitter, AFocalPointBeginsWhereItKeepsAwayFromThoseThatRun) {
 }
 
 TEST(PathEmitter, EachFocalPointKeepsToItsNeighbourhood) {
-  // the same four rings in every order: nobody has to jump
+  // the same four rings in every order: no focal point has to jump
   std::array<LiftedPath, 4> rings;
   for (std::size_t i = 0; i < 4; ++i) {
     rings[i] = ring(kCentre + Vec3(0.05 * static_cast<double>(i), 0, 0), 0.1, 30, 1.0);
@@ -297,13 +297,13 @@ TEST(PathEmitter, NumberOfPathsChanges) {
   player.submit({b});
   last = player.play(40);
   EXPECT_EQ(last[0].intensity + last[1].intensity + last[2].intensity + last[3].intensity, 1.0F);
-  // a resting focal point stays where it is
+  // resting focal points do not move
   std::vector<FocusSample> before(last.begin(), last.end());
   last = player.play(5);
   int resting = 0;
   for (std::size_t f = 0; f < 4; ++f) resting += distance(before[f], last[f]) == 0.0 ? 1 : 0;
   EXPECT_EQ(resting, 3);
-  // five paths on four focal points: one is dropped, and counted
+  // five paths on four focal points: one path is dropped and counted
   player.submit({a, b, a, b, a});
   player.play(40);
   EXPECT_EQ(player.emitter.stats().dropped_paths, 1);
@@ -326,7 +326,7 @@ TEST(PathEmitter, LossFadesWithin50Milliseconds) {
   EXPECT_EQ(player.emitter.stats().stalls, 0);
   player.play(200);
   EXPECT_EQ(player.emitter.stats().stalls, 0);
-  // the next plan brings it back
+  // the next plan restores the output
   player.submit({ring(kCentre, 0.140, 50, 1.0)});
   const auto back = player.play(3);
   EXPECT_EQ(back[back.size() - 2].intensity + back[back.size() - 1].intensity, 1.0F);
@@ -352,7 +352,7 @@ TEST(PathEmitter, IsSilentWhileItIsMutedAndSoundsWithTheNextPlan) {
   player.play(6);
   for (int i = 0; i < 100; ++i) {
     if (i % 40 == 0) submit();
-    // for one reason as for two, and no stall is counted
+    // silent with one reason as with two; no stall is counted
     mute->set(MuteReason::NoHand, i < 50);
     ASSERT_TRUE(silent(player.play(1))) << i;
   }
@@ -401,7 +401,7 @@ TEST(PathEmitter, BadNumbersAreNeverEmitted) {
     for (const FocusSample& s : last) EXPECT_EQ(s.intensity, 0.0F);
   }
   EXPECT_TRUE(player.watch.holds());
-  // arc lengths that lie are measured anew
+  // wrong arc lengths are measured anew
   LiftedPath lying = good;
   lying.length = nan;
   for (double& s : lying.s) s = -1e300;
@@ -426,7 +426,7 @@ TEST(PathEmitter, PowerLimitScalesAllFociAlike) {
   EXPECT_TRUE(player.watch.holds());
 }
 
-/// Any plan: points, tiny loops, ordinary ones, long ones, anywhere within 20 cm.
+/// Returns any plan: points, tiny, ordinary and long loops, anywhere within 20 cm.
 LiftedPlan random_plan(Random& random, double near) {
   LiftedPlan plan;
   const int paths = random.below(kMaxPaths + 1);
@@ -483,8 +483,7 @@ TEST(PathEmitter, GuaranteesHoldForAnySequenceOfPlans) {
 }
 
 TEST(PathEmitter, AtMost5PercentOfSamplesAreInAFade) {
-  // 25 plans a second; from fields that drift slowly to ones in which every plan has nothing to do
-  // with the last
+  // 25 plans a second, from slowly drifting fields to plans that are unrelated to the previous one
   for (const double drift : {0.5e-3, 2e-3, 5e-3, 0.1}) {
     Random random(5);
     Player player(settings_for(4));

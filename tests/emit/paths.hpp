@@ -1,5 +1,5 @@
 #pragma once
-/// Paths and checks that the tests of emission share.
+/// Shared paths and checks of the emission's tests.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace prostm::test {
 
-/// A closed path through points.
+/// Returns a closed path through points.
 inline LiftedPath closed_path(std::span<const Vec3> points, double pressure, double speed = 7.0) {
   LiftedPath path;
   path.speed = speed;
@@ -24,7 +24,7 @@ inline LiftedPath closed_path(std::span<const Vec3> points, double pressure, dou
   return path;
 }
 
-/// A regular polygon of `sides` and the given length of outline [m].
+/// Returns a regular polygon with `sides` sides and the given length of outline [m].
 inline LiftedPath ring(const Vec3& centre, double length, int sides, double pressure,
                        double speed = 7.0) {
   std::vector<Vec3> points;
@@ -40,7 +40,7 @@ inline LiftedPath point(const Vec3& p, double pressure) {
   return closed_path(std::vector<Vec3>{p}, pressure);
 }
 
-/// What the guarantees of PathEmitter are checked on, sample by sample.
+/// Checks the guarantees of PathEmitter sample by sample.
 class Watch {
  public:
   Watch(int foci, double sample_rate, double power_limit)
@@ -53,9 +53,9 @@ class Watch {
       look_at(block.subspan(i, last_.size()));
   }
 
-  // largest found
-  double step = 0.0;  ///< [m] while above 1 %
-  double slew = 0.0;  ///< of intensity, per sample
+  // largest values found
+  double step = 0.0;  ///< [m] between samples above 1 %
+  double slew = 0.0;  ///< change of intensity per sample
   double power = 0.0;
   double highest = 0.0, lowest = 0.0;
   bool finite = true;
@@ -94,7 +94,7 @@ class Watch {
   bool started_ = false;
 };
 
-/// An emitter, pulled block by block as a device does.
+/// Pulls an emitter block by block, as a device does.
 class Player {
  public:
   static constexpr std::size_t kBlock = 40;

@@ -34,7 +34,7 @@ TargetFrame flat_frame(int cells = 60) {
   return frame;
 }
 
-/// A regular polygon whose pressure goes to `low` between every two samples of 1.
+/// Returns a regular polygon whose pressure drops to `low` between every two samples of 1.
 FocalPath spiky(const Vec2& centre, double length, double low) {
   constexpr int kPoints = 28;
   FocalPath path;
@@ -50,7 +50,8 @@ FocalPath spiky(const Vec2& centre, double length, double low) {
   return path;
 }
 
-/// Pressures of so many laps of the first path as PathEmitter gives them, from the second lap on.
+/// Returns the emitted pressures of the first path by PathEmitter for `laps` laps, from the second
+/// on.
 std::vector<double> emitted(const Plan& plan, const TargetFrame& frame, EmitSettings s,
                             std::size_t lap, std::size_t laps) {
   s.foci = static_cast<int>(plan.paths.size());
@@ -70,7 +71,8 @@ std::vector<double> emitted(const Plan& plan, const TargetFrame& frame, EmitSett
   return pressure;
 }
 
-/// The played pressure of the first path at sample k of a lap; the polygon's edges are equal.
+/// Returns the played pressure of the first path at sample k of a lap; the polygon's edges are
+/// equal.
 double played_at(const SegmentPressures& played, const Plan& plan, std::size_t k, std::size_t lap) {
   const std::size_t points = plan.paths[0].points.size();
   const double place =
@@ -90,14 +92,14 @@ TEST(PlayedPressures, AreThoseOfTheEmittersSecondLap) {
     const std::vector<double> theirs = emitted(plan, frame, s, 800, 1);
     double lowest = 1.0, largest_error = 0.0;
     for (std::size_t k = 0; k < theirs.size(); ++k) {
-      // the second lap's first sample is the one after the path's first point
+      // the second lap's first sample follows the path's first point
       const double ours = played_at(played, plan, k + 1, 800);
       largest_error = std::max(largest_error, std::abs(ours - theirs[k]));
       lowest = std::min(lowest, ours);
     }
-    // within a segment the pressures stand beside the samples, not on them
+    // within a segment the pressures lie between the samples, not on them
     EXPECT_LT(largest_error, 0.03 * full_scale);
-    // a segment is 29 samples long, an intensity takes 40 from full scale to nothing
+    // a segment has 29 samples; an intensity takes 40 from full scale to zero
     EXPECT_GT(played.at(1, 0.0) - plan.paths[0].pressure[1], 0.02);
   }
 }
@@ -130,7 +132,7 @@ TEST(PlayedPressures, AreWhatThePowerLimitLeaves) {
   for (std::size_t segment = 0; segment < 4 * 28; ++segment) {
     EXPECT_NEAR(played.at(segment, 0.5), 0.25, 1e-6);
   }
-  // laps of other lengths: the mean over laps
+  // with laps of different lengths, the mean over laps
   plan.paths.clear();
   plan.paths.push_back(spiky(Vec2(-0.05, 0.0), 0.140, 0.2));
   plan.paths.push_back(spiky(Vec2(0.05, 0.0), 0.099, 0.2));
@@ -160,13 +162,13 @@ TEST(PlayedPressures, MissOfTiltedSkinWhatIsBeyondFullScale) {
     const auto [low, high] = std::minmax_element(played.pressure.begin(), played.pressure.end());
     return std::pair(*low, *high);
   };
-  // room for the factor of about two: as planned
+  // room for the factor of about two: pressures as planned
   EXPECT_NEAR(range().first, 1.0, 0.02);
   EXPECT_NEAR(range().second, 1.0, 0.02);
   // no room: about half is left
   s.full_scale_pressure = 1.0;
   EXPECT_NEAR(range().second, 0.5, 0.2);
-  // not made up for: as planned
+  // not compensated: pressures as planned
   s.tilt_bound = 1.0;
   EXPECT_NEAR(range().first, 1.0, 1e-9);
 }
@@ -186,7 +188,7 @@ TEST(PlayedPressures, TakeOddPlans) {
   const TargetFrame frame = flat_frame();
   Plan plan;
   EXPECT_TRUE(played_pressures(plan, frame, settings(), kRate).end.empty());
-  FocalPath path;  // a point at rest, and one that hardly moves
+  FocalPath path;  // a point at rest, and a path that hardly moves
   for (int i = 0; i < 3; ++i) {
     path.points.push_back(Vec2(0.01, 0.02));
     path.pressure.push_back(0.5);

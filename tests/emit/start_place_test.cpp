@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kStep = 0.1998e-3;  // 8 m/s at 40 kHz, less a little [m]
+constexpr double kStep = 0.1998e-3;  // slightly less than 8 m/s at 40 kHz [m]
 const Vec3 kCentre(0.0, 0.0, 0.2);
 
 FocusMotion started(const LiftedPath& path, std::int64_t samples) {
@@ -41,7 +41,7 @@ TEST(StartPlace, FirstIsThePathsFirstPoint) {
 }
 
 TEST(StartPlace, ApartIsTheBestOfAllPlacesTried) {
-  // by playing two laps from each of 32 places
+  // plays two laps from each of 32 places
   Random random(2);
   for (int round = 0; round < 20; ++round) {
     std::array<FocusMotion, 3> others;
@@ -73,7 +73,7 @@ TEST(StartPlace, ApartIsTheBestOfAllPlacesTried) {
       PathPlace other;
       other.s = path.length * place / 32.0;
       other.p_D = point_at(path, other.s).p_D;
-      // 64 moments are not all samples
+      // the 64 checked moments do not cover all samples
       EXPECT_GT(cost(other), 0.7 * cost(chosen)) << round;
     }
   }

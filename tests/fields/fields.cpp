@@ -9,7 +9,7 @@
 namespace prostm::fields {
 namespace {
 
-/// Squared distance of x from the segment (a, b).
+/// Returns the squared distance of x from the segment (a, b).
 double segment_distance2(const Vec2& x, const Vec2& a, const Vec2& b) {
   const Vec2 ab = b - a;
   const double t = std::clamp((x - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
@@ -24,7 +24,7 @@ double gaussian(const Vec2& x, double sigma) {
   return std::exp(-0.5 * x.squaredNorm() / (sigma * sigma));
 }
 
-/// 1 below zero, 0 above, over about four widths.
+/// Falls from 1 below zero to 0 above, over about four widths.
 double step(double x, double width) {
   return 1.0 / (1.0 + std::exp(x / width));
 }
@@ -36,7 +36,7 @@ constexpr double kPalmRadius = 0.037;
 const std::array<Vec2, 5> kTips{Vec2(-0.064, 0.004), Vec2(-0.034, 0.066), Vec2(-0.009, 0.074),
                                 Vec2(0.016, 0.068), Vec2(0.040, 0.050)};
 
-/// An open hand: a round palm and five fingers.
+/// Returns true on an open hand: a round palm and five fingers.
 bool is_hand(const Vec2& x) {
   constexpr double kFingerRadius = 0.0085;
   if ((x - kPalm).norm() <= kPalmRadius) return true;
@@ -46,15 +46,15 @@ bool is_hand(const Vec2& x) {
   });
 }
 
-/// Where a pattern is and how it looks at one instant.
+/// Place and shape of a pattern at one instant.
 struct Look {
   Vec2 shift = Vec2::Zero();                       // [m]
-  double size = 1.0, phase = 0.0, strength = 1.0;  // phase turns the pattern [rad]
-  double travel = 0.0;                             // of the moving edge [m]
+  double size = 1.0, phase = 0.0, strength = 1.0;  // phase: rotation of the pattern [rad]
+  double travel = 0.0;                             // place of the moving edge [m]
 };
 
-/// A hand moves the pattern by up to 2 mm a frame, the edge sweeps by up to 2.7 mm; each pattern
-/// has its own phases.
+/// Returns the look of a frame. The hand moves the pattern by up to 2 mm a frame, the edge sweeps
+/// by up to 2.7 mm; each pattern has its own phases.
 Look look_at(Pattern pattern, int frame) {
   const double t = kFrameTime * frame, own = 2.4 * static_cast<double>(pattern);
   const auto wave = [&](double hertz, double start) {
@@ -81,7 +81,7 @@ double noise(const Vec2& x, const Look& look) {
   return std::max(sum, 0.0);
 }
 
-/// Pressure of a pattern at x of the hand, but for its strength.
+/// Returns the pressure of a pattern at a point of the hand, without its strength.
 double pressure_at(Pattern pattern, const Vec2& point, const Look& look) {
   const Vec2 x = point - look.shift;
   switch (pattern) {
@@ -113,7 +113,7 @@ double pressure_at(Pattern pattern, const Vec2& point, const Look& look) {
     case Pattern::Noise:
       return noise(x, look);
     case Pattern::Fingertips: {
-      // the pads of thumb and index finger slide a little, pressed in turn
+      // the pads of thumb and index finger slide a little, pressed alternately
       const Vec2 y = point - 0.3 * look.shift;
       const double share = 0.5 + 0.25 * std::sin(look.phase);
       return share * gaussian(y - kTips[0], 0.007 * look.size) +
@@ -130,7 +130,7 @@ double pressure_at(Pattern pattern, const Vec2& point, const Look& look) {
   return 0.0;
 }
 
-/// A raster of cells² over `width` about the origin, with `pressure` where `is_skin`.
+/// Returns a raster of cells² over `width` about the origin, with `pressure` where `is_skin`.
 TargetField raster(int cells, double width, const std::function<bool(const Vec2&)>& is_skin,
                    const std::function<double(const Vec2&)>& pressure) {
   TargetField field;
@@ -173,7 +173,7 @@ TargetField moved(Pattern pattern, int frame) {
   look.shift.setZero();
   look.strength = 1.0;
   look.travel = 0.0;
-  // from the circle's middle, so that the pattern stays clear of the raster's border
+  // relative to the circle's centre, so that the pattern stays clear of the raster's border
   const Vec2 shift = displacement(frame) - displacement(25) / 2.0;
   return raster(
       kMovedCells, kCell * kMovedCells, [](const Vec2&) { return true; },
@@ -191,7 +191,7 @@ Appearing appearing(int which, int frame) {
   };
   const auto tip = [](int i) { return Contact{kTips[static_cast<std::size_t>(i)], 0.007}; };
   const Contact palm{kPalm, 0.011};
-  // first the palm with each fingertip appearing, then a fingertip with the palm appearing
+  // pairs 0 to 4: the palm, and each fingertip appears; then a fingertip, and the palm appears
   const Contact steady = which < 5 ? palm : tip(which - 4);
   const Contact second = which < 5 ? tip(which) : palm;
   const Vec2 sway = 0.004 * unit(2.0 * kPi * kFrameTime * frame);  // 1 mm a frame

@@ -1,9 +1,9 @@
 #pragma once
 /// Generated target fields for benchmarks and tests: nine pressure patterns on a hand-shaped skin,
-/// each a sequence at 25 updates a second in which position, shape and strength change smoothly.
+/// each a sequence at 25 updates a second with smooth changes of position, shape and strength.
 ///
-/// All fields are functions of their arguments alone: the same pattern and frame give the same
-/// field. Rasters are centred on the origin; pressures are of order 1.
+/// All fields depend on their arguments alone: the same pattern and frame give the same field.
+/// Rasters are centred on the origin; pressures are of order 1.
 
 #include <array>
 #include <string>
@@ -15,8 +15,8 @@ namespace prostm::fields {
 
 inline constexpr int kCells = 80;           ///< rows and columns
 inline constexpr double kCell = 2e-3;       ///< edge of a cell [m]
-inline constexpr int kFrames = 100;         ///< of a sequence; later frames go on as smoothly
-inline constexpr double kFrameTime = 0.04;  ///< between two frames [s]
+inline constexpr int kFrames = 100;         ///< per sequence; later frames continue as smoothly
+inline constexpr double kFrameTime = 0.04;  ///< between frames [s]
 
 enum class Pattern {
   OnePlume,
@@ -33,35 +33,35 @@ inline constexpr std::array kPatterns{Pattern::OnePlume,   Pattern::FourPlumes, 
                                       Pattern::Ridge,      Pattern::Letter,     Pattern::Noise,
                                       Pattern::Fingertips, Pattern::Palm,       Pattern::Edge};
 
-/// As in tables: "one-plume", …, "two-fingertips", "palm", "moving-edge".
+/// Returns the name in tables: "one-plume", …, "two-fingertips", "palm", "moving-edge".
 std::string to_string(Pattern pattern);
 
-/// One frame of a pattern's sequence on the open hand, `cells`² cells on 160 mm × 160 mm. From
-/// frame to frame a pattern moves by at most 4 mm. @pre frame >= 0, cells >= 8.
+/// Makes one frame of a pattern's sequence on the open hand, `cells`² cells on 160 mm × 160 mm.
+/// From frame to frame a pattern moves by at most 4 mm. @pre frame >= 0, cells >= 8.
 TargetField make(Pattern pattern, int frame, int cells = kCells);
 
-/// Rows and columns of the fields of moved(): 200 mm, so that nothing leaves the raster.
+/// Rows and columns of the fields of moved(): 200 mm, so that the pattern stays within the raster.
 inline constexpr int kMovedCells = 100;
-/// Where the pattern of moved() is, from where it is in frame 0 [m]. It goes round a circle of
-/// 12 mm radius in 50 frames: each frame is kMovedStep from the one before.
+/// Displacement of the pattern of moved() from its place in frame 0 [m]. It circles with a radius
+/// of 12 mm in 50 frames: each frame is kMovedStep from the previous one.
 Vec2 displacement(int frame);
 inline constexpr double kMovedStep = 1.507e-3;  ///< [m]: 24 mm · sin(π/50)
-/// The pattern, cut off smoothly at 85 mm from its middle and moved rigidly by displacement(frame),
-/// on a raster of kMovedCells² cells that are all skin.
+/// Makes the pattern, cut off smoothly at 85 mm from its centre and moved rigidly by
+/// displacement(frame), on a raster of kMovedCells² cells that are all skin.
 TargetField moved(Pattern pattern, int frame);
 
-/// A steady contact and one that appears.
+/// A steady contact, and a second one that appears.
 struct Appearing {
-  TargetField field;           ///< both
-  std::vector<double> second;  ///< the pressure of the one that appears, alone; zeros before
+  TargetField field;           ///< both contacts
+  std::vector<double> second;  ///< pressure of the second contact alone; zeros before it appears
 };
 inline constexpr int kAppearings = 8;       ///< pairs of places on the hand
-inline constexpr int kAppearingFrame = 50;  ///< the first with the second contact, at full strength
-/// Frame of pair `which` of 0..kAppearings − 1: the contacts are a fingertip and the palm.
+inline constexpr int kAppearingFrame = 50;  ///< first with the second contact, at full strength
+/// Makes a frame of pair `which` of 0..kAppearings − 1: the contacts are a fingertip and the palm.
 Appearing appearing(int which, int frame);
 
-/// The field turned by 90°: cell (row, col) goes to (col, rows − 1 − row), x to (height of the
-/// raster − y, x).
+/// Returns the field turned by 90°: cell (row, col) goes to (col, rows − 1 − row), x to (height of
+/// the raster − y, x).
 TargetField rotated(const TargetField& field);
 
 }  // namespace prostm::fields

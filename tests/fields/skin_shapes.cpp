@@ -21,7 +21,7 @@ double palm_height(const Vec2& x) {
 double fist_height(const Vec2& x) {
   constexpr double kWidth = 2.0 * kKnuckleRadius;
   if (std::abs(x.x()) >= 0.5 * kKnuckles * kWidth) return 0.0;
-  // from the axis of the nearest of an even number of cylinders
+  // offset from the axis of the nearest of an even number of cylinders
   const double offset = x.x() - kWidth * (std::floor(x.x() / kWidth) + 0.5);
   return -std::sqrt(std::max(kKnuckleRadius * kKnuckleRadius - offset * offset, 0.0));
 }

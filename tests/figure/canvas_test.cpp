@@ -16,13 +16,13 @@ namespace {
 using test::input_error;
 using testing::HasSubstr;
 
-/// The page as luminances, row 0 at the bottom, two pixels a point.
+/// Returns the page's luminances, row 0 at the bottom, two pixels a point.
 TargetField pixels_of(Canvas& canvas, const std::string& path) {
   canvas.save();
   return read_field(path, {.cell_mm = 1.0});
 }
 
-/// CIE L*, 0 black to 100 white.
+/// Returns CIE L*, 0 black to 100 white.
 double lightness(const Colour& c) {
   const auto linear = [](double x) {
     return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);

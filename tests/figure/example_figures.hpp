@@ -10,7 +10,7 @@
 
 namespace prostm::test {
 
-/// A palm with four fingers and a thumb under two jets, 5 mm cells.
+/// Returns a palm with four fingers and a thumb under two jets, in 5 mm cells.
 inline TargetField hand_field() {
   TargetField field;
   field.resize(40, 28);
@@ -45,7 +45,7 @@ inline TargetField hand_field() {
   return field;
 }
 
-/// A plan, how it came about and what it renders, all from the planner.
+/// A plan with its trace and its rendered field, all from the planner.
 struct PlannedExample {
   TargetField target = hand_field();
   Plan plan;
@@ -74,7 +74,7 @@ struct PlannedExample {
   PlannedExample& operator=(const PlannedExample&) = delete;
 };
 
-/// A hand above a plume, with `patches` hands' fields.
+/// Returns a scene of a hand above a plume, with the fields of `patches` hands.
 inline SceneFigure scene_example(const PlannedExample& planned, int patches) {
   SceneFigure scene;
   scene.nx = scene.nz = 64;

@@ -46,7 +46,7 @@ TEST(DrawPlan, IsLowerForAPresetWithoutThePapersSteps) {
     return std::stod(svg.substr(svg.find("height=\"") + 8));
   };
   EXPECT_LT(height(three), 0.75 * height(six));
-  // under a plan with steps, each keeps its own height
+  // below a plan with steps, each figure keeps its own height
   draw_plan(best.figure, folder.file("both.svg"), &steps.figure);
   EXPECT_GT(height(read_file(folder.file("both.svg"))), height(six) + 0.3 * height(three));
 }
@@ -78,7 +78,7 @@ TEST(DrawPlan, ShowsEveryPartOfWhatItIsGiven) {
   EXPECT_FALSE(bytes_of(example.figure) == less_tour);
 }
 
-/// Pixels of a PNG along x (0) or y (1), from its header.
+/// Returns the pixels of a PNG along x (0) or y (1), from its header.
 int side_of(const std::string& png, std::size_t axis) {
   int side = 0;
   for (std::size_t i = 16 + 4 * axis; i < 20 + 4 * axis; ++i) {
@@ -103,7 +103,7 @@ TEST(DrawPlan, DrawsAnotherPlanUnderIt) {
   EXPECT_GT(2 * side_of(both, 1), 3 * side_of(alone, 1));
   EXPECT_LT(side_of(both, 1), 2 * side_of(alone, 1));  // the table is there once
 
-  // its title, metrics, paths, trace and reconstruction all show
+  // title, metrics, paths, trace and reconstruction are all visible
   Plan fewer = example.plan;
   fewer.paths.pop_back();
   PlanTrace shorter = example.trace;

@@ -101,7 +101,7 @@ TEST(DrawCharts, ShowsEveryLine) {
   EXPECT_TRUE(plain.find("</svg>") != std::string::npos);
   linear.series[0].labels = {"one", "two", "three"};
   EXPECT_FALSE(bytes_of({linear}) == plain);
-  // whole numbers along x, one value alone
+  // whole numbers along x, a single value
   changed = {"Paths", "paths", "µs", false, {{"ours", {1}, {5}}}};
   EXPECT_TRUE(bytes_of({changed}).find("</svg>") != std::string::npos);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Hand rasters made from closed-form shapes.
+/// Hand rasters of closed-form shapes.
 
 #include <cmath>
 #include <functional>
@@ -17,7 +17,7 @@ inline HandRaster empty_raster(const GridShape& grid) {
   return raster;
 }
 
-/// A shape by its signed distance [m], moving with one velocity [m/s]; the box is the whole grid.
+/// Rasters a shape by its signed distance [m], moving with one velocity [m/s]; the box is the grid.
 inline HandRaster shape_raster(const GridShape& grid,
                                const std::function<double(const Vec3&)>& distance,
                                const Vec3& velocity = Vec3::Zero()) {
@@ -47,7 +47,7 @@ inline double rounded_box(const Vec3& p, const Vec3& centre, const Vec3& half, d
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - round;
 }
 
-/// A flat hand: palm and four fingers above the array's centre, at height z.
+/// Returns the distance to a flat hand at height z above the array's centre: palm, four fingers.
 inline double flat_hand(const Vec3& p, double z) {
   double d = rounded_box(p, Vec3(0, -0.02, z), Vec3(0.045, 0.05, 0.013), 0.01);
   for (int finger = 0; finger < 4; ++finger) {

@@ -13,7 +13,7 @@ namespace {
 const GridShape kGrid{24, 20, 16, 0.01, Vec3(-0.12, -0.1, 0.02)};
 const Vec3 kDown = -Vec3::UnitZ();
 
-/// A pressure that is linear in place: what lies between cells is then known [Pa].
+/// A pressure linear in space, so that values between cells are known [Pa].
 double linear(const Vec3& p) {
   return 0.3 + 2.0 * p.x() - 1.5 * p.y() + 4.0 * p.z();
 }
@@ -67,7 +67,7 @@ TEST(FluidPressure, CellsInAHandDoNotCountAndFarFromAirThereIsNone) {
   }
   FluidPressure pressure({}, kGrid);
   pressure.take(given, free, 0.02);
-  // half way between the last layer of air and the first in the hand: the air's alone
+  // half way between the last layer of air and the first in the hand: the air's value alone
   const Vec3 between(0.0, 0.0, kGrid.p_DF.z() + 8.0 * kGrid.cell);
   const Vec3 last(0.0, 0.0, kGrid.p_DF.z() + 7.5 * kGrid.cell);
   EXPECT_NEAR(at(pressure, between - kGrid.cell * kDown), linear(last), 1e-6);

@@ -1,4 +1,4 @@
-/// The fluid as others use it.
+/// The fluid by its public interface.
 
 #include "prostm/fluid/fluid.hpp"
 
@@ -35,7 +35,7 @@ HandRaster hand_at(const GridShape& grid, double z, double speed) {
       grid, [&](const Vec3& p) { return test::flat_hand(p, z); }, Vec3(0, 0, speed));
 }
 
-/// A hand that bobs at 1 Hz; step t of a run.
+/// Returns a hand that bobs at 1 Hz, at step t of a run.
 HandRaster bobbing_hand(const GridShape& grid, int t) {
   const double phase = 2.0 * 3.14159265 * kStep * t;
   return hand_at(grid, 0.18 + 0.02 * std::sin(phase), 0.02 * 2.0 * 3.14159265 * std::cos(phase));
@@ -84,7 +84,7 @@ TEST(Fluid, RestStaysRest) {
   for (const float p : fluid.pressure()) EXPECT_EQ(p, 0.0F);
 }
 
-/// −(impulse on the sphere)/(ρ V U) after it starts at once with velocity U along z.
+/// Returns −(impulse on the sphere)/(ρ V U) after it starts suddenly with velocity U along z.
 double added_mass(int cells, double radius_in_cells, const Vec3& offset_in_cells) {
   WorkerPool pool(2);
   Fluid fluid(settings_of(cells, 20), still_air(), pool);
@@ -94,8 +94,8 @@ double added_mass(int cells, double radius_in_cells, const Vec3& offset_in_cells
   const HandRaster ball = test::shape_raster(
       g, [&](const Vec3& p) { return test::sphere(p, centre, radius); }, Vec3(0, 0, speed));
   fluid.step(kStep, ball);
-  // the solid's area in a cell is what its faces across z lack; the faces of closed cells, which
-  // hold no pressure, are shut
+  // the solid's area in a cell is the closed part of its faces across z; the faces of closed cells,
+  // which hold no pressure, are shut
   const auto pressure = [&](int i, int j, int k) {
     return static_cast<double>(fluid.pressure()[g.cell_index(i, j, k)]);
   };
@@ -250,7 +250,7 @@ TEST(Fluid, AHandThatLeftLeavesNoTrace) {
   }
   EXPECT_TRUE(std::equal(seen.pressure().begin(), seen.pressure().end(), fresh.pressure().begin()));
   EXPECT_EQ(std::count(seen.fluid_cells().begin(), seen.fluid_cells().end(), 0), 0);
-  // and it may come back
+  // and the hand may come back
   EXPECT_GT(seen.step(kStep, bobbing_hand(seen.grid(), 0)).solid_cells, 50);
 }
 
@@ -305,7 +305,7 @@ TEST(Fluid, AStepInPartsEqualsAStepToTheBit) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const HandRaster none = test::empty_raster(grid);
   for (int t = 0; t < 40; ++t) {
-    // hands anywhere, steps of any length, and now and then what resets
+    // hands anywhere, steps of any length, and sometimes input that causes a reset
     const double dt =
         t % 13 == 12 ? std::numeric_limits<double>::quiet_NaN() : 0.01 + 0.02 * share(random);
     HandRaster hand = hand_at(grid, 0.10 + 0.15 * share(random), share(random) - 0.5);
@@ -320,7 +320,7 @@ TEST(Fluid, AStepInPartsEqualsAStepToTheBit) {
     const auto free = copy(parts.fluid_cells());
     const FluidStats stats = parts.settle();
 
-    // what contact reads is there before the step has settled
+    // the results that contact reads are complete before the step has settled
     ASSERT_EQ(pressure, copy(whole.pressure())) << t;
     ASSERT_EQ(smoke, copy(whole.smoke())) << t;
     ASSERT_EQ(free, copy(whole.fluid_cells())) << t;
@@ -359,7 +359,7 @@ TEST(Fluid, NonFiniteInputResetsToRest) {
   EXPECT_TRUE(fluid.step(kStep, bad).reset);
   EXPECT_TRUE(fluid.step(std::numeric_limits<double>::quiet_NaN(), good).reset);
   EXPECT_TRUE(fluid.step(0.0, good).reset);
-  // finite, but no state of air: 10⁷ m/s
+  // finite, but impossible for air: 10⁷ m/s
   bad = hand_at(fluid.grid(), 0.18, 1e7);
   EXPECT_TRUE(fluid.step(kStep, bad).reset);
   EXPECT_TRUE(at_rest());
@@ -369,7 +369,7 @@ TEST(Fluid, NonFiniteInputResetsToRest) {
 TEST(Fluid, SweptCellsTakeTheHandsVelocity) {
   WorkerPool pool(1);
   Fluid fluid(settings_of(32), still_air(), pool);
-  // a palm that passed through a slab within one step and is outside the box now
+  // a palm that passed through a slab within one step and has left the box
   HandRaster raster = test::empty_raster(fluid.grid());
   const GridShape& g = fluid.grid();
   for (int a = 0; a < 3; ++a) {

@@ -1,4 +1,4 @@
-/// The pressure problem and its solvers, below the level of a fluid.
+/// The pressure problem and its solvers, without a fluid.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ void fill_random(const PaddedGrid& grid, Field& field, Random& random) {
   }
 }
 
-/// A right side has no entry where there is no equation.
+/// Clears the right side of cells without an equation.
 void clear_closed(const Obstacle& obstacle, PressureSolver& solver) {
   const PaddedGrid& grid = solver.fine().grid;
   for (Index c = grid.index(0, 0, 0); c < grid.index(0, 0, grid.n); ++c) {
@@ -59,7 +59,7 @@ double largest_difference(const PaddedGrid& grid, const Field& a, const Field& b
   return most;
 }
 
-/// The same operator, written for doubles from (F6) alone: open box over a floor, no hand.
+/// The same operator in doubles, from (F6) alone: an open box over a floor, without a hand.
 class OpenBox {
  public:
   explicit OpenBox(int n) : n_(n) {}
@@ -178,7 +178,7 @@ TEST(Pressure, JacobiReachesTheSamePressure) {
   cycles.v_cycles(20);
   sweeps.jacobi(4000, false);
   EXPECT_LT(largest_difference(cycles.fine().grid, cycles.pressure(), sweeps.pressure(), n), 2e-4);
-  // warm sweeps go on from there; cold ones forget
+  // warm sweeps continue from there; cold ones start anew
   sweeps.jacobi(1, true);
   EXPECT_LT(largest_difference(cycles.fine().grid, cycles.pressure(), sweeps.pressure(), n), 2e-4);
   sweeps.jacobi(1, false);
@@ -238,7 +238,7 @@ TEST(Advection, VectorKernelsAgreeWithPlainOnes) {
       const float* const from[3] = {u[0].data(), u[1].data(), u[2].data()};
       float* const to[3] = {moved[kind][0].data(), moved[kind][1].data(), moved[kind][2].data()};
       kernels[kind]->trace(grid, from, to, 0, n);
-      // the same displacement for both: where it is rough, a rounding error in it moves the sample
+      // the same displacement for both: in rough fields a rounding error in it moves the sample
       const float* const d[3] = {moved[0][0].data(), moved[0][1].data(), moved[0][2].data()};
       for (int axis = -1; axis < 3; ++axis) {
         const Placement place = axis < 0 ? centre_placement(n) : face_placement(n, axis);
@@ -326,7 +326,7 @@ TEST(Projection, LeavesNoDivergenceAndNoFlowThroughWalls) {
   for (int k = 0; k < n; ++k)
     subtract_gradient(level, obstacle, solver.pressure().data(), 1.0F, u, k);
 
-  // recomputed cell by cell in double, and compared with what divergence() reports
+  // recomputed cell by cell in double and compared with divergence()
   double largest = 0.0, reported = 0.0, squares = 0.0, sum = 0.0;
   for (int k = 0; k < n; ++k) {
     const DivergenceSum plane = divergence(level, obstacle, u, k, 1.0F, nullptr);
@@ -354,7 +354,7 @@ TEST(Projection, LeavesNoDivergenceAndNoFlowThroughWalls) {
   EXPECT_NEAR(reported, largest, 1e-6);
   EXPECT_NEAR(sum, squares, 1e-2 * squares);
 
-  // no fluid passes a shut face: it moves with the wall
+  // no fluid passes a shut face, which moves with the wall
   int shut = 0;
   for (int axis = 0; axis < 3; ++axis) {
     for (int k = 1; k < n; ++k) {
@@ -381,7 +381,7 @@ TEST(Obstacle, SealedPocketsAreClosed) {
   obstacle.update(test::shape_raster(unit_grid(n), shell), level);
   EXPECT_TRUE(obstacle.closed(level.grid.index(n / 2, n / 2, n / 2)));
   const int sealed = obstacle.closed_cells();
-  // a hole joins the inside with the outside again
+  // a hole reconnects the inside with the outside
   const auto holed = [&](const Vec3& p) {
     const double bore = std::hypot(p.x() - centre.x(), p.y() - centre.y()) - 0.08;
     return p.z() > centre.z() ? std::max(shell(p), -bore) : shell(p);
@@ -389,7 +389,7 @@ TEST(Obstacle, SealedPocketsAreClosed) {
   obstacle.update(test::shape_raster(unit_grid(n), holed), level);
   EXPECT_FALSE(obstacle.closed(level.grid.index(n / 2, n / 2, n / 2)));
   EXPECT_LT(obstacle.closed_cells(), sealed - 1000);
-  // and nothing is left when the hand is gone
+  // nothing remains after the hand is gone
   obstacle.update(test::empty_raster(unit_grid(n)), level);
   EXPECT_EQ(obstacle.closed_cells(), 0);
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-/// What the scenes do to a flat palm: the areas of the paper's Fig. 3, and four places for four
+/// The scenes' effect on a flat palm: the areas of the paper's Fig. 3, and four places for four
 /// jets.
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace prostm {
 namespace {
 
-const Vec3 kHalf(0.050, 0.095, 0.0125);  // of the plate [m]
+const Vec3 kHalf(0.050, 0.095, 0.0125);  // half the size of the plate [m]
 const Vec3 kCentre(0.0, 0.0, 0.2125);    // its underside is 0.20 m above the array
 constexpr double kRounding = 0.008;      // radius of its edges [m]
 
@@ -46,7 +46,7 @@ HandRaster plate_on(const GridShape& grid) {
   return raster;
 }
 
-/// The mean pressure over 3 s, a cell below the plate.
+/// The mean pressure over 3 s, one cell below the plate.
 struct PalmPressure {
   int nx = 0, ny = 0;
   double cell = 0.0;
@@ -98,7 +98,7 @@ PalmPressure pressure_on_palm(const std::string& scene, const FluidSettings& set
   return palm;
 }
 
-/// Connected regions above 80 % of the largest pressure.
+/// Counts connected regions above 80 % of the largest pressure.
 int places(const PalmPressure& palm) {
   std::vector<int> open;
   for (int c = 0; c < palm.nx * palm.ny; ++c) {
@@ -136,7 +136,7 @@ TEST(Scenes, FourPlumesAreFourPlaces) {
   EXPECT_NEAR(palm.area() * 1e4, 64.0, 15.0);
   EXPECT_EQ(places(palm), 4);
   EXPECT_NEAR(palm.largest() / scene_from_name("four-plumes").full_scale_pressure, 0.97, 0.05);
-  // in the middle between them there is less
+  // the pressure is lower in the middle between them
   EXPECT_LT(palm.at(palm.nx / 2, palm.ny / 2), 0.75 * palm.largest());
 }
 

@@ -10,12 +10,12 @@ namespace {
 
 constexpr int kCells = 16;
 
-/// 16³ cells of 10 mm, the device's axis in the middle.
+/// Returns 16³ cells of 10 mm, with the device's axis in the middle.
 GridShape box() {
   return {kCells, kCells, kCells, 0.01, Vec3(-0.08, -0.08, 0.0)};
 }
 
-/// A jet about the centre of cell (10, 4).
+/// Returns a jet about the centre of cell (10, 4).
 SmokeInflow one_jet(double vent_speed) {
   SmokeInflow scene;
   scene.jets.push_back({Vec2(0.025, -0.035), 0.03, 2.0});
@@ -59,9 +59,9 @@ TEST(Surroundings, CalmWhatFlowsInThroughAnOpenSide) {
   EXPECT_EQ(velocity[0][grid.index(1, 5, 7)], 1.0F);
   EXPECT_EQ(velocity[0][grid.index(kCells, 5, 7)], 1.0F);
   EXPECT_EQ(velocity[2][grid.index(8, 8, kCells)], 3.0F);
-  EXPECT_EQ(velocity[2][grid.index(0, 5, 0)], 3.0F);  // the floor's faces are the jets'
+  EXPECT_EQ(velocity[2][grid.index(0, 5, 0)], 3.0F);  // the jets set the floor's faces
 
-  // in through y = 0, where the cell forgets its other velocities, too
+  // in through y = 0, where the cell loses its other velocities too
   EXPECT_EQ(velocity[1][grid.index(5, 0, 7)], 0.0F);
   EXPECT_EQ(velocity[0][grid.index(5, 0, 7)], 0.0F);
   EXPECT_EQ(velocity[0][grid.index(6, 0, 7)], 0.0F);

@@ -25,7 +25,7 @@ CornerSphere random_corner(Random& random) {
           random_vector(random, 1.0)};
 }
 
-/// The corners of a body; every kind but the first is degenerate.
+/// Returns the corners of a body; every kind except the first is degenerate.
 std::array<CornerSphere, 3> corners_of_kind(int kind, Random& random) {
   CornerSphere a = random_corner(random), b = random_corner(random), c = random_corner(random);
   const Vec3 ab = b.centre - a.centre;
@@ -49,10 +49,10 @@ std::array<CornerSphere, 3> corners_of_kind(int kind, Random& random) {
       c.centre = a.centre + u * ab +
                  std::pow(10.0, random.uniform(-9.0, -2.0)) * random_vector(random, 0.05);
       break;
-    case 6:  // two corners are one
+    case 6:  // two equal corners
       c = b;
       break;
-    case 7:  // all are one
+    case 7:  // three equal corners
       b = c = a;
       break;
     case 8:  // the third is nearly hidden in the hull of the others
@@ -98,7 +98,7 @@ struct Errors {
   int velocities = 0;
 };
 
-/// Of the vector kernels for one body against its own functions.
+/// Compares the vector kernels for one body with its own functions.
 template <class Body>
 void compare(const Body& body, int cubes, Random& random, Errors& errors) {
   BodySet bodies;
@@ -115,7 +115,7 @@ void compare(const Body& body, int cubes, Random& random, Errors& errors) {
       const SurfacePoint expected = body.query(point(cube, c));
       const double found = static_cast<double>(nearest.distance[c]);
       errors.distance = std::max(errors.distance, std::abs(found - expected.distance));
-      // deep inside the nearest skin point jumps from side to side
+      // deep inside, the nearest skin point jumps from side to side
       if (expected.distance < -0.002) continue;
       const Vec3 velocity = Eigen::Vector3f(v[0][c], v[1][c], v[2][c]).cast<double>();
       errors.velocity = std::max(errors.velocity, (velocity - expected.velocity).norm());
@@ -124,7 +124,7 @@ void compare(const Body& body, int cubes, Random& random, Errors& errors) {
   }
 }
 
-/// Runs f with each set of vectors that this processor has, the widest last.
+/// Runs f with each set of vectors of this processor, the widest last.
 template <class F>
 void with_each_target(F&& f) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
@@ -144,11 +144,11 @@ TEST(BodyKernels, VectorsAgreeWithTheBodies) {
         compare(RoundCone(a, b), 5, random, cone);
         compare(SphereTriangle(a, b, c), 5, random, triangle);
       }
-      // a point in single precision is itself only good to some nanometres
+      // a point in single precision is accurate only to some nanometres
       EXPECT_LT(cone.distance, 1e-7) << "kind " << kind;
       EXPECT_LT(triangle.distance, 1e-7) << "kind " << kind;
       EXPECT_GT(triangle.velocities, 10000) << "kind " << kind;
-      // where the nearest point slides along a hidden corner, one skin point is as near as another
+      // along a hidden corner several skin points are equally near
       EXPECT_LT(cone.velocity, 1e-4) << "kind " << kind;
       EXPECT_LT(triangle.velocity, kind == 8 ? 0.1 : 5e-3) << "kind " << kind;
     }
@@ -191,7 +191,7 @@ TEST(BodyKernels, VectorsFindTheNearestOfManyAsThePlainOnesDo) {
       fast_body_kernels().nearest(bodies.set, list, cube, fast);
       for (unsigned c = 0; c < 8; ++c) {
         EXPECT_NEAR(fast.distance[c], plain.distance[c], 1e-7F);
-        // the bodies need not be the same where two are equally near
+        // if two bodies are equally near, either may be chosen
         const auto body = static_cast<std::size_t>(fast.body[c]);
         EXPECT_NEAR(bodies.distance(body, point(cube, c)), static_cast<double>(plain.distance[c]),
                     1e-7);
@@ -251,7 +251,7 @@ TEST(BodyKernels, PlainVelocitiesAreTheBodiesOwn) {
     const Vec3 p = point(cube, c);
     Vec3 expected =
         body.cone != nullptr ? body.cone->query(p).velocity : body.triangle->query(p).velocity;
-    if (c == 1) expected.setZero();  // not asked for
+    if (c == 1) expected.setZero();  // not requested
     for (std::size_t a = 0; a < 3; ++a)
       EXPECT_NEAR(static_cast<double>(v[a][c]), expected[static_cast<int>(a)], 1e-6);
   }

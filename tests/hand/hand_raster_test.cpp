@@ -83,8 +83,8 @@ TEST(HandRaster, VelocitiesAreThoseOfTheNearestSkin) {
         if (std::abs(point.distance) < kGrid.cell) {
           ++cells;
           error += (v - point.velocity).norm();
-          // beside a crease the neighbouring body's skin point may be taken, at most a few cells
-          // away
+          // beside a crease the neighbouring body's skin point may be taken, a few cells away at
+          // most
           if ((v - point.velocity).norm() > 1e-5) ++far_off;
           EXPECT_LT((v - point.velocity).norm(), 10.0 * 0.03);
         } else if (point.distance > 6.0 * kGrid.cell) {
@@ -99,8 +99,8 @@ TEST(HandRaster, VelocitiesAreThoseOfTheNearestSkin) {
 }
 
 TEST(HandRaster, NothingTunnelsAtOneMetrePerSecond) {
-  // a hand on edge crosses its own thickness between frames: every cell on its way is solid now, or
-  // marked
+  // a hand moving edgewise by more than its thickness between frames: every cell on its way must be
+  // solid now, or marked
   WorkerPool pool(2);
   const HandFrame start = scripted_frame(4.0);
   for (const Vec3& velocity : {Vec3(1, 0, 0), Vec3(0, 0.6, 0.8), Vec3(0, 0, -1)}) {

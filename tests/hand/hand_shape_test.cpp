@@ -80,7 +80,7 @@ TEST(HandShape, QueryAgreesWithDistanceAndItsGradient) {
     }
     if (point.distance < 0.0) continue;
     ++outside;
-    // between two bodies the distance has a crease, where a difference sees both
+    // between two bodies the distance has a crease, which spoils the difference quotient
     if ((gradient - point.normal).norm() > 1e-4) ++creases;
   }
   EXPECT_GT(outside, 2000);

@@ -18,8 +18,8 @@ CornerSphere random_corner(Random& random) {
   return {random_vector(random, 0.05), random.uniform(0.003, 0.03), random_vector(random, 1.0)};
 }
 
-/// min over q of |p − q| − r(q), by sampling the spheres that the body is the hull of: an upper
-/// bound that is at most the spacing of the samples too large.
+/// Computes min over q of |p − q| − r(q) by sampling the spheres whose hull is the body: an upper
+/// bound, too large by at most the spacing of the samples.
 double by_samples(const Vec3& p, const CornerSphere& a, const CornerSphere& b,
                   const CornerSphere& c, int n) {
   double nearest = 1e30;
@@ -99,7 +99,7 @@ TEST(Bodies, AgreeWithSamplesOfTheirSpheres) {
   Random random(2);
   constexpr int kSamples = 60;
   for (int n = 0; n < 300; ++n) {
-    // small triangles with large radii are the degenerate ones
+    // small triangles with large radii are degenerate
     CornerSphere a = random_corner(random), b = random_corner(random), c = random_corner(random);
     if (n % 3 == 1) b.centre = a.centre + 0.2 * (b.centre - a.centre);
     if (n % 3 == 2) c.centre = a.centre + random.uniform(0.0, 1.0) * (b.centre - a.centre);
@@ -130,7 +130,7 @@ void expect_gradient_is_normal(const Body& body, const Vec3& p) {
   const SurfacePoint point = body.query(p);
   EXPECT_NEAR(point.distance, body.distance(p), 1e-12);
   EXPECT_NEAR(point.normal.norm(), 1.0, 1e-12);
-  // the gradient is that of one side where p is within a difference of a crease
+  // within a difference of a crease the normal belongs to one side, and the difference sees both
   if ((gradient - point.normal).norm() > 1e-4) {
     EXPECT_LT(body.distance(p), 0.0) << "outside a convex body the distance has no crease";
   }

@@ -24,7 +24,7 @@ constexpr const char* kFigure =
  "refined_paths_mm": [[[0, 0], [24, 0], [20, 11], [0, 0]], [[0, 10], [60, 10], [0, 10]]],
  "recon_norm": [[0.5, null, 0.25], [0, 1, 2]]}})";
 
-/// Two rows of three cells of 10 mm, the first at the origin: 1 to 6.
+/// Returns two rows of three cells of 10 mm with pressures 1 to 6, the first at the origin.
 TargetField target() {
   TargetField field;
   field.resize(2, 3);
@@ -45,7 +45,7 @@ TEST(DigitisedFigure, ReadsClustersToursAndReconstruction) {
   EXPECT_THAT(figure.trace.cluster_mass, ElementsAre(0.1, 0.2, 0.3, 0.4));
   EXPECT_THAT(figure.reconstruction, ElementsAre(0.5, 0, 0.25, 0, 1, 2));
 
-  // each corner of a tour is the cluster next to it
+  // each corner of a tour selects the nearest cluster
   EXPECT_THAT(figure.trace.tour, ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(figure.trace.split, ElementsAre(ElementsAre(1, 0), ElementsAre(2, 3)));
 }

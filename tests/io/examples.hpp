@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of several file formats share: a small plan, comparisons, broken documents.
+/// Shared parts of the file formats' tests: a small plan, comparisons, broken documents.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace prostm::test {
 
-/// One path along the triangle with sides of 30, 40 and 50 mm, 2.5 everywhere.
+/// Returns a path along the triangle with sides of 30, 40 and 50 mm, with a pressure of 2.5.
 inline Plan triangle_plan() {
   FocalPath path;
   for (const Vec2& x : {Vec2(0, 0), Vec2(0.03, 0), Vec2(0.03, 0.04)}) {
@@ -29,7 +29,7 @@ inline Plan triangle_plan() {
   return plan;
 }
 
-/// Everything but the planes' poses, to the bit.
+/// Compares everything except the planes' poses, to the bit.
 inline void expect_same_raster(const TargetField& a, const TargetField& b) {
   EXPECT_EQ(a.rows, b.rows);
   EXPECT_EQ(a.cols, b.cols);
@@ -41,7 +41,7 @@ inline void expect_same_raster(const TargetField& a, const TargetField& b) {
   EXPECT_EQ(a.weight, b.weight);
 }
 
-/// `document` with its first `old_text` replaced.
+/// Returns `document` with its first `old_text` replaced.
 inline std::string replaced(std::string document, const std::string& old_text,
                             const std::string& new_text) {
   const std::size_t at = document.find(old_text);
@@ -52,7 +52,7 @@ inline std::string replaced(std::string document, const std::string& old_text,
   return document.replace(at, old_text.size(), new_text);
 }
 
-/// A piece of a document, what breaks it, and a part of the sentence that must say so.
+/// A piece of a document, its faulty replacement, and a part of the expected message.
 struct Wrong {
   const char* old_text;
   const char* new_text;
@@ -60,7 +60,7 @@ struct Wrong {
 };
 
 /// Breaks `document` in each way. @param read reads a document under the name `name`, with which
-/// each sentence must start.
+/// each message must start.
 inline void expect_refused(const std::string& document, const std::string& name,
                            std::initializer_list<Wrong> wrongs,
                            const std::function<void(const std::string&)>& read) {

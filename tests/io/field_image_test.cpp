@@ -29,7 +29,7 @@ std::string dictionary(const std::string& descr, const std::string& shape, bool 
          ", 'shape': " + shape + ", }";
 }
 
-/// Numbers as bytes, high byte first when asked.
+/// Returns numbers as bytes, high byte first if `big_endian`.
 template <class T>
 std::string bytes_of(std::initializer_list<T> values, bool big_endian = false) {
   std::string bytes;
@@ -164,7 +164,7 @@ TEST(FieldPng, SaysWhatIsWrong) {
   EXPECT_THAT(sentence("GIF89a and so on, not a PNG"), HasSubstr("is not a PNG picture"));
   EXPECT_THAT(sentence(good.substr(0, 20)), HasSubstr("is not a PNG picture"));
   EXPECT_THAT(sentence(good.substr(0, good.size() / 2)), HasSubstr("cut off or broken"));
-  std::string palette = good.substr(16, 13);  // colours by number, but no list of them
+  std::string palette = good.substr(16, 13);  // colours by number, but without a palette
   palette[9] = 3;
   EXPECT_THAT(sentence(good.substr(0, 8) + test::png_chunk("IHDR", palette) + good.substr(33)),
               AllOf(HasSubstr("cut off or broken"), Not(HasSubstr("memory"))));

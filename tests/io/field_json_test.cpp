@@ -31,7 +31,7 @@ TEST(FieldJson, ReadsEveryMember) {
   EXPECT_THAT(field.pressure, testing::ElementsAre(0, 1.5, 0, 2e-3, 4, 0.25));
   EXPECT_THAT(field.skin, testing::ElementsAre(1, 1, 0, 1, 1, 1));
   EXPECT_EQ(field.height[4], 0.0045);
-  EXPECT_TRUE(field.height[2] == 0.002 || field.height[2] == -0.006);  // of a neighbour with skin
+  EXPECT_TRUE(field.height[2] == 0.002 || field.height[2] == -0.006);  // from a neighbour with skin
   EXPECT_THAT(field.weight, testing::ElementsAre(1, 7, 0, 0, 1.5, 2));
   EXPECT_TRUE(
       (field.X_DP * Vec3(0.01, 0.02, 0.03)).isApprox(Vec3(0.001 - 0.02, 0.002 + 0.01, 0.21)));

@@ -17,7 +17,7 @@ json neutral_header() {
   return {{"format", "hand-frames"}, {"version", 1}, {"units", "m"}, {"source", "made by a test"}};
 }
 
-/// A hand whose fingers are straight bones of 30 mm.
+/// Returns a hand whose fingers are straight bones of 30 mm.
 json neutral_hand(int id, double y) {
   json p = json::array(), q = json::array(), r = json::array();
   for (int j = 0; j < kJointCount; ++j) {
@@ -131,8 +131,7 @@ TEST(HandsJsonl, SaysWhatIsWrongAndWhere) {
 TEST(HandsJsonl, ANumberThatNoDoubleHoldsIsAnError) {
   std::string text = jsonl({neutral_header(), neutral_frame(0.0)});
   text.replace(text.find("0.009"), 5, "1e999");
-  // the standard library's conversion itself overflows, which the traps of this program would take
-  // for a fault
+  // the standard library's conversion overflows, which this program's traps would report as a fault
   fedisableexcept(FE_OVERFLOW);
   expect_jsonl_error(text, "out of range");
   feclearexcept(FE_ALL_EXCEPT);
@@ -145,8 +144,8 @@ TEST(HandsJsonl, DeepNestingIsAnError) {
   expect_error([&] { hands_from_leap_json(text, "x"); }, "nested deeper");
 }
 
-/// A Leap frame with a right hand, palm down, as old recordings have it: without carps, bases and
-/// wrist.
+/// Returns a Leap frame with a right hand, palm down, in the form of old recordings: without carps,
+/// bases and wrist.
 json leap_frame(std::int64_t microseconds) {
   json pointables = json::array();
   for (int f = 0; f < 5; ++f) {
@@ -218,7 +217,7 @@ TEST(LeapJson, KnowsTheSideWithoutATypeAndMirrorsLeftHands) {
 }
 
 TEST(LeapJson, PackedFramesAreTheSameFrames) {
-  // formatVersion 2 of LeapJS Playback: frames[0] names what the places of the others hold
+  // formatVersion 2 of LeapJS Playback: frames[0] names the members of the arrays in the others
   const json plain = leap_recording();
   const json fingers = {"id",          "handId",      "type",        "mcpPosition",
                         "pipPosition", "dipPosition", "tipPosition", "width"};
@@ -326,7 +325,7 @@ TEST(HandFile, LeapRecordingsAgreeWithTheirNeutralConversions) {
     EXPECT_LT(d.position, 1e-5);
     EXPECT_LT(d.radius, 1e-4);
     EXPECT_LT(d.time, 1e-9);
-    // the conversion of the other one carried its orientations by a cruder rule
+    // the other file's conversion transferred its orientations by a cruder rule
     if (std::string(name) == "finger-tap-54fps") {
       EXPECT_LT(std::max(d.angle, d.thumb_angle), 0.01);
     }
@@ -353,7 +352,7 @@ TEST(HandFile, StrippedBonesOfAFullRecordingAreRebuilt) {
 }
 
 TEST(HandFile, BonesThatWereRecordedElsewhereAreRebuiltFromTheTemplate) {
-  // this recording has its metacarpals, and is not the one that the template was measured on
+  // this recording has metacarpals, and the template was not measured on it
   PROSTM_NEEDS_SHARED("data/hands/pinch-57fps.hands.jsonl");
   const HandRecording recorded =
       read_hand_recording(test::shared_file("data/hands/pinch-57fps.hands.jsonl"));
@@ -361,7 +360,7 @@ TEST(HandFile, BonesThatWereRecordedElsewhereAreRebuiltFromTheTemplate) {
   const auto mm = [](const Vec3& p) { return json{1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()}; };
   for (const HandFrame& frame : recorded.frames) {
     const Hand& hand = frame.hands.at(0);
-    // its file lost the palm's position, which follows from the knuckle of the middle finger
+    // the file lacks the palm's position, which follows from the knuckle of the middle finger
     const Eigen::Matrix3d R_TP = hand.orientation[kWrist].toRotationMatrix();
     const double span = (hand.position[kLittleProximal] - hand.position[kIndexProximal]).norm();
     const Vec3 palm =

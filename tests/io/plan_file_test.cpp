@@ -26,7 +26,7 @@ Plan random_plan(Random& random, int paths) {
     }
     path.length = closed_length(path);
     path.speed = random.uniform(1.0, 7.0);
-    path.period = random.uniform(1.0, 1.5) * path.length / path.speed;  // on uneven skin
+    path.period = random.uniform(1.0, 1.5) * path.length / path.speed;  // longer on uneven skin
     plan.paths.push_back(path);
   }
   return plan;

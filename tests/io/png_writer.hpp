@@ -1,6 +1,6 @@
 #pragma once
 /// The smallest PNG writer: stored (uncompressed) deflate blocks, any colour type. Independent of
-/// what reads it.
+/// the reader.
 
 #include <array>
 #include <cstdint>
@@ -39,7 +39,7 @@ inline std::string png(int width, int height, int colour, int depth, const std::
     raw += '\0' + samples.substr(static_cast<std::size_t>(y) * line, line);
   }
 
-  // one stored block, then the checksum of what is in it
+  // one stored block, then the checksum of its contents
   std::string stream("\x78\x01\x01", 3);
   const auto size = static_cast<std::uint32_t>(raw.size());
   for (const std::uint32_t n : {size, ~size}) {

@@ -16,7 +16,7 @@ constexpr const char* kPose = R"({"format": "prostm-pose/1", "position_mm": [0, 
 TEST(PoseFile, ReadsAPoseAndWritesItBack) {
   const Calibration read = pose_from_json(kPose, "p.json");
   EXPECT_TRUE(read.X_DT.translation().isApprox(Vec3(0, 0.121, -0.0035)));
-  // a quarter turn about x, as the tracker lies on the desk
+  // a quarter turn about x, for a tracker that lies on the desk
   EXPECT_LT((read.X_DT.linear() - default_tracker_pose().linear()).norm(), 1e-7);
   EXPECT_EQ(read.rms, 0.0);
 

@@ -87,7 +87,7 @@ TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
   }
   EXPECT_FALSE(has_table(record(folder.file("none.h5"), frames)));
 
-  // from a patch in the middle on
+  // weights that start at a patch in the middle
   TargetFrame late = frames.back();
   late.patches.assign(1, frames[0].patches.empty() ? TargetField() : frames[0].patches[0]);
   late.patches[0].resize(2, 2);
@@ -102,7 +102,7 @@ TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
     expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
   }
 
-  // wrong ones are refused where they are
+  // wrong weights are refused in their own frame
   frames[20].patches[0].weight = {0.0, -3.0, 0.0, 1.0};
   const RecordingReader negative(record(folder.file("negative.h5"), frames));
   EXPECT_NO_THROW(static_cast<void>(negative.frame(19)));
@@ -180,7 +180,7 @@ TEST(Recording, SaysWhatIsNoRecording) {
   write_file(folder.file("text.h5"), "hello");
   EXPECT_THAT(sentence(folder.file("text.h5")), HasSubstr("is not an HDF5 file"));
 
-  // every way to cut one off
+  // cut off at many lengths
   const std::string bytes = read_file(record(folder.file("r.h5"), random_frames(20)));
   for (std::size_t size = 1; size < bytes.size(); size += bytes.size() / 50) {
     write_file(folder.file("cut.h5"), std::string_view(bytes).substr(0, size));
@@ -216,7 +216,7 @@ TEST(Recording, SaysThatTheDiskIsFullWheneverThatHappens) {
     EXPECT_THAT(sentence, HasSubstr("cannot be written"));
     EXPECT_FALSE(std::filesystem::exists(path));
 
-    // what is left opens, or nothing is left
+    // the remaining file can be opened, or does not exist
     if (std::filesystem::exists(path + ".part.h5")) {
       EXPECT_THAT(sentence, HasSubstr(".part.h5"));
       const RecordingReader reader(path + ".part.h5");
@@ -229,7 +229,7 @@ TEST(Recording, SaysThatTheDiskIsFullWheneverThatHappens) {
       EXPECT_EQ(kept, 0);
     }
   }
-  EXPECT_GT(kept, 200);  // of 300: whatever was flushed before the disk was full
+  EXPECT_GT(kept, 200);  // out of 300: those flushed before the disk was full
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(Rendering, ControlsMakeEqualWhatTheySay) {
     EXPECT_DOUBLE_EQ(factor_for(Equal::Percept, *r, best) * r->felt.largest, best.felt.largest);
     EXPECT_DOUBLE_EQ(factor_for(Equal::Percept, best, best), 1.0);
   }
-  // nothing is felt off the skin
+  // no percept off the skin
   for (std::size_t c = 0; c < field.size(); ++c) {
     if (field.skin[c] == 0) {
       EXPECT_EQ(best.felt.percept[c], 0.0);

@@ -1,4 +1,4 @@
-/// What the planner's bench counts and measures, on plans whose answer is known.
+/// Counts and measurements of the planner's lab, on plans with known answers.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kSigma = 8.6e-3, kMaxLength = 0.14;
 
-/// A regular polygon, begun at corner `first`, the other way round if `reversed`.
+/// Returns a regular polygon, begun at corner `first`, in the other direction if `reversed`.
 FocalPath polygon(const Vec2& centre, double length, int first = 0, bool reversed = false) {
   constexpr int kCorners = 20;
   const double radius = length / (2.0 * kCorners * std::sin(kPi / kCorners));
@@ -63,7 +63,7 @@ TEST(Am, TheErrorFallsWithTheNumberOfFociAndForFewWithTheFallOff) {
     EXPECT_LT(rmse[2][sigma], rmse[1][sigma]);
   }
   for (const int foci : {0, 1}) EXPECT_LT(rmse[foci][1], rmse[foci][0]);
-  EXPECT_EQ(rows[0].baseline_p50, 0.335);  // of [B-1], no emitter
+  EXPECT_EQ(rows[0].baseline_p50, 0.335);  // [B-1], no emitter
 }
 
 TEST(Am, IsTimedBesideThePapersRate) {
@@ -79,7 +79,7 @@ TEST(Am, IsTimedBesideThePapersRate) {
 TEST(Motion, ARigidlyMovedPlanMovesByItsDisplacement) {
   const Plan before = plan_of({polygon(Vec2(0.0, 0.0), 0.14), polygon(Vec2(0.06, 0.0), 0.10)});
   EXPECT_EQ(motion(before, before), 0.0);
-  // the paths in another order, begun elsewhere, one the other way round
+  // the paths in another order, begun elsewhere, one in the other direction
   const Vec2 d(1e-3, -2e-3);
   const Plan after = plan_of({polygon(Vec2(0.06, 0.0) + d, 0.10, 4, true), polygon(d, 0.14, 12)});
   EXPECT_NEAR(motion(before, after), d.norm(), 1e-9);
@@ -87,7 +87,7 @@ TEST(Motion, ARigidlyMovedPlanMovesByItsDisplacement) {
 
 TEST(Motion, APathWithoutAPartnerHasMovedFromTheNearestOne) {
   const FocalPath inner = polygon(Vec2::Zero(), 0.10), outer = polygon(Vec2::Zero(), 0.14);
-  // the circles' radii differ by 40 mm / 2π; the outer one stays
+  // the circles' radii differ by 40 mm / 2π; the outer circle stays
   const double gap = 0.04 / (2.0 * kPi);
   EXPECT_NEAR(motion(plan_of({outer}), plan_of({inner, outer})), 0.5 * gap, 0.02 * gap);
   EXPECT_NEAR(motion(plan_of({inner, outer}), plan_of({outer})), 0.5 * gap, 0.02 * gap);
@@ -104,26 +104,26 @@ TEST(Violations, EachKindIsCounted) {
   EXPECT_EQ(violations_of(plan_of({polygon(Vec2::Zero(), 0.1404)})).long_paths, 0);
   EXPECT_EQ(violations_of(plan_of({polygon(Vec2::Zero(), 0.1406)})).long_paths, 1);
 
-  // two circles that overlap cross twice
+  // two overlapping circles cross twice
   const Violations crossed =
       violations_of(plan_of({polygon(Vec2::Zero(), 0.14), polygon(Vec2(0.0301, 0.0), 0.14)}));
   EXPECT_EQ(crossed.crossings, 2);
   EXPECT_EQ(crossed.near_plans, 1);
 
-  // an eight of two of its points
+  // two swapped points make a figure of eight
   FocalPath eight = polygon(Vec2::Zero(), 0.14);
   std::swap(eight.points[4], eight.points[5]);
   eight.length = closed_length(eight);
   EXPECT_GT(violations_of(plan_of({eight})).crossings, 0);
 
-  // concentric circles 0.85 σ apart: every sample has its neighbour on the other
+  // concentric circles 0.85 σ apart: every sample has a neighbour on the other circle
   const double apart = 0.85 * kSigma;
   const Violations near = violations_of(
       plan_of({polygon(Vec2::Zero(), 0.14), polygon(Vec2::Zero(), 0.14 - 2.0 * kPi * apart)}));
   EXPECT_EQ(near.near_plans, 1);
   EXPECT_GE(near.near_pairs, 20);
 
-  // neighbours along a path are near and may be, opposite sides of a narrow loop may not
+  // neighbours along a path may be near, opposite sides of a narrow loop may not
   EXPECT_EQ(violations_of(plan_of({polygon(Vec2::Zero(), 0.05)})).near_pairs, 0);
   FocalPath narrow = polygon(Vec2::Zero(), 0.14);
   for (Vec2& x : narrow.points) x.y() *= 0.1;
@@ -151,8 +151,8 @@ TEST(LeastDistances, AreThoseOfTheNearestTwoThatSound) {
 }
 
 TEST(Simultaneous, FocalPointsAreFollowedInTheirOwnPeriods) {
-  // two circles of one length begun at the same angle keep the distance of their centres, those of
-  // the other sense meet where they are nearest
+  // two circles of one length begun at the same angle keep the distance of their centres; in
+  // opposite directions the points meet where the circles are nearest
   const auto follow_two = [](FocalPath a, FocalPath b, double b_period) {
     a.period = 0.02;
     b.period = b_period;
@@ -169,10 +169,10 @@ TEST(Simultaneous, FocalPointsAreFollowedInTheirOwnPeriods) {
   const LeastDistances opposite = follow_two(a, begun_at(b, 10, true), 0.02);
   EXPECT_NEAR(opposite.least(), 0.06 - 2.0 * radius, 1e-4);
   EXPECT_NEAR(follow_two(a, begun_at(b, 10, false), 0.02).least(), 0.06 - 2.0 * radius, 1e-4);
-  // in other periods the phases drift through all
+  // in different periods the phases drift through all values
   EXPECT_NEAR(follow_two(a, b, 0.019).least(), 0.06 - 2.0 * radius, 2e-3);
 
-  // silent ones do not count
+  // silent focal points do not count
   FocalPath silent = b;
   silent.pressure.assign(silent.pressure.size(), 0.4);
   EXPECT_EQ(follow_two(a, silent, 0.02).instants(), 0u);
@@ -246,12 +246,12 @@ FocalPath through(const std::vector<Vec2>& points) {
 }
 
 TEST(Bending, IsThatOfShapesWhoseTurnsAreKnown) {
-  // convex: 2π in all, in equal parts
+  // convex: 2π in total, in equal parts
   const Bending round = bending(polygon(Vec2::Zero(), 0.14));
   EXPECT_NEAR(round.sharpest, 2.0 * kPi / 20, 1e-9);
   EXPECT_NEAR(round.rms, 2.0 * kPi / 20, 1e-9);
   EXPECT_NEAR(round.excess, 0.0, 1e-9);
-  // an L has five corners one way and one the other, of 90°, either way round
+  // in both directions an L has five corners to one side and one to the other, of 90°
   std::vector<Vec2> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   for (int way = 0; way < 2; ++way) {
     const Bending angular = bending(through(corners));
@@ -260,7 +260,7 @@ TEST(Bending, IsThatOfShapesWhoseTurnsAreKnown) {
     EXPECT_NEAR(angular.excess, kPi, 1e-9);
     std::reverse(corners.begin(), corners.end());
   }
-  // there and back, with a point in the middle that does not turn
+  // there and back, with a point in the middle without a turn
   const Bending flat = bending(through({{0, 0}, {1, 0}, {2, 0}, {1, 1e-9}}));
   EXPECT_NEAR(flat.sharpest, kPi, 1e-6);
   EXPECT_NEAR(flat.rms, std::sqrt(0.5) * kPi, 1e-6);
@@ -273,7 +273,7 @@ TEST(Power, OneFocalPointGetsWhatItAsksFor) {
 }
 
 TEST(Power, SeveralShareTheArray) {
-  // apart from each other, where the drives for one hardly sound at another
+  // far from each other, where the drives for one focal point hardly sound at another
   for (int foci = 2; foci <= 8; ++foci) {
     std::vector<FocusSample> all;
     for (int f = 0; f < foci; ++f) {
@@ -286,7 +286,7 @@ TEST(Power, SeveralShareTheArray) {
       for (const double p : reached(usx_array(), method, all)) sum += p / foci;
       return sum;
     };
-    // at most 1/P of the power each; superposed about 1/P² of the pressure
+    // at most 1/P of the power each; superposed, about 1/P² of the pressure
     const double full = mean(FocusMethod::Weighted);
     EXPECT_LT(full, 1.1 / foci) << foci;
     EXPECT_GT(full, 0.6 / foci) << foci;

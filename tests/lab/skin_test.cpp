@@ -38,7 +38,7 @@ TEST(SkinBench, APeakLiesBetweenTheValues) {
   EXPECT_EQ(peak_place(x, y), 8.0);
 }
 
-/// Largest radiation pressure of a sample, and where it is.
+/// Largest radiation pressure of a sample, and its place.
 struct Strongest {
   double pressure;
   Vec2 at;
@@ -62,14 +62,14 @@ TEST(SkinBench, TheFieldFollowsTheLap) {
       const Vec2 asked = lap(static_cast<double>(sample) / StmField::kSamples);
       const Strongest at_once = strongest(ideal, palm, sample);
       EXPECT_LT((at_once.at - asked).norm(), 2.2e-3);
-      // all in phase there: the sum of (A1)'s amplitudes
+      // all in phase there: the sum of the amplitudes by (A1)
       double sum = 0.0;
       for (std::size_t n = 0; n < array.position.size(); ++n) {
         sum += std::abs(propagate(array, Medium(), n, Vec3(asked.x(), asked.y(), palm.height)));
       }
       const double expected = radiation_pressure(sum, Medium());
       EXPECT_LT(at_once.pressure, expected * 1.001);
-      EXPECT_GT(at_once.pressure, expected * 0.9);  // the nearest cell is up to 1.4 mm off
+      EXPECT_GT(at_once.pressure, expected * 0.9);  // the nearest cell is up to 1.4 mm away
       const Strongest lagging = strongest(real, palm, sample);
       EXPECT_LT((lagging.at - asked).norm(), 2.2e-3 + speed * 0.228e-3);
       EXPECT_LT(lagging.pressure, at_once.pressure * 1.03);

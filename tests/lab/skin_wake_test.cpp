@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// Nearly one speed, 5 m/s, at the frequencies that a moving focus of 4 mm has.
+/// Returns a skin with nearly one speed, 5 m/s, at the frequencies of a moving focus of 4 mm.
 SkinModel nearly_plain() {
   SkinSettings settings;
   settings.slow_speed = 4.56;
@@ -22,7 +22,7 @@ SkinModel nearly_plain() {
 const SkinPatch kPatch{121, 121, 2e-3};
 constexpr int kAhead = 20;  // columns before the focus
 
-/// The wake of a focus of 1 N with σ = 4 mm, kAhead columns from the patch's right edge.
+/// Computes the wake of a focus of 1 N with σ = 4 mm, kAhead columns from the patch's right edge.
 std::vector<double> wake(const SkinModel& skin, double speed) {
   std::vector<double> pressure;
   const double sigma = 4e-3;
@@ -36,7 +36,7 @@ std::vector<double> wake(const SkinModel& skin, double speed) {
   return wake_velocity(skin, kPatch, pressure, speed);
 }
 
-/// Cell and value of the fastest skin of a column, in the upper half.
+/// Height and value of the fastest skin of a column, in the upper half.
 struct Crest {
   double height, value;  ///< [m] from the line of motion, [m/s]
 };
@@ -49,8 +49,8 @@ Crest crest(const std::vector<double>& velocity, int col) {
   return found;
 }
 
-/// Angle between the wake's crest and the line of motion [°], by a straight line through the crests
-/// 30 to 110 mm behind the focus.
+/// Returns the angle between the wake's crest and the line of motion [°], by a straight line
+/// through the crests 30 to 110 mm behind the focus.
 double wake_angle(const std::vector<double>& velocity) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (int behind = 15; behind <= 55; ++behind) {
@@ -73,7 +73,7 @@ TEST(SkinWake, HasMachsAngle) {
   }
 }
 
-// The real skin's wake: its speed is that of the frequencies which the focus excites there.
+// The real skin's wake: its speed is that at the frequencies that the focus excites there.
 TEST(SkinWake, HasMachsAngleAtThePlateau) {
   const SkinModel skin{SkinSettings{}};
   for (const double speed : {10.0, 12.0, 15.0}) {

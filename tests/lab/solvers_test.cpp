@@ -12,7 +12,7 @@
 namespace prostm {
 namespace {
 
-// A baseline that computes something else would be no baseline.
+// The baseline must compute the same drives to be comparable.
 TEST(TextbookGsPat, FindsTheDrivesOfTheReference) {
   Random random(1);
   for (const int foci : {1, 3, 8}) {

@@ -1,4 +1,4 @@
-"""The library as others get it: installed into a folder of its own, and programs built against that alone."""
+"""The library as its users get it: installed into its own folder, with programs built against that alone."""
 
 import os
 import re
@@ -14,12 +14,12 @@ CMAKE = os.environ.get("CMAKE", "cmake")
 COMPILER = os.environ.get("CXX", "c++")
 EXAMPLES = ROOT / "examples"
 os.environ.setdefault("CMAKE_GENERATOR", "Ninja")
-# compiled for what is checked, not for speed
+# compiled quickly: only the results matter, not the speed
 QUICK = ["-std=c++20", "-O0", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
 
 
 def run(*command, status=0, **options):
-    """stdout of a command, or stdout and stderr where it is to fail; stdout and stderr when it ends otherwise."""
+    """Runs a command that must end with `status`; returns its stdout, with stderr if it is to fail."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
     assert done.returncode == status, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout if status == 0 else done.stdout + done.stderr
@@ -27,7 +27,7 @@ def run(*command, status=0, **options):
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory):
-    """What `cmake --install` makes, moved after that: nothing in it may know where it was put."""
+    """Returns the folder made by `cmake --install`, moved afterwards: nothing in it may know its first place."""
     folder = tmp_path_factory.mktemp("installed")
     run(CMAKE, "--install", BUILD, "--prefix", folder / "first")
     (folder / "first").rename(folder / "moved")
@@ -36,7 +36,7 @@ def prefix(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def pkg_config(prefix):
-    """pkg-config's answer for the installed library."""
+    """Returns a function that asks pkg-config about the installed library."""
     folder = next(prefix.rglob("prostm.pc")).parent
     return lambda *what: run("pkg-config", *what, "prostm", env={**os.environ, "PKG_CONFIG_PATH": str(folder)}).split()
 
@@ -48,7 +48,7 @@ def configure(prefix, source, build, *options, status=0):
 
 @pytest.fixture(scope="module")
 def examples(prefix, tmp_path_factory):
-    """Runs an example that was built against the installed library; gives what it prints."""
+    """Returns a function that runs an example, built against the installed library, and returns its output."""
     build = tmp_path_factory.mktemp("examples")
     configure(prefix, EXAMPLES, build)
     run(CMAKE, "--build", build, "-j", "2")
@@ -56,14 +56,14 @@ def examples(prefix, tmp_path_factory):
 
 
 def project(folder, text):
-    """A CMake project of one source."""
+    """Makes a CMake project of one source."""
     folder.mkdir()
     (folder / "CMakeLists.txt").write_text(f"cmake_minimum_required(VERSION 3.25)\nproject(own CXX)\n{text}\n")
     return folder
 
 
 def numbers(pattern, text):
-    """What the groups of a pattern are, of each place where it is found, as numbers."""
+    """Returns the groups of all matches of a pattern, as numbers."""
     found = [tuple(map(float, match.groups())) for match in re.finditer(pattern, text)]
     assert found, f"{pattern} is not in:\n{text}"
     return found
@@ -125,7 +125,7 @@ def test_pkg_config_is_enough_for_the_compiler(pkg_config, tmp_path):
 
 
 def test_every_library_of_pkg_config_follows_those_that_need_it(pkg_config, tmp_path):
-    """A linker that reads each library once finds everything: this program needs all of them."""
+    """A linker that reads each library once resolves everything: this program needs all libraries."""
     (tmp_path / "all.cpp").write_text("""#include <prostm/am/am_planner.hpp>
 #include <prostm/prostm.hpp>
 #include <prostm/score/felt.hpp>
@@ -168,7 +168,7 @@ int main() {
     configure(prefix, source, tmp_path / "build")
     run(CMAKE, "--build", tmp_path / "build")
     [(plans, samples)] = numbers(r"(\d+) plans, (\d+) samples", run(tmp_path / "build" / "own"))
-    assert plans == 5 and 7000 < samples <= 8400  # of 0.2 s
+    assert plans == 5 and 7000 < samples <= 8400  # in 0.2 s
 
 
 @pytest.mark.parametrize("text, words", [

@@ -1,10 +1,9 @@
 /// A small OpenXR runtime without a display that plays hands from a recording, so that a client can
-/// be tried through the real loader. No proof of conformance. It reads from the environment:
+/// be tried through the real loader. It does not prove conformance. It reads the environment:
 ///
-///   PROSTM_REPLAY_HANDS    the recording (.hands.jsonl), played over and over from the session's
-///                          begin
-///   PROSTM_REPLAY_WITHOUT  an extension that it is to lack
-///   PROSTM_REPLAY_INFERRED how many joints of each hand it does not see: valid, and not tracked
+///   PROSTM_REPLAY_HANDS    the recording (.hands.jsonl), repeated from the session's begin on
+///   PROSTM_REPLAY_WITHOUT  an extension to leave out
+///   PROSTM_REPLAY_INFERRED number of joints per hand that it does not see: valid, but not tracked
 ///   PROSTM_REPLAY_LOSS     seconds after which each session is lost
 
 #include <ctime>
@@ -39,18 +38,18 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The one instance with its one session.
+/// The only instance with its only session.
 struct Runtime {
   HandRecording recording;
   std::size_t inferred = 0;           // joints of each hand
   std::optional<double> loss;         // after the session's begin [s]
-  std::deque<XrSessionState> events;  // to be polled
+  std::deque<XrSessionState> events;  // waiting to be polled
   std::optional<double> begun;        // on the steady clock [s]
   bool session = false;
 };
 std::unique_ptr<Runtime> runtime;
 
-// handles are places in here
+// handles are addresses of these
 char instance_handle, session_handle, space_handle, hand_handles[2];
 
 template <class Handle>
@@ -197,7 +196,7 @@ XrResult XRAPI_CALL destroy_hand(XrHandTrackerEXT) {
   return XR_SUCCESS;
 }
 
-/// The recording's newest frame at a time after the session's begin, over and over.
+/// Returns the recording's newest frame at a time after the session's begin; it repeats.
 const HandFrame& frame_at(double time) {
   const auto& frames = runtime->recording.frames;
   const double t = std::fmod(std::max(time, 0.0), frames.back().time + 0.2);
@@ -277,8 +276,8 @@ XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name,
 
 }  // namespace
 
-// What the loader and a runtime say to each other first: the loader's specification has these, and
-// no package their header.
+// The negotiation between loader and runtime, from the loader's specification: no package has a
+// header for it.
 struct XrNegotiateLoaderInfo {
   std::uint32_t structType, structVersion;
   std::size_t structSize;
