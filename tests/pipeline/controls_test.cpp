@@ -1,4 +1,4 @@
-/// The table of controls, and pipelines that take other settings between their steps.
+/// The table of controls, and pipelines whose settings change between steps.
 
 #include "prostm/pipeline/controls.hpp"
 
@@ -48,7 +48,7 @@ TEST(Controls, HaveIdsOfTheirOwnAndSayWhatTheyDo) {
   EXPECT_EQ(control_index("no such"), -1);
 }
 
-// what is set is got back, and what the defaults are lies within the bounds
+// a set value can be read back, and the defaults lie within the bounds
 TEST(Controls, GetWhatWasSet) {
   for (const RunControl& c : run_controls()) {
     SCOPED_TRACE(c.id);
@@ -83,7 +83,7 @@ TEST(Controls, TakeTheRightKindOfValueWithinBounds) {
   EXPECT_THROW(number_of("source", std::string("leap")), InputError) << "there is no tracker";
 }
 
-// every control at both its bounds, from a run that goes on
+// sets every control to both its bounds in a running pipeline
 TEST(Controls, APipelineTakesEveryOneBetweenSteps) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
@@ -101,14 +101,14 @@ TEST(Controls, APipelineTakesEveryOneBetweenSteps) {
   EXPECT_EQ(pipeline.contact().step, 5);
 }
 
-/// What comes of a run in 0.1 s: what is played, and the last plan.
+/// Results of 0.1 s of a run: the played samples, and the last plan.
 struct Outcome {
   std::vector<FocusSample> played;
   Plan plan;
 };
 
-/// Until the clock shows 1.5 s, of a run that takes `wanted` at 1.3 s. Its device starts anew there
-/// in any case, so that samples compare.
+/// Returns the outcome until the clock shows 1.5 s, of a run that takes `wanted` at 1.3 s. Its
+/// device starts anew there in any case, so that samples are comparable.
 Outcome outcome_of(const LiveSettings& from, LiveSettings wanted) {
   Pipeline pipeline = pipeline_of(from);
   for (int i = 0; i < 65; ++i) pipeline.step(0.02);
@@ -124,8 +124,8 @@ double mean_pressure(const FocalPath& path) {
          static_cast<double>(path.pressure.size());
 }
 
-/// Largest difference of two runs: of samples in intensity or in place, and of the paths' pressures
-/// [1, m, Pa].
+/// Returns the largest difference of two runs, in the samples' intensities and places, and in the
+/// paths' pressures [1, m, Pa].
 double difference(const Outcome& one, const Outcome& other) {
   const std::vector<FocusSample>&a = one.played, &b = other.played;
   if (a.size() != b.size() || one.plan.paths.size() != other.plan.paths.size()) return 1.0;
@@ -141,8 +141,8 @@ double difference(const Outcome& one, const Outcome& other) {
   return most;
 }
 
-// whatever can be turned changes the plan or how it is emitted. Where hands come from and their
-// prediction are up to who makes the hands.
+// every control changes the plan or its emission, except the source of hands and their prediction,
+// which the source decides
 TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
   for (const Method method : {Method::ProStm, Method::Am}) {
     LiveSettings s = small_settings();

@@ -21,7 +21,7 @@ WorldFrame contact_taken_at(double time, double age) {
   WorldFrame contact;
   contact.arrival = time - age;
   contact.due = contact.taken = time;
-  contact.track_time = 0.001;  // stages take time even where no clock runs
+  contact.track_time = 0.001;  // stages take time even without a clock
   contact.meet_time = 0.003;
   return contact;
 }
@@ -32,8 +32,8 @@ TEST(LatencyLog, WithoutAClockIsWhatOneComputesByHand) {
   const SimulatedArray device(settings, usx_array(), Medium{});
   LatencyLog log(false);
   EXPECT_FALSE(log.last().has_value());
-  // taken at 100 ms from a frame that was 4 ms old; the block from sample 4040 (101 ms) on knows
-  // the plan, the first path follows it from sample 5000 (125 ms) on, redrawn at 5800 (145 ms)
+  // taken at 100 ms from a 4 ms old frame; blocks from sample 4040 (101 ms) on know the plan, the
+  // first path follows it from sample 5000 (125 ms) on, redrawn at 5800 (145 ms)
   PlanFrame plan;
   plan.id = 7;
   plan.start = 0.1;
@@ -51,7 +51,7 @@ TEST(LatencyLog, WithoutAClockIsWhatOneComputesByHand) {
   EXPECT_NEAR(sum(last), last.total, 1e-12);
   EXPECT_NEAR(log.redraw().p50, 0.049, 1e-12);
 
-  // never redrawn: it counts for the latency alone
+  // never redrawn: counts for the latency only
   plan.id = 8;
   log.plan(contact_taken_at(0.14, 0.0), plan, 0.0);
   log.follow({8, 5600, 5600, -1}, device);
@@ -64,11 +64,11 @@ TEST(LatencyLog, PartsOfAClockedPlanAddUp) {
   PipelineSettings settings;
   settings.simulated_array.queue_blocks = 3;
   SimulatedArray device(settings.simulated_array, usx_array(), Medium{});
-  PlanStage plans(settings, 1, 1.0, device.info());  // a source for the device, silent here
+  PlanStage plans(settings, 1, 1.0, device.info());  // a silent source for the device
   ASSERT_EQ(device.start(plans.emitter()), DeviceStatus::Running);
-  device.stop();  // its schedule stays, and no longer shifts
-  // the run began half a second before the device; its hands were taken 2 ms late, and a tracker's
-  // frame had come in 1 ms after the step was due
+  device.stop();  // its schedule stays, and stops shifting
+  // the run began half a second before the device; its hands were taken 2 ms late, and a frame of
+  // the tracker had arrived 1 ms after the step was due
   const double run_start = device.play_time(0) - 0.5;
   WorldFrame contact = contact_taken_at(0.6, 0.0);
   contact.due = 0.598;
@@ -106,7 +106,7 @@ TEST(LatencyLog, NamesEachPartOnce) {
   EXPECT_EQ(names.size(), static_cast<std::size_t>(kLatencyParts));
 }
 
-/// Hands that are always as old.
+/// Hands of a constant age.
 class OldHand final : public HandSource {
  public:
   OldHand(std::unique_ptr<HandSource> hand, double age) : hand_(std::move(hand)), age_(age) {}

@@ -1,4 +1,4 @@
-// A device that the project does not know, through the whole pipeline: what one has to write.
+// A device unknown to the project, through the whole pipeline: an example of how to write one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

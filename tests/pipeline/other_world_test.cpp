@@ -1,4 +1,4 @@
-// Something else than smoke that presses, through the whole pipeline: what one has to write.
+// A world other than smoke, through the whole pipeline: an example of how to write one.
 #include <gtest/gtest.h>
 
 #include "prostm/pipeline/pipeline.hpp"
@@ -6,7 +6,7 @@
 namespace prostm {
 namespace {
 
-/// A plate that presses evenly on all skin that is lower than it.
+/// A plate that presses evenly on all skin below it.
 class Plate final : public World, public PressureSource {
  public:
   const GridShape& grid() const override { return grid_; }

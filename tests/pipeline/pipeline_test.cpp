@@ -88,7 +88,7 @@ Keeper run_keeping(Method method, RunMode mode, RunSummary& summary,
   return keeper;
 }
 
-/// Of both methods.
+/// Tests of both methods.
 class EachMethod : public testing::TestWithParam<Method> {};
 
 INSTANTIATE_TEST_SUITE_P(Pipeline, EachMethod, testing::Values(Method::ProStm, Method::Am),
@@ -148,8 +148,8 @@ TEST_P(EachMethod, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
   bool sounded = false, left = false;
   double silent_since = 0.0;
   std::int64_t seen = 0;
-  // a step plays what was planned from the hands of the three steps before it; a fourth for the way
-  // from one path to the next
+  // a step plays plans from the hands of the three steps before it, and from a fourth while a focal
+  // point changes paths
   std::vector<Eigen::AlignedBox3d> recent;
   while (pipeline.time() < 7.0) {
     pipeline.step(0.02);
@@ -173,7 +173,7 @@ TEST_P(EachMethod, TheFociFollowTheSkinAndFadeWhenTheHandLeaves) {
     seen = n;
     sounded = sounded || loudest > 0.1F;
     silent_since = hand ? 0.0 : silent_since + 0.02;
-    if (silent_since > 0.12) {  // one plan update, then at most 50 ms of fade
+    if (silent_since > 0.12) {  // one plan update, then a fade of at most 50 ms
       left = left || sounded;
       EXPECT_EQ(loudest, 0.0F);
     }
@@ -213,7 +213,7 @@ TEST(Pipeline, PlansWithTheWidthOfTheArrayWhereItIsAskedTo) {
   EXPECT_NEAR(widths.at(0.2, 0.0, 0.0), 4.3e-3, 0.1e-3);
   EXPECT_GT(widths.at(0.3, 0.0, 0.0), 1.3 * widths.at(0.2, 0.0, 0.0));
 
-  // and its plans are others
+  // and its plans differ
   const auto first_plan = [](const PipelineSettings& s) {
     Pipeline pipeline(s, make_scripted_hand(s.scripted_hand, s.track));
     for (int step = 0; step < 400; ++step) {

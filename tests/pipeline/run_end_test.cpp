@@ -1,5 +1,5 @@
-/// How runs end: whatever fails, on whichever thread, all of it ends, the output fades, and the
-/// failure is told.
+/// Ends of runs: if anything fails on any thread, all threads end, the output fades, and the
+/// failure is reported.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kTooLong = 3600.0;  // of run time: a test ends before, or never [s]
+constexpr double kTooLong = 3600.0;  // run time that no test reaches [s]
 
 PipelineSettings settings_for(RunMode mode) {
   PipelineSettings s;
@@ -30,7 +30,7 @@ PipelineSettings settings_for(RunMode mode) {
   return s;
 }
 
-/// The scripted hand, until it fails.
+/// The scripted hand, which fails at a given time.
 class FailingHand final : public HandSource {
  public:
   FailingHand(const PipelineSettings& s, double at)
@@ -46,7 +46,7 @@ class FailingHand final : public HandSource {
   const double at_;
 };
 
-/// Does something at the first plan that sounds: throws, or stops the run.
+/// Acts at the first plan that sounds: throws, or stops the run.
 class Ender final : public RunObserver {
  public:
   enum class By { Throwing, ThrowingInProgress, Stopping, Nothing };
@@ -83,7 +83,8 @@ std::string what(const RunSummary& summary) {
   }
 }
 
-/// The device is stopped; what it played last sounded, fell silent without a jump, and stays so.
+/// Checks that the device is stopped, and that its output sounded, fell silent without a jump, and
+/// stayed silent.
 void expect_faded(const Pipeline& made) {
   const SimulatedArray& device = test::simulated(const_cast<Pipeline&>(made));
   EXPECT_EQ(device.status(), DeviceStatus::Idle);
@@ -92,7 +93,7 @@ void expect_faded(const Pipeline& made) {
   const auto foci = static_cast<std::size_t>(device.foci());
   const std::int64_t n = std::min<std::int64_t>(all, 40'000);
   const std::vector<FocusSample> played = device.read_back(all - n, n);
-  constexpr float kLargestFall = 1.001F / 40.0F;  // of an intensity from one sample to the next
+  constexpr float kLargestFall = 1.001F / 40.0F;  // in intensity per sample
   float loudest = 0.0F, largest_fall = 0.0F;
   for (std::size_t i = foci; i < played.size(); ++i) {
     loudest = std::max(loudest, played[i].intensity);

@@ -1,5 +1,5 @@
 #pragma once
-/// The array of a pipeline whose settings name the simulated one.
+/// The simulated array of a pipeline that uses it.
 
 #include "prostm/device/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"

@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// A plan for one contact so small that pressures along its path change fast.
+/// Returns a plan for a contact so small that pressures along its path change fast.
 PlanSnapshot small_contact() {
   PlanSnapshot s;
   s.target.patches.emplace_back();
@@ -48,7 +48,7 @@ TEST(RenderedPlan, IsWhatIsPlayedAtTheSessionsFullScale) {
         score_plan(field, s.plan, 0, s.settings->plan.sigma, s.settings->plan.gain_law(), &played);
     EXPECT_EQ(out.metrics.rmse, expected.rmse);
     EXPECT_EQ(out.metrics.skill_8, expected.skill_8);
-    // what the device cannot give is missing from the picture too
+    // pressures that the device cannot play are missing from the picture too
     EXPECT_GT(out.metrics.rmse, 1.2 * rmse);
     rmse = out.metrics.rmse;
   }

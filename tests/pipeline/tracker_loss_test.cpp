@@ -1,4 +1,4 @@
-/// What the array plays when the tracker is cut, freezes, or does not trust its own hands.
+/// The array's output when the tracker is cut, freezes, or does not trust its own hands.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using test::eventually;
 
 enum class Mode : std::uint8_t { Well, Cut, Frozen, Unsure };
 
-/// A tracker of 100 Hz that sees a hand which is held still, but for its noise.
+/// A tracker at 100 Hz with a hand that is held still, except for its noise.
 class StandIn final : public LiveTracker {
  public:
   StandIn(const std::atomic<Mode>& mode, const PipelineSettings& s) : mode_(mode) {
@@ -53,7 +53,7 @@ class StandIn final : public LiveTracker {
   double noise_ = 3e-5;  // [m]
 };
 
-/// Hands that note what the array had played when they were gone.
+/// Hands that note the array's played samples when they disappear.
 class Noted final : public HandSource {
  public:
   explicit Noted(std::unique_ptr<HandSource> hands) : hands_(std::move(hands)) {}
@@ -125,7 +125,7 @@ TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {
     }
     mode = fault;
     EXPECT_TRUE(eventually([&] { return hands.gone_at >= 0; }));
-    // 50 ms after the step that has no hand, and from then on
+    // silent 50 ms after the step without a hand, and from then on
     const std::int64_t gone = hands.gone_at, silent = gone + 2000, end = gone + 8000;
     EXPECT_TRUE(eventually([&] { return device.samples() >= end; }));
     EXPECT_EQ(loudest(silent, end), 0.0F);
@@ -135,7 +135,7 @@ TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {
   EXPECT_GT(status.frozen, 0);
   EXPECT_GT(status.unsure, 0);
 
-  // in all of it, fades and no cuts
+  // throughout the run, fades instead of cuts
   const std::int64_t n = device.samples();
   const auto foci = static_cast<std::size_t>(device.foci());
   const std::vector<FocusSample> played = device.read_back(0, n);

@@ -16,7 +16,7 @@ using namespace planning;
 
 constexpr int kSamples = 20, kPaths = 4;
 
-/// Four rough loops over the raster of the generated fields, or points anywhere on it [mm].
+/// Returns four rough loops over the raster of the generated fields, or points anywhere on it [mm].
 std::vector<Vec2> random_paths(Random& random, bool loops) {
   std::vector<Vec2> x;
   for (int k = 0; k < kPaths; ++k) {
@@ -31,7 +31,7 @@ std::vector<Vec2> random_paths(Random& random, bool loops) {
   return x;
 }
 
-/// A cost as a function of the samples, which adds its gradient.
+/// A cost of the samples, which adds its gradient.
 using Cost = std::function<double(std::span<const Vec2>, std::span<Vec2>)>;
 
 struct NamedCost {
@@ -86,8 +86,8 @@ TEST(Costs, GradientsAgreeWithCentralDifferences) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         for (int axis = 0; axis < 2; ++axis) {
           const double at = x[i][axis];
-          // five-point differences of the fourth order, so that the truncation error stays below
-          // the bound
+          // five-point differences of fourth order, so that the truncation error stays below the
+          // bound
           double difference = 0.0;
           for (const auto& [offset, weight] :
                {std::pair(1.0, 8.0), {-1.0, -8.0}, {2.0, -1.0}, {-2.0, 1.0}}) {
@@ -137,7 +137,7 @@ TEST(Costs, TurningPathsAndFieldTogetherChangesNothing) {
 }
 
 TEST(Costs, ClosedFormsOnARegularPolygon) {
-  // a 20-gon of edges of 6 mm: each edge 1 mm too short, each turn 18°
+  // a 20-gon with edges of 6 mm: each edge is 1 mm too short, each turn is 18°
   std::vector<Vec2> x, gradient(kSamples, Vec2::Zero());
   const double radius = 3.0 / std::sin(kPi / kSamples);
   for (int i = 0; i < kSamples; ++i) {
@@ -147,7 +147,7 @@ TEST(Costs, ClosedFormsOnARegularPolygon) {
   EXPECT_NEAR(bending_cost({x, kSamples}, 1.0, gradient),
               kSamples * std::pow(2 * kPi / kSamples, 2), 1e-9);
 
-  // every pair but the consecutive ones, each once
+  // every pair except consecutive ones, each once
   std::vector<SamplePair> pairs;
   near_pairs({x, kSamples}, 1e3, pairs);
   EXPECT_EQ(pairs.size(), static_cast<std::size_t>(kSamples * (kSamples - 1) / 2 - kSamples));
@@ -157,7 +157,7 @@ TEST(Costs, ClosedFormsOnARegularPolygon) {
 }
 
 TEST(Costs, AFullReversalCostsPiSquared) {
-  // out and back along a line: two turns of 180°, which a plain arctan would not see
+  // out and back along a line: two turns of 180°, which a plain arctan would miss
   std::vector<Vec2> x, gradient(8, Vec2::Zero());
   for (const double s : {0.0, 7.0, 14.0, 21.0, 28.0, 21.0, 14.0, 7.0}) x.push_back(Vec2(s, 0.0));
   EXPECT_NEAR(bending_cost({x, 8}, 1.0, gradient), 2 * kPi * kPi, 1e-12);
@@ -178,7 +178,7 @@ TEST(PressureRaster, ReproducesCellsAndQuadraticsAndIsZeroFarAway) {
   TargetField field;
   field.resize(12, 9);
   field.cell = 4e-3;
-  // of numbers that 24 bits hold
+  // with numbers that 24 bits hold exactly
   const auto quadratic = [](double u, double v) {
     return 1.0 + 0.25 * u + 0.125 * u * u + 0.1875 * v + 0.0625 * u * v;
   };
@@ -215,7 +215,7 @@ TEST(Refiner, NeverRaisesTheCostAndNearPairsLoseNothing) {
     const RefineResult result = refiner.run(raster, x);
     EXPECT_LT(result.cost, before);
 
-    // the same cost from all pairs, not only those of the list that was carried along
+    // the same cost from all pairs, not only from the list carried along
     Refiner fresh(CostSettings(PlanSettings{}), kPaths, kSamples, 0);
     EXPECT_EQ(result.cost, fresh.evaluate(raster, x, gradient));
   }

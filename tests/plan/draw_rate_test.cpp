@@ -1,4 +1,4 @@
-/// The draw rate, which with the speed bounds the length of a path.
+/// The draw rate, which together with the speed bounds the length of a path.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ TEST(DrawRate, NoPathIsDrawnMoreSeldom) {
   }
 }
 
-/// Begins each path where the one in `like` begins; where foci begin depends on their periods.
+/// Begins each path at the point where that of `like` begins; the starts depend on the periods.
 Plan begun_like(Plan plan, const Plan& like) {
   for (std::size_t k = 0; k < plan.paths.size() && k < like.paths.size(); ++k) {
     FocalPath& path = plan.paths[k];
@@ -68,7 +68,7 @@ Plan begun_like(Plan plan, const Plan& like) {
 TEST(DrawRate, PathsDependOnTheLengthsAlone) {
   for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
     const TargetField field = fields::make(Pattern::FourPlumes, 2);
-    // of a path, and of the way in which an intensity rises
+    // the lengths of a path and of an intensity's rise are the same in both plans
     PlanSettings settings = settings_at(preset, 3.5, 25.0);
     settings.rise_time = 2e-3;
     const Plan slow = test::plan_of(settings, field);

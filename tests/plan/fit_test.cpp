@@ -23,7 +23,7 @@ using fields::Pattern;
 
 constexpr std::size_t kCells = static_cast<std::size_t>(fields::kCells) * fields::kCells;
 
-/// Loops laid over a pattern, and the cells that they are to render.
+/// Loops over a pattern, and the cells to render.
 struct Case {
   CellTiles cells{kCells};
   Loops loops;
@@ -67,8 +67,8 @@ TEST(CellTiles, KeepTheMassTheAreaAndTheSkinOfTheTarget) {
   }
 }
 
-/// What two kernels may take for the closest segment of the same cell: of two that are equally near
-/// either. At an end that they share both give the same pressures, though the gradient has a kink.
+/// Differences of two kernels' choices of the closest segment of a cell: either of two equally near
+/// ones is correct. At a shared end both give the same pressures, though the gradient has a kink.
 enum class Ties { None, AtSharedEnds, Between };
 
 Ties ties_of(const Case& c, const ReconstructionScratch& a, const ReconstructionScratch& b) {
@@ -89,7 +89,7 @@ Ties ties_of(const Case& c, const ReconstructionScratch& a, const Reconstruction
   return ties;
 }
 
-/// Between the pressures that two kernels render at the cells.
+/// Returns the largest difference of the pressures that two kernels render at the cells.
 double largest_difference(const Case& c, const ReconstructionScratch& one_scratch,
                           const Reconstruction& one, const ReconstructionScratch& other_scratch,
                           const Reconstruction& other) {
@@ -112,8 +112,8 @@ double largest_difference(const Case& c, const ReconstructionScratch& one_scratc
   return static_cast<double>(largest);
 }
 
-/// The steepest that the gradient at a node could be if what is rendered and what is wanted added
-/// up instead of cancelling: what its rounding is measured by.
+/// Returns the steepest possible gradient at a node, if rendered and target pressures added up
+/// instead of cancelling: the scale of its rounding.
 double largest_gradient(const Case& c, const ReconstructionScratch& scratch,
                         const Reconstruction& at) {
   const float sigma = ReconstructionSettings{}.sigma, falloff = 1.0F / (sigma * sigma);
@@ -149,7 +149,7 @@ TEST(Reconstruction, VectorKernelAgreesWithThePlainOne) {
     compared += ties != Ties::Between ? 1 : 0;
     compared_gradients += ties == Ties::None ? 1 : 0;
     if (ties == Ties::Between) continue;
-    // what a cell feels; single pressures may hardly be determined by the cells
+    // compares rendered pressures; the cells may hardly determine single pressures of the path
     EXPECT_LT(largest_difference(c, plain_scratch, plain, scratch, vector), 1e-5) << seed;
     double difference = 0.0;
     for (int k = 0; k < c.loops.paths; ++k) {
@@ -176,7 +176,7 @@ TEST(Descent, GradientAgreesWithCentralDifferences) {
     const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed), 4, 20,
                  seed);
     check.add(c.cells, c.loops);
-    // and where pressures are held back, (P18)
+    // with bounded pressures too, (P18)
     check.add(c.cells, c.loops, PlayBounds::all(1.0F, seed % 2 == 0 ? 0.06F : 0.02F));
   }
   check.expect_agreement();
@@ -184,7 +184,7 @@ TEST(Descent, GradientAgreesWithCentralDifferences) {
 
 TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
   constexpr std::uint64_t kSeeds = 40;
-  float left = 0.0F;  // of the costs, mean
+  float left = 0.0F;  // mean share of the cost that remains
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Case c(fields::kPatterns[seed % fields::kPatterns.size()], static_cast<int>(seed),
                  1 + static_cast<int>(seed % 8), 20, seed);
@@ -196,7 +196,7 @@ TEST(Descent, NeverRaisesTheCostAndKeepsToItsEvaluations) {
     float before = start;
     for (const int evaluations : {1, 2, 7, 30}) {
       EXPECT_LE(descent.run(c.cells, fit, evaluations), evaluations);
-      // pairs that were not listed before may add to the cost
+      // pairs that were not listed before may increase the cost
       EXPECT_LE(fit.cost, before * 1.001F + 1e-3F);
       before = fit.cost;
     }
@@ -216,7 +216,7 @@ TEST(Descent, EndsAtItsDeadline) {
 }
 
 TEST(Reconstruction, SolvedPressuresAreTheLeastSquaresOnes) {
-  // moving any pressure either way, within its bounds, does not lower the error
+  // moving any pressure in either direction, within its bounds, does not lower the error
   const Case c(Pattern::FourPlumes, 3, 4, 20, 5);
   ReconstructionSettings settings;
   settings.weight_coverage = 0.0F;
@@ -268,7 +268,8 @@ SpacingRule stated_rule() {
   return rule;
 }
 
-/// Of a path in a plan: of `best` those that it searches for, and one between each two.
+/// Returns the samples of a path in a plan: for `best` those of its search, and one between each
+/// two.
 int samples_of(const PlanSettings& settings) {
   return settings.preset == Preset::Best ? 2 * settings.fit_samples : settings.samples;
 }
@@ -297,7 +298,7 @@ TEST(FitPresets, RandomFieldsGiveValidPlansThatKeepTheirSpacing) {
     Plan plan;
     PlanStats stats;
     Planner& planner = seed % 4 == 0 ? best : fast;
-    // half of them continue from a plan of something else
+    // half of them continue from a plan of another target
     if (seed % 8 < 4) planner.reset();
     const test::HeapGuard guard;
     const PlanStatus status = planner.plan(input.field, plan, stats);
@@ -362,7 +363,7 @@ TEST(FitPresets, ASmallContactGetsAShortLoopThatRendersIt) {
 }
 
 TEST(FitPresets, AContactMuchSmallerThanABlockIsFound) {
-  // averaged over its block its pressure is below every threshold that is relative to the maximum
+  // averaged over its block, its pressure is below every threshold relative to the maximum
   for (const char* name : {"best", "fast"}) {
     Planner planner(preset(name), 160 * 160);
     TargetField field;
@@ -378,7 +379,7 @@ TEST(FitPresets, AContactMuchSmallerThanABlockIsFound) {
   }
 }
 
-/// A contact that spreads from one small spot over the whole field.
+/// Returns a contact that spreads from one small spot over the whole field.
 TargetField spreading_contact(double radius) {
   TargetField field;
   field.resize(fields::kCells, fields::kCells);
@@ -420,12 +421,12 @@ TEST(FitPresets, FramesContinueFromThePathsBefore) {
   PlanStats stats;
   planner.plan(frame, first, stats);
   planner.plan(frame, second, stats);
-  // the same target again: the paths stay where they are, or get better
+  // for the same target again the paths stay in place, or get better
   const Metrics a = score_plan(frame.patches[0], first, 0, 8.6e-3, {1.4});
   const Metrics b = score_plan(frame.patches[0], second, 0, 8.6e-3, {1.4});
   EXPECT_LT(b.rmse, 1.03 * a.rmse);
 
-  // after a reset it is as new
+  // after a reset it plans as if new
   planner.reset();
   Plan again;
   planner.plan(frame, again, stats);
@@ -440,8 +441,8 @@ double signed_area(const FocalPath& path) {
   return area;
 }
 
-/// Mean of d^−8 over the pairs of focal points and 40 ms, as a distance [m]. @param later the start
-/// of each path, in samples after its first point.
+/// Returns the mean of d^−8 over the pairs of focal points and 40 ms, as a distance [m].
+/// @param later the start of each path, in samples after its first point.
 double mean_distance(const Plan& plan, const std::array<int, kMaxPaths>& later) {
   LiftedPlan lifted;
   TargetFrame flat;
@@ -499,7 +500,7 @@ TEST(FitPresets, FocalPointsRunTheSameWayRoundAndStartApart) {
   }
 }
 
-/// The same field on a raster with `more` columns without skin to the left.
+/// Returns the same field on a raster with `more` columns without skin to the left.
 TargetField widened(const TargetField& field, int more) {
   TargetField out;
   out.resize(field.rows, field.cols + more);
@@ -521,7 +522,7 @@ TEST(FitPresets, PathsThatGoOnKeepTheirFirstPoints) {
   Plan before;
   int kept = 0, all = 0;
   for (int frame = 0; frame < 12; ++frame) {
-    // a field that moves, on rasters that begin here and there
+    // a moving field, on rasters with varying borders
     TargetField field = fields::make(Pattern::FourPlumes, 20);
     field.origin += Vec2(1e-3 * frame, 5e-4 * frame);
     Plan plan;

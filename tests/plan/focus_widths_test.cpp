@@ -64,7 +64,7 @@ TEST(FocusWidths, OfATargetAreThoseWhereItsPressureIs) {
   }
   field.X_DP = Eigen::Translation3d(0.0, 0.0, 0.15) * Eigen::AngleAxisd(0.3, Vec3::UnitY());
   const Vec3 p = field.X_DP * Vec3(middle.x() / sum, middle.y() / sum, 0.01);
-  const double offset = std::min(p.head<2>().norm(), 0.05);  // the table ends there
+  const double offset = std::min(p.head<2>().norm(), 0.05);  // the end of the table
   EXPECT_NEAR(table().on(field), linear(p.z(), offset, 0.3), 1e-9);
   std::fill(field.pressure.begin(), field.pressure.end(), 0.0);
   EXPECT_NEAR(table().on(field), linear(0.15, 0.0, 0.3), 1e-9);

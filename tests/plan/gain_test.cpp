@@ -26,7 +26,7 @@ PlanSettings settings_with(const std::string& preset, double exponent) {
   PlanSettings settings;
   settings.preset = from_name<Preset>(preset, "preset");
   settings.gain_exponent = exponent;
-  settings.full_scale_pressure = 1e5;  // so much that it bounds nothing
+  settings.full_scale_pressure = 1e5;  // so high that it limits nothing
   return settings;
 }
 
@@ -41,7 +41,7 @@ void expect_near(const Metrics& a, const Metrics& b) {
   EXPECT_NEAR(a.spill, b.spill, kTolerance);
 }
 
-/// Each path's pressures against those of the exponent 0.
+/// Checks each path's pressures against those with exponent 0.
 void expect_scaled(const Plan& plain, const Plan& scaled, double exponent) {
   ASSERT_EQ(plain.paths.size(), scaled.paths.size());
   for (std::size_t k = 0; k < plain.paths.size(); ++k) {
@@ -60,11 +60,11 @@ TEST(GainLaw, IsThePowerLawThatItStates) {
   EXPECT_EQ(GainLaw{}.of(0.0123), 1.4);
   EXPECT_DOUBLE_EQ((GainLaw{1.4, 1.0, 50.0}.of(0.01)), 0.7);
   EXPECT_DOUBLE_EQ((GainLaw{2.0, -0.5, 25.0}.of(0.01)), 4.0);
-  // the longest path has the setting's own γ, whatever the exponent
+  // the longest path has γ of the settings, for any exponent
   for (const double exponent : {-2.0, -0.3, 0.7, 2.0}) {
     EXPECT_DOUBLE_EQ((GainLaw{1.4, exponent, 50.0}.of(0.02)), 1.4);
   }
-  // laps without end, and none at all
+  // periods of 0 and of 10⁶ s
   EXPECT_DOUBLE_EQ((GainLaw{1.0, 1.0, 50.0}.of(0.0)), 1.0 / 16.0);
   EXPECT_DOUBLE_EQ((GainLaw{1.0, 1.0, 50.0}.of(1e6)), 16.0);
   EXPECT_DOUBLE_EQ((GainLaw{1.0, -2.0, 50.0}.of(0.0)), 256.0);
@@ -113,7 +113,7 @@ TEST(GainLaw, CountsThePeriodOnTheSkin) {
 }
 
 TEST(GainLaw, EachPathIsDividedByItsOwn) {
-  // two points at rest far from each other, with periods of their own
+  // two distant points at rest, each with its own period
   Plan plan;
   for (const double x : {-0.05, 0.05}) {
     FocalPath path;

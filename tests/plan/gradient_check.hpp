@@ -1,5 +1,5 @@
 #pragma once
-/// Whether the gradient of what `fast` and `best` minimise is that of its cost.
+/// Checks the gradient of the cost of `fast` and `best` against differences.
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 
 namespace prostm::test {
 
-/// Counts central differences that a gradient does not agree with.
+/// Counts central differences that disagree with a gradient.
 struct GradientCheck {
   int tried = 0, off = 0;
 
-  /// Compares them on the cost of loops after a short descent.
+  /// Compares the two on the cost of loops after a short descent.
   void add(const planning::CellTiles& cells, const planning::Loops& loops,
            const planning::PlayBounds& bounds = planning::PlayBounds::all(1.0F,
                                                                           planning::kAnySlope)) {

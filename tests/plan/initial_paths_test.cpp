@@ -47,7 +47,7 @@ TEST(WeightedKMeans, EndsWhereEveryCentreIsTheMeanOfItsNearestPoints) {
     ASSERT_LT(iterations, 10'000);
     ASSERT_EQ(clusters.centre.size(), 50u);
 
-    // a fixed point of Lloyd's iteration by the plain definition, without the shortcuts
+    // a fixed point of Lloyd's iteration by its plain definition, without the shortcuts
     std::array<Vec2, kMaxClusters> sum;
     sum.fill(Vec2::Zero());
     std::array<double, kMaxClusters> mass{};
@@ -116,7 +116,7 @@ TEST(Tours, NoReversalShortensATwoOptTour) {
 }
 
 TEST(Tours, SmallToursAreNearlyAlwaysTheShortest) {
-  // against every order of seven points
+  // compared with every order of seven points
   Random random(34);
   int optimal = 0;
   constexpr int kTrials = 100;
@@ -158,7 +158,7 @@ TEST(Tours, SplitsShareOutTheClustersAndMeetTheLength) {
 }
 
 TEST(Tours, ASplitIsAtTheMidpointAlongTheWeightedDirection) {
-  // the heavy points spread along x, a light one far away along y: the cut is orthogonal to x
+  // heavy points spread along x, a light one lies far away along y: the cut is orthogonal to x
   Clusters clusters;
   for (const double x : {0.0, 40.0, 100.0}) {
     clusters.centre.push_back(Vec2(x, 0.0));

@@ -1,4 +1,4 @@
-/// The kernels that read a target and look for near samples, against what they replace.
+/// The kernels that read a target and search near samples, compared with plain code.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@
 namespace prostm::planning {
 namespace {
 
-/// A raster of any shape with holes in its skin; weights on half of them.
+/// Returns a raster of any shape with holes in its skin, and with weights in half of the cases.
 TargetField random_raster(Random& random) {
   TargetField field;
   field.resize(1 + random.below(40), 1 + random.below(40));
@@ -43,7 +43,7 @@ struct Block {
 };
 using Tile = std::array<Block, 8>;
 
-/// The tiles that have skin, summed cell by cell.
+/// Returns the tiles that have skin, summed cell by cell.
 std::vector<Tile> tiles_of(const TargetField& field, double maximum, int factor) {
   std::optional<CellWeights> weights;
   if (!field.weight.empty()) weights.emplace(field, maximum);
@@ -134,7 +134,7 @@ TEST(NodePairs, AreThoseThatAPlainLoopFinds) {
   }
 }
 
-/// Loops that may be long, uneven and crossed.
+/// Returns loops that may be long, uneven and crossed.
 std::vector<Vec2> random_loops(Random& random, int paths, int samples) {
   std::vector<Vec2> x;
   for (int k = 0; k < paths; ++k) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kSpeed = 7e3;  // [mm/s]
 
-/// A loop in polar coordinates about a centre; radius(angle) [mm].
+/// Returns a loop in polar coordinates about a centre; radius(angle) [mm].
 template <class Radius>
 std::vector<Vec2> polar_loop(const Vec2& centre, int samples, Radius radius, double from = 0.0) {
   std::vector<Vec2> loop;
@@ -52,7 +52,7 @@ double length(const std::vector<Vec2>& loop) {
   return sum;
 }
 
-/// Where a focal point is when it has run this share of its lap from its start on.
+/// Returns the place of a focal point after this share of its lap from its start.
 Vec2 at(const std::vector<Vec2>& loop, const LapStart& start, double share) {
   const auto n = static_cast<int>(loop.size());
   double left = (share - std::floor(share)) * length(loop);
@@ -68,7 +68,7 @@ Vec2 at(const std::vector<Vec2>& loop, const LapStart& start, double share) {
 struct Range {
   double least = std::numeric_limits<double>::max(), most = 0.0;
 };
-/// Of the distances of two focal points over 40 ms.
+/// Returns the range of the distances between two focal points over 40 ms.
 Range distances(const std::vector<std::vector<Vec2>>& list, const LapStarts& starts,
                 std::span<const double> periods) {
   Range range;
@@ -121,7 +121,7 @@ TEST(Phases, ConcentricCirclesOfOnePeriodAreRunOnOppositeSides) {
   Phases phases;
   const LapStarts starts = phases.choose(loops_of(list), periods);
   const Range range = distances(list, starts, periods);
-  EXPECT_NEAR(range.least, 34.0 * std::cos(kPi / 20), 0.01);  // of the chords' middles
+  EXPECT_NEAR(range.least, 34.0 * std::cos(kPi / 20), 0.01);  // at the chords' midpoints
   EXPECT_NEAR(range.most, 34.0, 0.01);
 }
 
@@ -141,13 +141,13 @@ TEST(Phases, StartsDoNotMatterWhereOneGainsAWholeLap) {
     }
     return static_cast<double>(most / least);
   };
-  // 40 ms are two laps and three
+  // two and three laps in 40 ms
   EXPECT_GT(spread({0.02, 0.02}), 100.0);
   EXPECT_LT(spread({0.02, 0.04 / 3.0}), 1.001);
   EXPECT_GT(spread({0.02, 0.018}), 1.5);
 }
 
-/// Up to 4 loops that do not cross, each within its own 50 mm.
+/// Returns up to 4 loops that do not cross, each within its own 50 mm.
 std::vector<std::vector<Vec2>> random_loops(Random& random, int paths, int samples) {
   std::vector<std::vector<Vec2>> list;
   for (int k = 0; k < paths; ++k) {
@@ -170,7 +170,7 @@ std::vector<double> periods_of(const std::vector<std::vector<Vec2>>& list) {
 }
 
 TEST(EvenLap, SamplesAndArcsFindEachOtherRoundTheEnd) {
-  // a circle whose last sample is a long way, or a short one, before the first
+  // a circle whose last sample is far from the first, or near it
   for (const double last : {0.87, 0.99}) {
     std::vector<Vec2> loop;
     for (int i = 0; i < 20; ++i) {
@@ -255,7 +255,7 @@ TEST(PhaseCosts, SearchIsNearlyAsGoodAsTryingAllStarts) {
       least = std::min(least, costs.total(arc));
     }
     const double ratio = std::pow(static_cast<double>(least / costs.total(found)), 1.0 / 8.0);
-    EXPECT_GT(ratio, paths == 2 ? 1.0 - 1e-4 : 0.95);  // one start alone is found exactly
+    EXPECT_GT(ratio, paths == 2 ? 1.0 - 1e-4 : 0.95);  // a single free start is found exactly
     worst = std::min(worst, ratio);
     product += std::log(ratio);
   }
@@ -267,7 +267,7 @@ TEST(Phases, MovingAndScalingTheLoopsChangesNothing) {
   Random random(3);
   for (int round = 0; round < 300; ++round) {
     auto list = random_loops(random, 2 + round % 4, 20);
-    // on a grid of binary fractions, so that what follows is exact
+    // on a grid of binary fractions, so that the following is exact
     for (std::vector<Vec2>& loop : list) {
       for (Vec2& x : loop) x = (64.0 * x).array().round() / 64.0;
     }
@@ -298,7 +298,7 @@ TEST(Phases, StartsAreKeptUntilOthersPay) {
   };
   Phases phases;
   const LapStarts first = phases.choose(beside(0.0, 0.0), periods);
-  // they follow loops that move, or targets whose origin does
+  // the starts follow moving loops, or targets with a moving origin
   for (int step = 1; step < 40; ++step) {
     if (step % 2 == 0) phases.move(Vec2(30.0, 0.0));
     const double x = 3.0 * step + (step % 2 == 0 ? 30.0 : 0.0);
@@ -308,7 +308,7 @@ TEST(Phases, StartsAreKeptUntilOthersPay) {
     EXPECT_EQ(next[1].first, first[1].first) << step;
   }
 
-  // a loop about the other: the same angle is no longer far away
+  // one loop inside the other: equal angles are no longer far apart
   Phases other;
   const std::vector<std::vector<Vec2>> near{circle({0, 0}, 20.0), circle({46, 0}, 20.0)};
   const std::vector<std::vector<Vec2>> within{circle({0, 0}, 20.0), circle({0, 0}, 8.0)};
@@ -316,7 +316,7 @@ TEST(Phases, StartsAreKeptUntilOthersPay) {
   const LapStarts apart = other.choose(loops_of(within), periods);
   EXPECT_GT(distances(within, apart, periods).least, 27.0);
 
-  // a loop that is new beside one that goes on finds its start
+  // a new loop beside a continuing one finds its start
   Phases second;
   second.choose(loops_of({begun_at(circle({0, 0}, 20.0), 5, false), circle({300, 0}, 20.0)}),
                 periods);
@@ -325,7 +325,7 @@ TEST(Phases, StartsAreKeptUntilOthersPay) {
   EXPECT_EQ(joined[0].first, 5);
   EXPECT_EQ(joined[1].first, 5);
 
-  // where others gain little, they stay; forgotten, they are chosen anew
+  // starts stay if others gain little; after forget() they are chosen anew
   Phases third;
   third.choose(loops_of({begun_at(circle({0, 0}, 20.0), 5, false), circle({300, 0}, 20.0)}),
                periods);
@@ -344,7 +344,7 @@ TEST(Phases, RandomLoopsOfAnyNumberGetStartsNoWorseThanTheirOwn) {
     const int paths = 1 + static_cast<int>(round % kMaxPaths);
     const int samples = round % 50 == 0 ? 8 + random.below(57) : 8 + random.below(13);
     auto list = random_loops(random, paths, samples);
-    // some collapsed to a line or a point
+    // some loops collapsed to a line or a point
     if (round % 17 == 0) {
       for (Vec2& x : list[0]) x.y() = 0.0;
     }
@@ -370,7 +370,7 @@ TEST(Phases, RandomLoopsOfAnyNumberGetStartsNoWorseThanTheirOwn) {
     if (paths == 1 || samples > 32 || round % 3 != 0) continue;
     PhaseCosts costs;
     costs.set(std::span<const EvenLap>(laps).first(list.size()), periods);
-    // a start at a sample beside the arc that was chosen may cost a little
+    // a start at a sample, next to the chosen arc, may cost a little
     const auto ratio = static_cast<double>(costs.total(own) / costs.total(chosen));
     ASSERT_GT(ratio, 0.5) << round;
     gained += std::log(ratio) / 8.0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What a valid plan is, checked without the planner's own geometry.
+/// Checks for valid plans, without the planner's own geometry.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 namespace prostm::test {
 
-/// Of a planner of its own.
+/// Returns the plan of a new planner.
 inline Plan plan_of(const PlanSettings& settings, const TargetField& field) {
   Planner planner(settings, field.size());
   Plan plan;
@@ -25,7 +25,7 @@ inline double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (a + t * (b - a) - p).norm();
 }
 
-/// Whether two segments cross or come within half a micrometre.
+/// Returns whether two segments cross or come within half a micrometre.
 inline bool touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto side = [](const Vec2& o, const Vec2& e, const Vec2& p) { return cross(e - o, p - o); };
   if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0) return true;
@@ -33,7 +33,7 @@ inline bool touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
                    distance_to_segment(c, a, b), distance_to_segment(d, a, b)}) < 0.5e-6;
 }
 
-/// Pairs of segments that touch, over all paths; neighbours on a path excepted.
+/// Counts pairs of segments that touch, over all paths, except neighbours on a path.
 inline int touching_pairs(const Plan& plan) {
   int count = 0;
   for (std::size_t k = 0; k < plan.paths.size(); ++k) {
@@ -50,7 +50,8 @@ inline int touching_pairs(const Plan& plan) {
   return count;
 }
 
-/// Finite points and pressures, pressures not negative, the stated length, speed and period.
+/// Checks for finite points, finite pressures of at least 0, and the stated length, speed and
+/// period.
 inline void expect_finite_plan(const Plan& plan, int samples) {
   for (const FocalPath& path : plan.paths) {
     ASSERT_EQ(path.points.size(), static_cast<std::size_t>(samples));
@@ -63,7 +64,8 @@ inline void expect_finite_plan(const Plan& plan, int samples) {
   }
 }
 
-/// Closed, at most L long, distinct points, crossing neither itself nor another.
+/// Checks for closed paths of at most L with distinct points that cross neither themselves nor
+/// others.
 inline void expect_valid_plan(const Plan& plan, int samples, double max_length) {
   ASSERT_NO_FATAL_FAILURE(expect_finite_plan(plan, samples));
   for (const FocalPath& path : plan.paths) {
@@ -76,7 +78,8 @@ inline void expect_valid_plan(const Plan& plan, int samples, double max_length) 
   ASSERT_EQ(touching_pairs(plan), 0);
 }
 
-/// Bitwise equality of two plans, the second one's pressures being `scale` times the first one's.
+/// Checks bitwise equality of two plans; the second one's pressures are `scale` times the first
+/// one's.
 inline void expect_same_plan(const Plan& a, const Plan& b, double scale) {
   ASSERT_EQ(a.paths.size(), b.paths.size());
   for (std::size_t k = 0; k < a.paths.size(); ++k) {
@@ -90,8 +93,8 @@ inline void expect_same_plan(const Plan& a, const Plan& b, double scale) {
   }
 }
 
-/// Two plans whose points agree to 1e-9 m, and pressures to 1e-9 once the second one's are divided
-/// by `scale`.
+/// Checks that points of two plans agree to 1e-9 m, and pressures to 1e-9 after dividing the second
+/// one's by `scale`.
 inline void expect_scaled_plan(const Plan& a, const Plan& b, double scale) {
   ASSERT_EQ(a.paths.size(), b.paths.size());
   for (std::size_t k = 0; k < a.paths.size(); ++k) {

@@ -61,7 +61,7 @@ TEST(Planner, SameInputGivesTheSamePlanToTheBit) {
     Plan a, b, c;
     PlanStats stats;
     first.plan(field, a, stats);
-    // neither another planner nor a plan in between changes anything
+    // neither another planner nor a plan in between changes the result
     second.plan(fields::make(Pattern::Noise, 9), b, stats);
     second.plan(field, b, stats);
     first.plan(field, c, stats);
@@ -94,7 +94,7 @@ TargetField in_unit(TargetField field, double unit) {
   return field;
 }
 
-/// The gallery, and fields of random numbers with equal and nearly equal cells.
+/// Returns the gallery, and random fields with equal and nearly equal cells.
 std::vector<TargetField> fields_for_units() {
   std::vector<TargetField> list;
   for (const Pattern pattern : fields::kPatterns) list.push_back(fields::make(pattern, 5));
@@ -135,7 +135,7 @@ TEST(Planner, TheUnitOfPressureChangesNoPath) {
 }
 
 TEST(Planner, TheUnitOfPressureGivesNoHandMorePaths) {
-  // two hands with as much to show, summed up in another order
+  // two hands of equal total pressure, summed in another order
   TargetFrame frame;
   frame.patches.push_back(fields::make(Pattern::Noise, 5));
   frame.patches.push_back(fields::rotated(frame.patches[0]));
@@ -250,7 +250,7 @@ TEST(Planner, SharesPathsOverTwoHands) {
   EXPECT_EQ(paths_of(0), 2);
   EXPECT_EQ(paths_of(1), 2);
 
-  // a weak hand still gets one, an empty one none
+  // a weak hand still gets one path, an empty hand gets no path
   for (double& p : frame.patches[1].pressure) p *= 1e-3;
   ASSERT_EQ(planner.plan(frame, plan, stats), PlanStatus::Planned);
   EXPECT_EQ(paths_of(0), 3);
@@ -259,7 +259,7 @@ TEST(Planner, SharesPathsOverTwoHands) {
   ASSERT_EQ(planner.plan(frame, plan, stats), PlanStatus::Planned);
   EXPECT_EQ(paths_of(0), 4);
 
-  // as for one target
+  // equal to the plan of a single target
   Plan single;
   planner.plan(frame.patches[0], single, stats);
   ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(single, plan, 1.0));
@@ -291,7 +291,7 @@ TEST(Planner, SettingsThatAreOutOfBoundsAreNamed) {
   EXPECT_NE(message(settings).find("gain = "), std::string::npos);
 }
 
-/// 10^4 fields of every kind.
+/// Plans 10^4 fields of every kind.
 TEST(Planner, RandomFieldsGiveValidPlansOrTheStatedStatus) {
   constexpr int kMaxSide = 48;
   const test::Seeds seeds = test::seeds(10'000);

@@ -21,7 +21,7 @@ namespace {
 
 using namespace planning;
 
-/// Uneven loops, and equations of the kind that cells near them give, with steep right sides.
+/// Uneven loops with equations like those of nearby cells, and steep right sides.
 struct Problem {
   Loops loops;
   PressureEquations equations;
@@ -67,7 +67,7 @@ struct Problem {
            std::hypot(static_cast<double>(loops.x[b] - loops.x[a]),
                       static_cast<double>(loops.y[b] - loops.y[a]));
   }
-  /// The quadratic form of the equations at pressures p.
+  /// Returns the quadratic form of the equations at pressures p.
   double form(const std::vector<double>& p) const {
     double sum = 0.0;
     for (std::size_t a = 0; a < loops.nodes(); ++a) {
@@ -91,7 +91,7 @@ void expect_playable(const Problem& problem, std::uint64_t seed) {
         << "seed " << seed << ": " << p;
     ASSERT_LE(std::abs(std::sqrt(p) - std::sqrt(q)), problem.step(a) * (1.0 + 1e-5) + 1e-6)
         << "seed " << seed << ", node " << a;
-    // p is linear between them, so that its root is steepest beside the lower one
+    // p is linear between nodes, so its root is steepest beside the lower one
     ASSERT_LE(std::sqrt(0.5 * (p + q)) - std::sqrt(std::min(p, q)),
               0.5 * problem.step(a) * (1.0 + 1e-5) + 1e-6)
         << "seed " << seed << ", half way after node " << a;
@@ -108,9 +108,9 @@ TEST(Playable, WhatIsSoftenedIsNeverTooSteep) {
   }
 }
 
-/// Projected gradient steps by the hundred thousand: each on the form, then to the middle between
-/// the largest roots below and the smallest above that are not too steep, found by going round from
-/// every node of a path, either way. @return the least form of all.
+/// Takes thousands of projected gradient steps: each on the form, then to the middle between the
+/// largest roots below and the smallest above that are not too steep, found by a tour from every
+/// node of a path in both directions. @return the least form of all.
 double slow_least(const Problem& problem) {
   const Loops& loops = problem.loops;
   const auto n = static_cast<std::size_t>(loops.samples),
@@ -138,7 +138,7 @@ double slow_least(const Problem& problem) {
     }
     for (std::size_t i = 0; i < n; ++i) u[i * lanes + k] = 0.5 * (low[i] + high[i]);
   };
-  double least = 0.0;  // of silence
+  double least = 0.0;  // the form of silence
   for (int step = 0; step < 4000; ++step) {
     const double rate = 0.02 / (1.0 + step / 400);
     for (std::size_t a = 0; a < p.size(); ++a) {
@@ -165,7 +165,7 @@ TEST(Playable, SoftenedPressuresAreNearlyTheBestThatCanBePlayed) {
     const double slow = slow_least(problem);
     soften(problem.loops, problem.bounds, problem.equations, problem.pressure);
     make_playable(problem.loops, problem.bounds, problem.pressure);
-    // both are negative: what a form gains over silence
+    // both are negative: the gain over silence
     EXPECT_LE(problem.form(problem.pressure), 0.99 * slow) << seed;
   }
 }
@@ -176,7 +176,7 @@ PlanSettings preset(const std::string& name) {
   return settings;
 }
 
-/// What the emission asks of a plan, by the sentence of (P18).
+/// Checks the limits of the emission for a plan, as stated in (P18).
 void expect_playable(const Plan& plan, double full_scale) {
   for (const FocalPath& path : plan.paths) {
     const std::size_t n = path.points.size();
@@ -229,8 +229,8 @@ TargetField contact(double width) {
   return field;
 }
 
-/// A focal point's places and pressures in the second lap of a path, as the emission plays it: the
-/// intensity follows √(p / full scale), by at most 1/40 from one sample at 40 kHz to the next.
+/// Computes a focal point's places and pressures in the second lap of a path as emitted: the
+/// intensity follows √(p / full scale), by at most 1/40 per sample at 40 kHz.
 void second_lap(const FocalPath& path, double full_scale, std::vector<Vec2>& places,
                 std::vector<double>& played) {
   const std::size_t n = path.points.size();
@@ -256,7 +256,7 @@ void second_lap(const FocalPath& path, double full_scale, std::vector<Vec2>& pla
   }
 }
 
-/// RMSE of Eq. (1) with the pressures as they are played.
+/// Returns the RMSE of Eq. (1) with the played pressures.
 double played_rmse(const TargetField& field, const Plan& plan) {
   const double maximum = max_pressure(field), gain = 1.4, sigma = 8.6e-3;
   std::vector<Vec2> places;
@@ -314,7 +314,7 @@ TEST(Playable, NoPathIsSilent) {
 }
 
 TEST(Playable, ASmallContactGetsNoMorePathsThanServeIt) {
-  // a lap of 140 mm is round the whole of it more than once
+  // one lap of 140 mm circles the whole contact more than once
   EXPECT_LE(test::plan_of(preset("best"), contact(2e-3)).paths.size(), 2U);
   EXPECT_LE(test::plan_of(preset("best"), contact(3e-3)).paths.size(), 2U);
 }

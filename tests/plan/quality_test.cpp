@@ -1,4 +1,4 @@
-/// How good the plans are: on the paper's own example, under rotation, and against the controls.
+/// Quality of plans: on the paper's own example, under rotation, and against the controls.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ void plan_with_planner(const TargetField& target, const PlanSettings& settings, 
   ASSERT_EQ(planner.plan(target, plan, stats), PlanStatus::Planned);
 }
 
-/// Median metrics over 20 seeds of the clustering.
+/// Returns the median metrics over 20 seeds of the clustering.
 Metrics median_over_seeds(const TargetField& target, const std::string& preset,
                           const PlanFunction& plan_with) {
   std::vector<double> rmse, correlation, coverage;
@@ -64,7 +64,7 @@ TEST(PlanQuality, ReachesTheTextbookOnThePapersExample) {
   EXPECT_LE(valid.rmse, paper.rmse + 0.01);
   EXPECT_GE(valid.coverage, paper.coverage - 0.01);
 
-  // the textbook does as well as was measured for it, so that it is a fair baseline
+  // the textbook reaches its measured quality, so that it is a fair baseline
   const Metrics textbook = median_over_seeds(
       target, "paper", [](const TargetField& field, const PlanSettings& settings, Plan& plan) {
         PlanStats stats;
@@ -92,7 +92,7 @@ TEST(PlanQuality, TurningTheFieldLeavesTheMeanErrorAlone) {
     planner.plan(rotated, plan, stats);
     turned += score_plan(rotated, plan, 0, settings.sigma, settings.gain_law()).rmse;
   }
-  // fewer fields under a sanitizer leave more of the scatter of single fields
+  // under a sanitizer fewer fields leave more scatter
   EXPECT_NEAR(turned / upright, 1.0, frames == 200 ? 0.02 : 0.1);
 }
 

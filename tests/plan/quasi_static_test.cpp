@@ -36,7 +36,7 @@ TargetField raster_of(int rows, int cols) {
   return raster;
 }
 
-/// Eq. (1) from its definition: every segment of every path of the patch.
+/// Computes Eq. (1) by its definition: over every segment of every path of the patch.
 double field_at(const Plan& plan, int patch, const Vec2& x) {
   double nearest = HUGE_VAL, pressure = 0.0;
   for (const FocalPath& path : plan.paths) {
@@ -77,7 +77,7 @@ TEST(QuasiStaticField, AgreesWithItsDefinition) {
 }
 
 TEST(QuasiStaticField, OfEquallyNearPointsTheFirstPathCounts) {
-  // two mirrored squares; the middle column is as far from one as from the other
+  // two mirrored squares; the middle column is equally far from both
   Plan plan;
   for (const double side : {-1.0, 1.0}) {
     FocalPath path;

@@ -1,5 +1,5 @@
 #pragma once
-/// Random target fields of every kind that a planner can be given, odd ones above all.
+/// Random target fields of every kind that a planner may receive, with many odd ones.
 
 #include <cmath>
 #include <limits>
@@ -39,7 +39,7 @@ inline void touch(TargetField& field, int row, int col, double p) {
   field.pressure[field.index(row, col)] = p;
 }
 
-/// Pressure of the kinds that cover the raster, 0..1; NaN where the cell is no skin.
+/// Returns the pressure of the kinds that cover the raster, 0..1; NaN for a cell without skin.
 inline double cell_pressure(FieldKind kind, double u, double v, Random& random) {
   switch (kind) {
     case FieldKind::Noise:
@@ -71,7 +71,7 @@ inline void add_blobs(TargetField& field, Random& random) {
   }
 }
 
-/// One bad value or shape.
+/// Sets one bad value or shape.
 inline void spoil(TargetField& field, Random& random) {
   const auto i = static_cast<std::size_t>(random.below(static_cast<int>(field.size())));
   switch (random.below(5)) {
@@ -93,7 +93,7 @@ inline void spoil(TargetField& field, Random& random) {
   }
 }
 
-/// Gives the field weights of a random kind, valid or, where none is above 0 on skin, not.
+/// Gives the field weights of a random kind; they are invalid if no weight on skin is above 0.
 inline void add_weights(TargetField& field, Random& random) {
   const int kind = random.below(5), split = random.below(field.rows + 1);
   const double few = random.uniform(0.0, 0.2);
@@ -110,7 +110,7 @@ inline void add_weights(TargetField& field, Random& random) {
   }
 }
 
-/// @param max_side of the raster in cells.
+/// @param max_side largest number of rows and columns.
 inline RandomField random_field(Random& random, int max_side) {
   RandomField result{static_cast<FieldKind>(random.below(kFieldKinds)), {}};
   TargetField& field = result.field;

@@ -1,4 +1,4 @@
-/// Plans of the presets best and fast on skins that are not flat.
+/// Plans of the presets best and fast on uneven skins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ LiftedPlan lifted_on(const TargetField& field, const Plan& plan) {
   return lifted;
 }
 
-/// Closed, simple, free of crossings and with its spacing in the plane; at most L long on the skin,
-/// with the period of that length.
+/// Checks for closed, simple paths without crossings and with their spacing in the plane, at most L
+/// long on the skin and with the period of that length.
 void expect_valid_on_skin(const TargetField& field, const Plan& plan) {
   std::vector<Vec2> points;
   const LiftedPlan lifted = lifted_on(field, plan);
@@ -69,7 +69,7 @@ double step(const FocusSample& a, const FocusSample& b) {
   return (b.p_D.cast<double>() - a.p_D.cast<double>()).norm();
 }
 
-/// Plays one path on its own for some laps.
+/// Plays a single path for some laps.
 std::vector<FocusSample> play(const LiftedPath& path, std::size_t samples) {
   EmitSettings settings;
   settings.foci = 1;
@@ -84,7 +84,7 @@ std::vector<FocusSample> play(const LiftedPath& path, std::size_t samples) {
   return out;
 }
 
-/// What is emitted for a path: its speed on the skin, and the time of a lap.
+/// Checks the emission of a path: its speed on the skin, and the time of a lap.
 void expect_speed_and_period(const LiftedPath& lifted, const FocalPath& path) {
   const auto lap = static_cast<std::size_t>(std::ceil(lifted.length * kSampleRate / path.speed));
   ASSERT_NEAR(static_cast<double>(lap), path.period * kSampleRate, 1.0 + 1e-6);
@@ -99,7 +99,7 @@ void expect_speed_and_period(const LiftedPath& lifted, const FocalPath& path) {
     ASSERT_LE(d, 1.005 * even);
     slow += d < 0.98 * even ? 1 : 0;
   }
-  // a step that cuts a corner is shorter than its way along the path
+  // a step that cuts a corner is shorter than the path between its ends
   const std::size_t corners = lifted.p_D.size();
   ASSERT_LE(slow, corners / 5) << "of " << lap << ", with " << corners << " corners";
   ASSERT_NEAR(travelled / static_cast<double>(lap), even, 0.02 * even);
@@ -134,15 +134,15 @@ TEST_P(OnSkin, LengthSpeedAndPeriodAreThoseOfTheSkin) {
       }
     }
   }
-  // the shapes do lengthen paths, and the length is used
+  // the shapes do lengthen paths, and plans use the length
   EXPECT_GT(most_stretched, 1.3);
   EXPECT_GT(longest, 0.1385);
   RecordProperty("longest_mm", std::to_string(1e3 * longest));
 }
 INSTANTIATE_TEST_SUITE_P(Presets, OnSkin, testing::Values("best", "fast"));
 
-/// Bumps and hollows, smooth or in voxels, up to slopes that no hand has; of ten skins one has no
-/// neighbouring cells at the same height.
+/// Adds bumps and hollows, smooth or in voxels, up to slopes that no hand has; one skin in ten has
+/// no neighbouring cells at equal height.
 void make_bumpy(TargetField& field, Random& random) {
   const double steepest = std::pow(10.0, random.uniform(-2.0, 1.0));
   const double voxel = random.uniform() < 0.3 ? fields::kVoxel : 0.0;
@@ -185,7 +185,7 @@ TEST(OnBumpySkin, RandomPlansAreValidAndNeverTooLong) {
     Plan plan;
     PlanStats stats;
     Planner& planner = seed % 4 == 0 ? best : fast;
-    // half of them continue from a plan of something else
+    // half of them continue from a plan of another target
     if (seed % 8 < 4) planner.reset();
     if (planner.plan(input.field, plan, stats) != PlanStatus::Planned) continue;
     ++planned;

@@ -1,4 +1,4 @@
-/// The textbook planner is compiled once for each kind of machine, and chosen where it runs.
+/// The textbook planner is compiled once for each kind of machine and chosen at run time.
 
 #include "prostm/textbook/textbook.hpp"
 
@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-/// Only this target may be chosen, while it lives.
+/// Allows this target alone during its lifetime.
 class Only {
  public:
   explicit Only(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }

@@ -13,7 +13,7 @@ using namespace planning;
 
 constexpr double kLength = 140.0;
 
-/// The samples as a plan, for the independent checks.
+/// Returns the samples as a plan, for the independent checks.
 Plan as_plan(std::span<const Vec2> x, int samples) {
   Plan plan;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -87,8 +87,7 @@ TEST(MakeValid, PushesACrossingPathOffTheHeavierOne) {
 }
 
 TEST(MakeValid, ShrinksOrDropsPathsThatCoverEachOther) {
-  // the same circle eight times: inside each other by shrinking, until the smallest length is
-  // reached
+  // the same circle eight times: the circles shrink into each other, down to the smallest length
   std::vector<Vec2> x;
   for (int k = 0; k < 8; ++k) {
     const std::vector<Vec2> one = circle({1e-4 * k, 0}, 22, 20);
@@ -105,7 +104,7 @@ TEST(MakeValid, MakesAnythingValid) {
   const std::uint64_t count = test::reduced(4000);
   for (std::uint64_t trial = 0; trial < count; ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
-    // random points, points on a line, points on a coarse lattice (many coincide), all in one place
+    // random points, points on a line, points on a coarse lattice (many coincide), equal points
     const int samples = 8 + random.below(kMaxPathPoints - 7), paths = 1 + random.below(kMaxPaths);
     const int kind = random.below(4);
     const double spread = std::pow(10.0, random.uniform(-4.0, 2.5));

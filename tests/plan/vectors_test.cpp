@@ -1,4 +1,4 @@
-/// The planner on every set of vector instructions that this processor has.
+/// The planner on every set of vector instructions of this processor.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using fields::kPatterns;
 using test::OnlyTargets;
 using test::vector_targets;
 
-/// Mean RMSE of each pattern over some frames of its sequence.
+/// Returns the mean RMSE of each pattern over some frames of its sequence.
 std::array<double, kPatterns.size()> gallery_rmse(const PlanSettings& settings, int frames) {
   Planner planner(settings, static_cast<std::size_t>(fields::kCells) * fields::kCells);
   std::array<double, kPatterns.size()> rmse{};
@@ -42,8 +42,7 @@ double mean(const std::array<double, kPatterns.size()>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The order of sums differs, and so do the ways downhill; what comes of them should not, on the
-/// mean over enough plans.
+/// The order of sums and the ways downhill differ; over enough plans the mean results must not.
 void expect_as_good_as_plain(const PlanSettings& settings, int frames, std::int64_t targets) {
   std::array<double, kPatterns.size()> plain{};
   {

@@ -1,4 +1,4 @@
-/// Fields that say where errors count more: (P17).
+/// Fields with weights, which make some errors count more: (P17).
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ Plan plan_of(const TargetField& field, const PlanSettings& settings) {
   return plan;
 }
 
-/// A frame of a pattern whose upper rows have the weight `upper` and the others `lower`.
+/// Returns a frame of a pattern whose upper rows have the weight `upper` and the others `lower`.
 TargetField halved(Pattern pattern, int frame, double upper, double lower) {
   TargetField field = fields::make(pattern, frame);
   field.weight.assign(field.size(), lower);
@@ -51,7 +51,7 @@ TargetField halved(Pattern pattern, int frame, double upper, double lower) {
   return field;
 }
 
-/// A flat palm with one round contact at each given column of the middle row.
+/// Returns a flat palm with one round contact at each given column of the middle row.
 TargetField contacts(std::initializer_list<int> columns) {
   TargetField field;
   field.resize(25, 45);
@@ -129,7 +129,7 @@ TEST(CellTiles, KeepTheWeightedMassOfTheTarget) {
 }
 
 TEST(InitialLoops, TourWhatCounts) {
-  // both contacts, but only one of them where the other has less than 1 % of its weight
+  // both contacts, but only one if the other has less than 1 % of its weight
   for (const double right : {1.0, 5e-3}) {
     TargetField field = contacts({12, 32});
     field.weight.assign(field.size(), 1.0);
@@ -154,7 +154,7 @@ TEST(InitialLoops, TourWhatCounts) {
   }
 }
 
-/// Loops laid over a pattern with weights, and the cells that they are to render.
+/// Loops over a pattern with weights, and the cells to render.
 struct Case {
   CellTiles cells{kCells};
   Loops loops;
@@ -216,7 +216,7 @@ TEST(Weights, OnePathGoesToTheContactThatCountsMore) {
     PlanSettings settings = preset(name);
     settings.paths = 1;
     for (const bool left : {true, false}) {
-      // so far apart that no path is long enough to serve both
+      // so far apart that no path can serve both
       TargetField field = contacts({4, 40});
       field.weight.assign(field.size(), 1.0);
       for (int row = 0; row < field.rows; ++row) {
@@ -235,7 +235,7 @@ TEST(Weights, OnePathGoesToTheContactThatCountsMore) {
   }
 }
 
-/// Root of the mean squared error over rows [first, last), over the largest pressure.
+/// Returns the root mean squared error over rows [first, last), relative to the largest pressure.
 double rmse_of_rows(const TargetField& field, const Plan& plan, int first, int last) {
   std::vector<double> rendered(field.size());
   quasi_static_field(plan, 0, field, kSigma, kGain, rendered);
@@ -248,7 +248,7 @@ double rmse_of_rows(const TargetField& field, const Plan& plan, int first, int l
   return std::sqrt(sum / cells) / max_pressure(field);
 }
 
-/// `./run bench planner` prints by how much, pattern by pattern.
+/// `./run bench planner` prints the size of the effect for every pattern.
 TEST(Weights, LowerTheErrorWhereTheyAreGreater) {
   double upper = 0.0, lower = 0.0;
   for (const Pattern pattern : fields::kPatterns) {

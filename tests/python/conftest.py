@@ -1,4 +1,4 @@
-"""What every test of the module uses: the program to compare with, and fields."""
+"""Shared fixtures of the module's tests: the program to compare with, and fields."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def blobs(rows=24, cols=30, cell=5.0):
-    """Two bumps of pressure on a skin with holes: (rows, cols), NaN = no skin; cell in mm."""
+    """Returns two bumps of pressure on a skin with holes: (rows, cols), NaN = no skin; cell in mm."""
     y, x = np.mgrid[0:rows, 0:cols] * cell
     p = np.exp(-((x - 60) ** 2 + (y - 60) ** 2) / (2 * 22.0**2))
     p += 0.7 * np.exp(-((x - 100) ** 2 + (y - 40) ** 2) / (2 * 12.0**2))
@@ -33,7 +33,7 @@ def field():
 
 @pytest.fixture(scope="session")
 def program():
-    """Runs `prostm ARGUMENTS…` of the environment variable PROSTM; gives the finished process."""
+    """Returns a function that runs `prostm ARGUMENTS…` of the environment variable PROSTM and returns its process."""
     path = Path(os.environ.get("PROSTM", ROOT / "build" / "release" / "prostm"))
     assert path.is_file(), f"PROSTM names no program: {path}"
 
@@ -47,7 +47,7 @@ def program():
 
 
 def shared_file(name):
-    """A file of ../shared, which is not part of the project; skips the test when it is absent."""
+    """Returns a file of ../shared, which is not part of the project; skips the test if it is missing."""
     path = ROOT.parent / "shared" / name
     if not path.exists():
         pytest.skip(f"needs {name} in ../shared, which is not part of the project")

@@ -32,7 +32,7 @@ def test_the_model_counts_the_nearest_focus(field):
     p = np.array([focus.pressure for focus in result.foci])[square.argmin(-1)]
     expected = p * np.exp(-square.min(-1) / (2 * 0.012**2))
     np.testing.assert_allclose(prostm.quasi_static_field(result.plan, field, sigma=0.012), expected, rtol=1e-9)
-    # the peaks are what is played, as 32-bit samples
+    # the peaks are played, as 32-bit samples
     np.testing.assert_allclose(result.quasi_static_field(), expected, rtol=1e-6)
     assert result.metrics().rmse == pytest.approx(prostm.score_plan(field, result.plan, sigma=0.012).rmse, rel=1e-5)
     names = [control.name for control in prostm.controls(field, other=result.plan)]
@@ -83,7 +83,7 @@ def test_what_cannot_be(field):
     ]:
         with pytest.raises(ValueError, match=words):
             call()
-    # the emitter of the other method refuses such a plan
+    # the other method's emitter refuses such a plan
     emitter = prostm.PathEmitter(full_scale_pressure=1.0)
     emitter.submit(prostm.lift(prostm.Plan(foci=[focus]), field))
     assert emitter.fill(0, 40)[1].max() == 0 and emitter.stats().refused_plans == 1

@@ -1,4 +1,4 @@
-"""Bad input raises ValueError (TypeError for a wrong type) with a sentence that says what is wrong."""
+"""Bad input raises ValueError (TypeError for a wrong type) with a message about the problem."""
 
 import numpy as np
 import prostm

@@ -1,4 +1,4 @@
-"""The module and the command line are one planner: same field in, same numbers out, to the bit."""
+"""The module and the command line are the same planner: equal fields give equal numbers, to the bit."""
 
 import json
 import re
@@ -10,10 +10,10 @@ import pytest
 from conftest import ROOT, blobs, shared_file
 
 def assert_same_plan(result, document):
-    """A PlanResult and a plan file hold the same paths, metrics and counts."""
+    """Checks that a PlanResult and a plan file have the same paths, metrics and counts."""
     text = prostm.plan_to_json(result.plan, result.target, result.settings)
     assert json.loads(text)["paths"] == document["paths"] != []
-    # what Python sees is what was written, but for the step from millimetres to metres, which can round
+    # Python has the written numbers, except for the conversion from millimetres to metres, which can round
     for path, saved in zip(result.paths, document["paths"], strict=True):
         np.testing.assert_allclose(path.points, np.array(saved["points_mm"]) / 1000, rtol=3e-16, atol=0)
         np.testing.assert_array_equal(path.pressure, saved["pressure"])
@@ -90,7 +90,7 @@ def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field
     for document in (here, there):
         del document["stage_us"], document["settings"]
     del there["controls"]
-    # the power limit is a setting of the emission, which a plan made here has not got
+    # the power limit is a setting of the emission, which a plan made here does not have
     power = there.pop("power")
     assert power["share_of_full_scale"] == prostm.even_share(len(here["paths"]), power["limit"])
     assert here == there
@@ -100,7 +100,7 @@ def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field
         for a, b in zip(file.plan.paths, result.paths, strict=True):
             np.testing.assert_array_equal(a.points, b.points)
             np.testing.assert_array_equal(a.pressure, b.pressure)
-            # in mm in the file: not every double in m is a thousandth of one
+            # the file is in mm: not every double in m is an exact thousandth
             assert abs(a.length - b.length) <= 1e-15 * b.length
         np.testing.assert_array_equal(file.raster.skin, field.skin)
     text = prostm.plan_to_json(result.plan, field, result.settings, result.stats, result.metrics(),
@@ -109,7 +109,7 @@ def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field
 
 
 def test_the_example_of_the_page_works(tmp_path, monkeypatch):
-    """Every block of docs/python.md runs, one after the other, in a folder that holds its field."""
+    """Runs every block of docs/python.md, one after the other, in a folder that has its field."""
     monkeypatch.chdir(tmp_path)
     np.save("palm.npy", blobs())
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), flags=re.S)

@@ -1,4 +1,4 @@
-"""How the module's objects live: views, copies, threads, memory, settings, help."""
+"""Lifetime of the module's objects: views, copies, threads, memory, settings, help."""
 
 import copy
 import gc
@@ -74,7 +74,7 @@ def test_a_field_without_pressure_gives_a_plan_without_paths():
 
 
 def test_settings_follow_the_header():
-    """Names and order are those of PlanSettings::visit, whatever it lists."""
+    """Names and order are those of PlanSettings::visit, for any number of settings."""
     source = (ROOT / "src" / "prostm" / "plan" / "plan_settings.cpp").read_text()
     listed = re.findall(r'v\.field\(\{(?:\.name = )?"(\w+)"', source)
     settings = prostm.PlanSettings()
@@ -147,7 +147,7 @@ def test_a_planner_gives_the_same_plan_again_once_it_has_forgotten(field):
 
 
 def test_threads_may_share_planner_and_field(field):
-    """The lock of the interpreter is released, and each plan is whole all the same."""
+    """The interpreter's lock is released, and each plan is still complete."""
     planner = prostm.Planner(preset="paper-valid", clusters=20, refine_iterations=20)
     expected = planner.plan(field).paths[0].points.copy()
     wrong, done = [], []
@@ -167,7 +167,7 @@ def test_threads_may_share_planner_and_field(field):
 
 
 def longest_pause_beside(work):
-    """The longest pause of this thread while another is in work(), as a share of the time that work() took."""
+    """Returns the longest pause of this thread while another runs work(), as a share of the duration of work()."""
     times = []
 
     def timed():
@@ -187,13 +187,13 @@ def longest_pause_beside(work):
 
 
 def test_python_runs_on_while_a_plan_is_made_and_scored():
-    """One call with the lock held would be one pause, as long as the call."""
+    """A call that kept the lock would be one pause, as long as the call."""
     planner = prostm.Planner(max_cells=160_000, preset="paper")
     field = prostm.TargetField(np.random.default_rng(1).random((400, 400)), 1e-4)
     plan = planner.plan(field).plan
     assert longest_pause_beside(lambda: planner.plan(field)) < 0.6
     assert longest_pause_beside(lambda: prostm.score_plan(field, plan)) < 0.6
-    assert longest_pause_beside(lambda: pow(7, 3_000_000)) > 0.6  # holds it
+    assert longest_pause_beside(lambda: pow(7, 3_000_000)) > 0.6  # keeps the lock
 
 
 def resident_pages():
@@ -216,7 +216,7 @@ def test_ten_thousand_plans_take_no_memory(pressure):
     before = resident_pages()
     for _ in range(10_000):
         once()
-    # a plan is 13 kB, a field 12 kB: keeping one in a hundred of them would be 2.5 MB
+    # a plan is 13 kB, a field 12 kB: a leak of one in a hundred would be 2.5 MB
     assert (resident_pages() - before) * os.sysconf("SC_PAGE_SIZE") < 1 << 20
 
 
@@ -255,7 +255,7 @@ def test_every_public_name_is_explained():
             continue
         assert value.__doc__ and value.__module__ == "prostm", name
         for member, attribute in vars(value).items() if inspect.isclass(value) else []:
-            if not member.startswith("_") and member not in ("name", "value"):  # an enumeration's own
+            if not member.startswith("_") and member not in ("name", "value"):  # an enumeration's own members
                 assert (attribute.__doc__ or "").strip(), f"{name}.{member}"
     text = pydoc.plain(pydoc.render_doc(prostm))
     assert "_prostm." not in text and "Planner" in text and "(rows, cols)" in text

@@ -1,4 +1,4 @@
-"""What the module computes against the same equations written down in numpy."""
+"""The module's results, compared with the same equations in numpy."""
 
 from types import SimpleNamespace
 
@@ -10,7 +10,7 @@ SIGMA, GAIN = 8.6e-3, 1.4
 
 
 def eq1(paths, field, sigma=SIGMA, gain=GAIN):
-    """The paper's Eq. (1) on the raster, by brute force over all segments: (rows, cols)."""
+    """Computes the paper's Eq. (1) on the raster, by brute force over all segments: (rows, cols)."""
     cols, rows = np.meshgrid(np.arange(field.cols), np.arange(field.rows))
     x = field.origin + field.cell * np.stack([cols, rows], axis=-1)
     nearest, pressure = np.full(field.shape, np.inf), np.zeros(field.shape)
@@ -39,14 +39,14 @@ def test_quasi_static_field_is_eq_1(field, preset, sigma, gain):
 
 @pytest.mark.parametrize("preset", ["paper", "best"])
 def test_every_path_has_the_gain_of_its_period(field, preset):
-    ample = 1e5 * field.pressure[field.skin].max()  # full output that holds no pressure back
+    ample = 1e5 * field.pressure[field.skin].max()  # full output that limits no pressure
     settings = prostm.PlanSettings(preset=preset, gain_exponent=-0.7, draw_rate=60, full_scale_pressure=ample)
     result = prostm.plan(field, settings=settings)
     constant = prostm.plan(field, preset, draw_rate=60, full_scale_pressure=ample)
     gains = [GAIN * (path.period * 60) ** -0.7 for path in result.paths]
     for path, other, gain in zip(result.paths, constant.paths, gains):
         np.testing.assert_allclose(path.pressure, other.pressure * gain / GAIN, rtol=1e-12)
-    # Eq. (1) on effective pressures, and the model that a result scores itself with
+    # Eq. (1) with effective pressures, and the model by which a result scores itself
     effective = [prostm.FocalPath(path.points, path.pressure / gain) for path, gain in zip(result.paths, gains)]
     rendered = prostm.quasi_static_field(result.plan, field, gain_exponent=-0.7, draw_rate=60)
     np.testing.assert_allclose(rendered, eq1(effective, field, gain=1.0), rtol=1e-9, atol=1e-12)
@@ -75,7 +75,7 @@ def test_metrics_are_those_of_eq_1(field):
 
 
 def second_lap(field, plan, full_scale):
-    """What the emitter plays of each path once it goes round, as paths of many points."""
+    """Returns the emitter's second lap of each path, as paths of many points."""
     positions, intensities = prostm.emit(plan, field, 0.1, full_scale)
     paths = []
     for path in plan.paths:
@@ -102,10 +102,10 @@ def test_the_quality_of_a_result_is_that_of_what_is_played(preset):
         ours = result.quasi_static_field(emission=settings)
         metrics = result.metrics(emission=settings)
         assert prostm.score_field(field, ours, metrics.coverage).as_dict() == metrics.as_dict()
-        # cells that two paths are equally near to may fall to either
+        # cells equally near to two paths may belong to either
         assert np.quantile(np.abs(ours - played), 0.99) < 0.02 * field.pressure.max()
         assert prostm.score_field(field, played).rmse == pytest.approx(metrics.rmse, rel=0.05)
-    # without a full scale it is the gain times the largest pressure
+    # the default full scale is the gain times the largest pressure
     settings = prostm.EmitSettings(full_scale_pressure=GAIN * field.pressure.max())
     assert result.metrics().as_dict() == result.metrics(emission=settings).as_dict()
 
@@ -192,7 +192,7 @@ def test_emission_follows_the_path_at_its_speed(field):
     assert intensities[0, 0] <= 1 / 40 and intensities.min() >= 0 and 0.5 < intensities.max() <= 1
     assert np.abs(np.diff(intensities, axis=0)).max() <= 1 / 40 + 1e-6
 
-    # once it sounds: 7 m/s in whole samples a lap, on the plane 200 mm above the array
+    # once it sounds: 7 m/s, with a whole number of samples per lap, on the plane 200 mm above the array
     p = positions[400:, 0].astype(float)
     lap = int(np.ceil(result.paths[0].length / (7 / 40e3)))
     np.testing.assert_allclose(p[lap:], p[:-lap], atol=1e-6)
@@ -200,7 +200,7 @@ def test_emission_follows_the_path_at_its_speed(field):
     assert steps.max() <= 7 / 40e3 + 1e-6
     np.testing.assert_allclose(p[:, 2], 0.2, atol=1e-6)
 
-    # each sample is on the path, and as strong as the drive law says
+    # each sample lies on the path, with the intensity of the drive law
     a, b = result.paths[0].points, np.roll(result.paths[0].points, -1, axis=0)
     pr, qr = result.paths[0].pressure, np.roll(result.paths[0].pressure, -1)
     for k in range(400, 4000, 37):
@@ -231,7 +231,7 @@ def test_an_emitter_step_by_step(field):
     assert report.plan == 12 and report.first_sample >= 0 and report.redrawn_sample > 0
     assert emitter.next_take_over() is None
 
-    # blocks make no difference
+    # the block size makes no difference
     whole = prostm.PathEmitter(full_scale_pressure=1.4, foci=3)
     whole.submit(lifted)
     positions, intensities_of_whole = whole.fill(0, 2000)

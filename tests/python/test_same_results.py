@@ -1,4 +1,4 @@
-"""The comparison of two builds: a build is the same as itself, and one that plans a little differently is not."""
+"""The comparison of two builds: a build equals itself, and differs from one that plans slightly differently."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ TOOL = ROOT / "tools" / "same_results.py"
 
 @pytest.fixture
 def build(tmp_path):
-    """A function that makes a folder like a build's, whose program adds options to those that it is given."""
+    """Returns a function that makes a build folder whose program adds options to the given ones."""
     program = Path(os.environ.get("PROSTM", ROOT / "build" / "release" / "prostm"))
 
     def make(name, *options):
@@ -29,7 +29,7 @@ def build(tmp_path):
 
 
 def compare(tmp_path, *builds, seconds=0.8):
-    """Exit status, and the lines of the comparison of the scenes alone, on plain code."""
+    """Returns the exit status, the lines and the errors of a comparison of the scenes alone, on plain code."""
     command = (TOOL, *builds, "--seconds", seconds, "--vectors", "none", "--hands", tmp_path)
     done = subprocess.run([str(part) for part in command], text=True, capture_output=True, timeout=300)
     return done.returncode, done.stdout.splitlines(), done.stderr

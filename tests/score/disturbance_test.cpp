@@ -12,7 +12,7 @@ namespace {
 constexpr double kSigma = 8.6e-3;
 constexpr GainLaw kGain{1.4};
 
-/// exp(−r²/2σ²) about the middle of a square of skin, 1 mm cells.
+/// Returns exp(−r²/2σ²) about the middle of a square of skin with 1 mm cells.
 TargetField gaussian_target(double sigma) {
   TargetField target;
   target.resize(121, 121);
@@ -28,7 +28,8 @@ TargetField gaussian_target(double sigma) {
   return target;
 }
 
-/// A regular polygon about the middle; with a radius of 0.1 µm it renders one Gaussian.
+/// Returns a regular polygon about the middle; with a radius of 0.1 µm it renders a single
+/// Gaussian.
 Plan polygon(int corners, double radius) {
   FocalPath path;
   for (int i = 0; i < corners; ++i) {
@@ -66,7 +67,8 @@ TEST(ScoreDisturbed, AShiftedGaussianHasTheErrorOfItsClosedForm) {
   const Plan point = polygon(8, 1e-7);
   const double area = 121 * 121 * 1e-6;
   for (const double shift : {1e-3, 3e-3, 5e-3}) {
-    // ∫ (G(x) − G(x − e))² = 2 π σ² (1 − exp(−e²/4σ²)), correlation nearly that of the products
+    // ∫ (G(x) − G(x − e))² = 2 π σ² (1 − exp(−e²/4σ²)); the correlation is nearly that of the
+    // products
     const double exact =
         std::sqrt(2.0 * kPi * kSigma * kSigma *
                   (1.0 - std::exp(-0.25 * shift * shift / (kSigma * kSigma))) / area);
@@ -90,7 +92,7 @@ TEST(ScoreDisturbed, AWiderFocusHasTheErrorOfItsClosedForm) {
 }
 
 TEST(ScoreDisturbed, TheDirectionOfAShiftDoesNotMatterToASymmetricPlan) {
-  // a regular octagon on a round target: every direction of the mean gives the same
+  // a regular 16-gon on a round target: the result is the same for every direction of the shift
   const TargetField target = gaussian_target(0.015);
   const Plan plan = polygon(16, 0.015);
   const Metrics first = score_shifted(target, plan, 0, kSigma, kGain, Vec2(5e-3, 0.0));
@@ -101,7 +103,7 @@ TEST(ScoreDisturbed, TheDirectionOfAShiftDoesNotMatterToASymmetricPlan) {
     EXPECT_NEAR(m.rmse, first.rmse, 1e-9);
     EXPECT_NEAR(m.skill_8, first.skill_8, 1e-9);
   }
-  // between the axes only the square of skin and its cells differ
+  // between the axes only the square skin and its cells make a difference
   const Metrics between =
       score_shifted(target, plan, 0, kSigma, kGain, 5e-3 * std::sqrt(0.5) * Vec2(1.0, 1.0));
   EXPECT_NEAR(between.rmse, first.rmse, 1e-4);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRate = 40e3;  // [Hz]
 
-/// A target as a frame, its pressure times `factor`, and a plan of it.
+/// A target in a frame, its pressure times `factor`, and its plan.
 struct Planned {
   explicit Planned(double factor = 1.0) {
     frame.patches.push_back(fields::make(fields::Pattern::OnePlume, 50, 32));

@@ -21,7 +21,7 @@ TEST(Ghosts, AreMaximaWhereNothingIsToBeFelt) {
   felt[field.index(8, 8)] = 1.0;
   EXPECT_EQ(ghosts_of(field, felt).count, 0);
   EXPECT_EQ(ghosts_of(field, felt).largest, 0.0);
-  felt[field.index(8, 9)] = 0.9;  // 5 mm away, and no maximum
+  felt[field.index(8, 9)] = 0.9;  // 5 mm away, but not a maximum
   felt[field.index(9, 9)] = 0.9;
   EXPECT_EQ(ghosts_of(field, felt).largest, 0.0);
   felt[field.index(24, 24)] = 0.6;
@@ -33,7 +33,7 @@ TEST(Ghosts, AreMaximaWhereNothingIsToBeFelt) {
   EXPECT_EQ(ghosts_of(field, felt).largest, 0.4);
 }
 
-/// A spot in the middle of a raster of skin whose pressure goes up and down at 200 Hz.
+/// Returns the percept of a spot in the middle of a raster of skin, modulated at 200 Hz.
 FeltField spot(double pressure) {
   TargetField raster = fields::make(fields::Pattern::OnePlume, 50, 32);
   raster.skin[0] = 0;

@@ -27,7 +27,7 @@ TEST(Metrics, MeanAndMedianAreOfEachForItself) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i].rmse = static_cast<double>(i * i);         // 0 1 4 9
     all[i].spill = 3.0 - static_cast<double>(i);      // 3 2 1 0
-    all[i].felt_skill = i == 1 ? std::nan("") : 0.5;  // unknown of one
+    all[i].felt_skill = i == 1 ? std::nan("") : 0.5;  // unknown in one case
   }
   EXPECT_EQ(mean(all).rmse, 3.5);
   EXPECT_EQ(median(all).rmse, 2.5);

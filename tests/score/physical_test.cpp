@@ -14,7 +14,7 @@
 namespace prostm {
 namespace {
 
-/// 100 × 100 mm of skin at 5 mm, of height h(x, y) [m].
+/// Returns 100 × 100 mm of skin in 5 mm cells, of height h(x, y) [m].
 template <class Height>
 TargetField raster(Height&& height) {
   TargetField field;
@@ -31,7 +31,7 @@ TargetField raster(Height&& height) {
   return field;
 }
 
-/// Two squares, with pressure from 0.5 to 1 times `pressure`.
+/// Returns two square paths, with pressures from 0.5 to 1 times `pressure`.
 LiftedPlan two_squares(const TargetField& field, double pressure) {
   Plan plan;
   for (const double side : {-1.0, 1.0}) {
@@ -89,7 +89,7 @@ TEST(SkinSurface, OneCellAndOneRowFaceTheArray) {
   }
 }
 
-/// 155 × 155 mm of tilted skin on square cells.
+/// Returns 155 × 155 mm of tilted skin in square cells.
 TargetField wide_raster(int cells) {
   TargetField field;
   field.resize(cells, cells);
@@ -102,7 +102,7 @@ TargetField wide_raster(int cells) {
   return field;
 }
 
-// The largest values lie between the middles of cells wider than a lobe.
+// With cells wider than a lobe the largest values lie between the cells' centres.
 TEST(Physical, LargestValuesDoNotDependOnTheCells) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(2);
@@ -149,20 +149,20 @@ TEST(LoopDrives, TheCommonScaleHoldsInEverySample) {
   LoopDriveSettings settings;
   settings.transducer.memoryless = true;
   settings.focus.method = FocusMethod::GsPat;
-  EXPECT_LT(drives_of(loop, settings).full_share, 0.1);  // its drives differ in a sample
+  EXPECT_LT(drives_of(loop, settings).full_share, 0.1);  // the drives of a sample differ
   settings.focus.method = FocusMethod::Weighted;
   const LoopDriveResult drives = drives_of(loop, settings);
   EXPECT_EQ(drives.short_samples, 0);
   EXPECT_NEAR(drives.largest_drive, 1.0, 1e-9);
   EXPECT_GT(drives.full_scale_pa, 100.0);
   EXPECT_LE(drives.mean_power, 256.0);
-  EXPECT_GE(drives.full_share, 1.0 / loop.samples);  // all drives of a sample are alike
+  EXPECT_GE(drives.full_share, 1.0 / loop.samples);  // all drives of a sample are equal
   const PackedArray packed(usx_array(), Medium());
   const FocusAccuracy focus = focus_accuracy(packed, loop, drives, TargetField::default_plane());
   EXPECT_GT(focus.looked_at, 100);
   EXPECT_NEAR(focus.mean_level, 1.0, 0.05);
   EXPECT_LT(focus.worst_offset, 2e-3);
-  // asked for four times as much, every sample is short of it
+  // with four times the full scale every sample falls short of it
   settings.full_scale_pa = 40.0 * drives.full_scale_pa;
   EXPECT_EQ(drives_of(loop, settings).short_samples, loop.samples);
 }
@@ -194,7 +194,7 @@ TEST(LoopDrives, OneOfTwoFocalPointsAtOnePlaceIsLeftOut) {
   EXPECT_EQ(drives_of(loop_of(plan), {}).merged, loop_of(plan).samples);
 }
 
-// With the same pressure asked for, tilted skin gets less; with (E8) it gets the same.
+// With equal requested pressure tilted skin gets less; with (E8) it gets the same.
 TEST(Physical, CompensatedTiltedSkinGetsWhatLevelSkinGets) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(2);
@@ -206,7 +206,7 @@ TEST(Physical, CompensatedTiltedSkinGetsWhatLevelSkinGets) {
     frame.patches.push_back(raster([&](double x, double) { return std::tan(tilt) * x; }));
     const TargetField& field = frame.patches[0];
     LiftedPlan plan = two_squares(field, 0.4);
-    plan.paths.pop_back();  // two focal points disturb each other by more than (E8) is off
+    plan.paths.pop_back();  // two focal points disturb each other by more than the error of (E8)
     compensate_tilt(plan, frame, bound);
     const LoopSamples loop = loop_of(plan);
     const PhysicalField out =

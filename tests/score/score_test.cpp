@@ -17,7 +17,7 @@ namespace {
 constexpr double kSigma = 8.6e-3;
 constexpr GainLaw kGain{1.4};
 
-/// Two rows of three cells, the last without skin.
+/// Returns two rows of three cells, the last without skin.
 TargetField small_target() {
   TargetField target;
   target.resize(2, 3);
@@ -29,7 +29,7 @@ TargetField small_target() {
 
 TEST(ScoreField, ClosedFormsOnFiveCells) {
   const TargetField target = small_target();
-  // what is rendered off the skin counts nothing
+  // pressure rendered off the skin does not count
   const std::vector<double> rendered{2.0, 2.0, 2.0, 0.0, 0.0, 100.0};
   const Metrics m = score_field(target, rendered, 0.25);
   EXPECT_DOUBLE_EQ(m.coverage, 0.25);
@@ -66,12 +66,12 @@ TEST(ScorePlan, OfFociIsThatOfTheNearestFocus) {
   Plan plan;
   plan.foci.push_back({0, target.position(0, 0), 4.0});
   plan.foci.push_back({0, target.position(1, 1), 2.0});
-  plan.foci.push_back({1, target.position(0, 1), 9.0});  // of another hand
-  const double sigma = 0.1;                              // a cell
+  plan.foci.push_back({1, target.position(0, 1), 9.0});  // on another hand
+  const double sigma = 0.1;                              // the edge of a cell
   const double near = std::exp(-0.5);
   const std::vector<double> rendered{4.0, 4.0 * near, 2.0 * near * near, 4.0 * near, 2.0, 0.0};
   const Metrics expected = score_field(target, rendered, 0.0);
-  // two cells have the distance of one to either: of equals the first counts
+  // two cells are equally far from both foci: the first focus counts
   const Metrics m = score_plan(target, plan, 0, sigma, kGain);
   EXPECT_NEAR(m.rmse, expected.rmse, 1e-12);
   EXPECT_NEAR(m.correlation, expected.correlation, 1e-12);
@@ -105,7 +105,7 @@ TEST(ScoreField, TheUnitOfPressureChangesNothing) {
   }
 }
 
-/// Skill after the blur, from the definition: every pair of skin cells.
+/// Computes the skill after the blur by its definition: over every pair of skin cells.
 double slow_blurred_skill(const TargetField& target, const std::vector<double>& rendered) {
   constexpr double kBlur = 8.5e-3;
   std::vector<double> a, b;
@@ -263,7 +263,7 @@ TEST(WeightedRmse, CountsErrorsByTheirWeights) {
     target.weight.assign(target.size(), 1e-300);
     EXPECT_NEAR(weighted_rmse(target, plan, 0, kSigma, kGain), rmse, 1e-12);
 
-    // one cell alone: its own error
+    // a single weighted cell: its own error
     const std::size_t cell = target.index(40, 40);
     ASSERT_EQ(target.skin[cell], 1);
     target.weight.assign(target.size(), 0.0);

@@ -1,12 +1,12 @@
 #pragma once
-/// Waiting for what another thread does.
+/// Waits for another thread.
 
 #include <chrono>
 #include <thread>
 
 namespace prostm::test {
 
-/// Waits until `done()`; false after a time that only a failure takes.
+/// Waits until `done()`; returns false after a time that only a failure takes.
 template <class Condition>
 bool eventually(Condition&& done) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);

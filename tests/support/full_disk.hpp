@@ -7,7 +7,7 @@
 
 namespace prostm::test {
 
-/// While it lives, no file can grow beyond `bytes`: a file-size limit stands for a full disk.
+/// During its lifetime no file can grow beyond `bytes`: a file-size limit stands for a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {

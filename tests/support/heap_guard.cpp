@@ -7,7 +7,7 @@ namespace {
 thread_local std::size_t allocation_count = 0;
 }
 
-// operator new[] calls these by default; the nothrow forms are replaced too, since sanitizers bring
+// operator new[] calls these by default; the nothrow forms are replaced too, since sanitizers have
 // their own
 void* operator new(std::size_t size) {
   ++allocation_count;

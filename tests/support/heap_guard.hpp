@@ -1,5 +1,5 @@
 #pragma once
-/// Counts heap allocations of the calling thread, to prove that a loop makes none.
+/// Counts heap allocations of the calling thread, to prove that a loop does not allocate.
 
 #include <cstddef>
 

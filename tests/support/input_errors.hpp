@@ -1,5 +1,5 @@
 #pragma once
-/// Bad input must answer with one sentence that says what is wrong.
+/// Bad input must be answered with one sentence about the problem.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace prostm::test {
 
-/// The sentence that `action` fails with; empty (and a failure) when it does not fail.
+/// Returns the message with which `action` fails; if it does not, fails the test and returns "".
 inline std::string input_error(const std::function<void()>& action) {
   try {
     action();
@@ -27,7 +27,7 @@ inline std::string input_error(const std::function<void()>& action) {
   return {};
 }
 
-/// A folder of its own, gone afterwards.
+/// A temporary folder, deleted with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -52,7 +52,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Converting a text like 1e999 overflows inside the C library, which the tests' traps would stop.
+/// Disables traps: converting a text like 1e999 overflows in the C library, which would stop a
+/// test.
 class WithoutTraps {
  public:
   WithoutTraps() { std::feholdexcept(&environment_); }

@@ -1,12 +1,12 @@
 #pragma once
-/// How much a long test does.
+/// The amount of work of long tests.
 
 #include <cstdint>
 #include <cstdlib>
 
 namespace prostm::test {
 
-/// `count` in a plain build, a twentieth of it under the address or the thread sanitizer.
+/// Returns `count` in a plain build, a twentieth of it under the address or the thread sanitizer.
 constexpr std::uint64_t reduced(std::uint64_t count) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return count / 20;
@@ -15,12 +15,13 @@ constexpr std::uint64_t reduced(std::uint64_t count) {
 #endif
 }
 
-/// Seeds of a test over many random inputs, [first, end).
+/// Range of seeds, [first, end), of a test over many random inputs.
 struct Seeds {
   std::uint64_t first, end;
 };
 
-/// `count` seeds (see reduced()) from 0 on, or as PROSTM_RANDOM_INPUTS and PROSTM_FIRST_SEED say.
+/// Returns `count` seeds (see reduced()) from 0 on, unless PROSTM_RANDOM_INPUTS and
+/// PROSTM_FIRST_SEED say otherwise.
 inline Seeds seeds(std::uint64_t count) {
   const auto number = [](const char* name, std::uint64_t otherwise) {
     const char* text = std::getenv(name);

@@ -1,5 +1,5 @@
-/// Every test runs with floating-point traps on: an invalid operation, a division by zero or an
-/// overflow stops it.
+/// Runs all tests with floating-point traps on: an invalid operation, a division by zero or an
+/// overflow stops the test.
 
 #include <gtest/gtest.h>
 

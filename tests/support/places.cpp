@@ -1,5 +1,5 @@
-// The one source that the checkout's own path is compiled into, so that a compiler's cache serves
-// any other folder's tests.
+// The only source that contains the checkout's path, so that a compiler cache serves other folders'
+// tests too.
 #include "support/places.hpp"
 
 namespace prostm::test {

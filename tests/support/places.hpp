@@ -1,11 +1,11 @@
 #pragma once
-/// Where files of this checkout and beside it lie.
+/// Paths of files in this checkout and beside it.
 
 #include <string>
 
 namespace prostm::test {
 
-std::string source_file(const std::string& name);  ///< of the project, by its path in the checkout
-std::string shared_file(const std::string& name);  ///< relative to ../shared; may not be there
+std::string source_file(const std::string& name);  ///< path of a project's file
+std::string shared_file(const std::string& name);  ///< relative to ../shared; may be missing
 
 }  // namespace prostm::test

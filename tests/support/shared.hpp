@@ -1,5 +1,5 @@
 #pragma once
-/// Data that is not part of the project: tests that use it skip when it is absent.
+/// Data outside of the project: tests that use it are skipped if it is missing.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "support/places.hpp"
 
-/// Skips the running test when `name` (relative to ../shared) is not there.
+/// Skips the running test if `name` (relative to ../shared) is missing.
 #define PROSTM_NEEDS_SHARED(name)                                \
   if (!std::filesystem::exists(prostm::test::shared_file(name))) \
   GTEST_SKIP() << "needs " << (name) << " in ../shared, which is not part of the project"

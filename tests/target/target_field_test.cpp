@@ -30,14 +30,14 @@ TargetField palm(int rows, int cols) {
   return field;
 }
 
-// random islands of skin with random heights
+// returns random islands of skin with random heights
 TargetField islands(Random& random) {
   TargetField field;
   field.resize(1 + random.below(12), 1 + random.below(12));
   field.cell = 5e-3;
   const double share = random.uniform();
   for (std::size_t i = 0; i < field.size(); ++i) {
-    field.height[i] = 99.0;  // of cells without skin: must be overwritten
+    field.height[i] = 99.0;  // in cells without skin: must be overwritten
     if (random.uniform() < share) {
       field.skin[i] = 1;
       field.height[i] = random.uniform(-0.02, 0.02);
@@ -126,7 +126,7 @@ TEST(Validate, NamesWhatIsWrong) {
   weighted.weight.assign(12, 0.0);
   weighted.weight[5] = 1e-300;
   EXPECT_NO_THROW(validate(weighted));
-  // without skin there is nothing to weigh
+  // without skin no weight matters
   weighted.resize(3, 4);
   weighted.weight.assign(12, 0.0);
   EXPECT_NO_THROW(validate(weighted));

@@ -19,7 +19,7 @@ const std::vector<Vec3> kTransducers = {{-0.08, -0.08, 0.0},
                                         {-0.08, 0.08, 0.0},
                                         {0.08, 0.08, 0.0}};
 
-/// A hand whose index tip is at p_T.
+/// Returns a hand whose index tip is at p_T.
 HandFrame pointing(const Vec3& p_T, std::size_t hands = 1) {
   HandFrame frame;
   make_scripted_hand({}, {})->sample(5.0, frame);
@@ -42,7 +42,7 @@ TEST(CalibrationGuide, LeadsFromMarkToMarkToThePose) {
   for (int mark = 0; mark < 4; ++mark) {
     const CalibrationMark& at = guide.marks()[static_cast<std::size_t>(mark)];
     EXPECT_THAT(guide.sentence(), HasSubstr("Touch " + at.name));
-    // what the tracker sees of a finger whose flesh lies on the mark, with 1 mm of noise
+    // the tracker's view of a finger whose flesh lies on the mark, with 1 mm of noise
     const double flesh = pointing(Vec3::Zero()).hands[0].radius[kIndexTip];
     const Vec3 tip = X_DT.inverse() * (at.p_D + flesh * Vec3::UnitZ());
     time += 10.0;
@@ -60,7 +60,7 @@ TEST(CalibrationGuide, LeadsFromMarkToMarkToThePose) {
   EXPECT_LT((guide.result()->X_DT.translation() - X_DT.translation()).norm(), 0.002);
   EXPECT_LT((guide.result()->X_DT.linear() - X_DT.linear()).norm(), 0.02);
   EXPECT_THAT(guide.sentence(), HasSubstr("mm rms"));
-  // a mark that is taken again asks for another solution
+  // taking a mark again requires a new solution
   EXPECT_EQ(guide.take(0), "");
   EXPECT_FALSE(guide.result());
 }
@@ -76,7 +76,7 @@ TEST(CalibrationGuide, TakesOnlyOneFingerThatRests) {
   EXPECT_THAT(guide.take(0), HasSubstr("two hands"));
   guide.watch(1.1, pointing(Vec3::Zero(), 0));
   EXPECT_THAT(guide.take(0), HasSubstr("no hand"));
-  // what was seen before does not count
+  // earlier frames do not count
   for (int i = 0; i < 3; ++i) guide.watch(1.2 + 0.02 * i, pointing(Vec3::Zero()));
   EXPECT_THAT(guide.take(0), HasSubstr("long enough"));
   for (int i = 0; i < 10; ++i) guide.watch(1.3 + 0.02 * i, pointing(Vec3::Zero()));

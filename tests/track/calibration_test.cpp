@@ -84,7 +84,7 @@ TEST(Calibration, NoiseIsAveragedAndTold) {
     worst_move =
         std::max(worst_move, (found.X_DT * Vec3(0, 0.2, 0) - X_DT * Vec3(0, 0.2, 0)).norm());
   }
-  // of the 36 coordinates 6 are used up by the pose
+  // the pose uses up 6 of the 36 coordinates
   EXPECT_NEAR(rms, kNoise * std::sqrt(3.0 * (36.0 - 6.0) / 36.0), 0.05 * kNoise * std::sqrt(3.0));
   EXPECT_LT(worst_move, 3.0 * kNoise);
 }

@@ -21,7 +21,7 @@ HandFrame frame_at(double time, const Vec3& p, std::int64_t id = 1) {
   return frame;
 }
 
-/// A recording in linear motion, seen at irregular times.
+/// Returns a recording of linear motion, seen at irregular times.
 HandRecording linear_recording(const Vec3& velocity, int frames) {
   Random random(4);
   HandRecording recording;
@@ -121,12 +121,12 @@ TEST(CausalTrack, HandsComeAndGoAndShortGapsAreBridged) {
     EXPECT_EQ(out.hands.size(), 0.01 * i - 0.04 <= settings.max_gap ? 1u : 0u) << i;
     EXPECT_EQ(out.age, 0.0);
   }
-  // and comes back with no velocity from before
+  // and returns without its old velocity
   track.add(frame_at(0.2, Vec3(-1, 0, 0)));
   track.sample(0.2, out);
   ASSERT_EQ(out.hands.size(), 1u);
   EXPECT_EQ(out.hands[0].velocity[kPalm], Vec3::Zero());
-  // no frames at all
+  // without any frames
   track.sample(0.2 + 1.01 * settings.max_gap, out);
   EXPECT_TRUE(out.hands.empty());
 }
@@ -146,7 +146,7 @@ TEST(CausalTrack, ANewIdOfTheSameSideTakesTheLostOnesPlace) {
   track.sample(0.04, out);
   ASSERT_EQ(out.hands.size(), 2u);
   EXPECT_EQ(out.hands[0].id + out.hands[1].id, 15);
-  // a lone new right hand leaves the left one to its gap
+  // a new right hand alone leaves the left one to its gap
   track.add(frame_at(0.05, Vec3(0.01, 0, 0), 10));
   track.sample(0.05, out);
   ASSERT_EQ(out.hands.size(), 2u);
@@ -222,7 +222,7 @@ TEST(ReplayedHand, KnowsOnlyTheFramesThatHaveComeIn) {
   TrackSettings settings;
   settings.prediction = 0.0;
   const HandRecording recording = linear_recording(Vec3(1.0, 0, 0), 60);
-  HandRecording late = recording;  // the same until frame 30
+  HandRecording late = recording;  // the same up to frame 30
   for (std::size_t i = 30; i < late.frames.size(); ++i) late.frames[i].hands.clear();
   const auto source = make_replayed_hand(recording, settings, false, 0.02);
   const auto other = make_replayed_hand(late, settings, false, 0.02);
@@ -251,7 +251,7 @@ TEST(ReplayedHand, LoopsAsAHandThatLeavesAndComesBackAsAnother) {
   std::int64_t last = -1;
   for (int i = 0; i < 1000; ++i) {
     source->sample(0.02 * i, frame);
-    EXPECT_LT(frame.age, 0.03);  // frames without hands come in at the seam
+    EXPECT_LT(frame.age, 0.03);  // frames without hands arrive at the seam
     if (frame.hands.empty()) {
       ++without;
       continue;

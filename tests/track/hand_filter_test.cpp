@@ -14,10 +14,10 @@ constexpr double kStep = 0.02;
 
 struct Noise {
   double position = 0, velocity = 0;            // rms of a coordinate [m], [m/s]
-  double position_step = 0, velocity_step = 0;  // rms change from frame to frame
+  double position_step = 0, velocity_step = 0;  // rms change between frames
 };
 
-/// What is left of 0.3 mm of tracking noise on a still hand.
+/// Measures the remainder of 0.3 mm of tracking noise on a still hand.
 Noise noise_of(const TrackSettings& track) {
   ScriptedHandSettings settings;
   settings.still = true;
@@ -60,7 +60,7 @@ TEST(HandFilter, TakesTheNoiseOutOfAStillHand) {
   const Noise raw = noise_of(open), filtered = noise_of({});
   RecordProperty("position_noise_ratio", std::to_string(filtered.position / raw.position));
   RecordProperty("velocity_noise_ratio", std::to_string(filtered.velocity / raw.velocity));
-  // air feels the change of the skin's velocity, so that is what must go
+  // the air reacts to changes of the skin's velocity, so these must be filtered out
   EXPECT_LT(filtered.velocity_step, 0.25 * raw.velocity_step);
   EXPECT_LT(filtered.velocity, 0.45 * raw.velocity);
   EXPECT_LT(filtered.position_step, 0.45 * raw.position_step);
@@ -84,7 +84,7 @@ TEST(HandFilter, FollowsSteadyMotionWithoutLag) {
 }
 
 TEST(HandFilter, OpensForFastMotion) {
-  // the worst lag over a swing of 60 mm at 1.5 Hz: 5.3 m/s² of acceleration
+  // the largest lag over a swing of 60 mm at 1.5 Hz: an acceleration of 5.3 m/s²
   HandFilter filter{TrackSettings()};
   constexpr double kOmega = 2 * 3.14159 * 1.5, kAmplitude = 0.06;
   double lag = 0.0;

@@ -37,7 +37,7 @@ TEST(HandFrame, ToDeviceMovesPositionsVelocitiesAndOrientations) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     EXPECT_TRUE(hand.position[j].isApprox(Vec3(0.1, -0.179, 0.2)));
     EXPECT_TRUE(hand.velocity[j].isApprox(Vec3(1, -3, 2)));
-    // the bone's direction −z in T is −z turned into +y of D, dorsal +y is +z of D
+    // the bone's direction −z in T becomes +y in D, dorsal +y becomes +z
     EXPECT_TRUE((hand.orientation[j] * Vec3(0, 0, -1)).isApprox(Vec3(0, 1, 0)));
     EXPECT_TRUE((hand.orientation[j] * Vec3(0, 1, 0)).isApprox(Vec3(0, 0, 1)));
   }

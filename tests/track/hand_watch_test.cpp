@@ -24,11 +24,11 @@ HandFrame frame_at(double time, std::initializer_list<Hand> hands) {
   return frame;
 }
 
-/// Whether the tracker's hands are taken, frame by frame at 100 Hz.
+/// Shows a tracker's hands to a HandWatch, frame by frame at 100 Hz.
 class Watched {
  public:
   explicit Watched(const TrackSettings& settings = {}) : watch(settings) {}
-  /// Ids of the hands that are taken.
+  /// Returns the ids of the accepted hands.
   std::vector<std::int64_t> take(std::initializer_list<Hand> hands) {
     HandFrame frame = frame_at(0.01 * ++frames_, hands);
     watch.check(frame);
@@ -88,7 +88,7 @@ TEST(HandWatch, TheHandBesideAFrozenOneIsTaken) {
   Watched watched;
   for (int i = 0; i < 100; ++i) {
     const Hand frozen = hand_at(1, kPlace), moving = hand_at(2, kOther + 1e-3 * i * Vec3::UnitY());
-    // in either order, and while the frozen one flickers
+    // in either order, and while the frozen hand flickers
     const auto taken = i % 3 == 0   ? watched.take({moving, frozen})
                        : i % 3 == 1 ? watched.take({frozen, moving})
                                     : watched.take({moving});
@@ -112,7 +112,7 @@ TEST(HandWatch, AHandBelowTheLeastConfidenceIsNotTaken) {
   EXPECT_EQ(watched.status().frozen, 0);
   EXPECT_EQ(watched.status().sentence,
             "connected; 2 hands were not taken: their confidence was below 0.3");
-  // without a bound all are
+  // without a bound all hands are accepted
   settings.least_confidence = 0.0;
   Watched all(settings);
   unsure.confidence = 0.0;

@@ -5,7 +5,8 @@
 
 namespace prostm::test {
 
-/// Its palm at p, the other joints along x from there; it claims a velocity that nobody may use.
+/// Returns a hand with its palm at p and the other joints along x; its claimed velocity must not be
+/// used.
 inline Hand hand_at(std::int64_t id, const Vec3& p, Side side = Side::Right) {
   Hand hand;
   hand.id = id;

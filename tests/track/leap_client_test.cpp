@@ -17,7 +17,7 @@ using nlohmann::json;
 using test::eventually;
 using test::LeapServer;
 
-/// Hands of the script at 110 frames a second, from 5 s on, when one is in sight.
+/// Returns frames of the scripted hand at 110 frames a second, from 5 s on, while it is visible.
 std::vector<HandFrame> scripted_frames(int count) {
   const auto source = make_scripted_hand({}, {});
   std::vector<HandFrame> frames(static_cast<std::size_t>(count));
@@ -41,7 +41,7 @@ LeapAddress address_of(const LeapServer& server) {
   return {"127.0.0.1", server.port()};
 }
 
-/// The next `count` frames of a tracker, or fewer where they do not come.
+/// Receives the next `count` frames of a tracker, or fewer if they do not arrive.
 std::vector<HandFrame> receive(LiveTracker& tracker, std::size_t count) {
   std::vector<HandFrame> frames;
   HandFrame frame;
@@ -146,7 +146,7 @@ TEST(LeapClient, WithoutAConnectionThereIsNoHand) {
       << "although the last frame is not " << TrackSettings().max_gap << " s old";
 }
 
-/// A service that plays its script for a moment and is stuck then, in one of several ways.
+/// A service that plays its script for a moment and then gets stuck in one of several ways.
 struct Stuck {
   const char* name;
   bool new_ids, time_goes_on;
@@ -183,7 +183,7 @@ TEST_P(StuckLeap, HasNoHandAfterAMomentAndSaysWhy) {
     return hands->tracker_status()->frames == static_cast<std::int64_t>(messages.size());
   };
   ASSERT_TRUE(eventually([&] { return count() == 1; }));
-  // by then it is stuck, and stays so
+  // it is stuck from then on
   bool gone = false, came_back = false;
   ASSERT_TRUE(eventually([&] {
     const bool there = count() == 1;
@@ -291,7 +291,7 @@ TEST(LeapAddress, IsReadOrRefusedWithASentence) {
 }
 
 TEST(StampClock, TakesTheJitterOfTheWayOut) {
-  // frames every 9 ms whose way takes 2 ms, or up to 12
+  // frames every 9 ms with a delay of 2 ms, or up to 12 ms
   StampClock clock;
   double last = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -304,7 +304,7 @@ TEST(StampClock, TakesTheJitterOfTheWayOut) {
     }
     last = time;
   }
-  // a clock that was set anew, backwards or forwards
+  // a clock that was reset, backwards or forwards
   EXPECT_NEAR(clock.time_of(3.0, 200.0).value(), 200.0, 1e-9);
   EXPECT_NEAR(clock.time_of(9000.0, 200.1).value(), 200.1, 1e-9);
 }
@@ -316,7 +316,7 @@ TEST(StampClock, AStampThatWasSeenIsNoFrameHoweverLateItComes) {
     ASSERT_FALSE(clock.time_of(5.0, arrival)) << arrival;
   EXPECT_FALSE(clock.time_of(4.95, 110.0)) << "one that was overtaken on its way";
   EXPECT_NEAR(clock.time_of(5.01, 110.0).value(), 110.0, 1e-9);
-  // nor does it become new by another connection
+  // a new connection does not make it new either
   clock.reset();
   EXPECT_FALSE(clock.time_of(5.01, 111.0));
   EXPECT_NEAR(clock.time_of(5.02, 111.0).value(), 111.0, 1e-9);

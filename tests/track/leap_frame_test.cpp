@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-/// The scripted hand 5 s after its start, or its mirror image.
+/// Returns the scripted hand 5 s after its start, or its mirror image.
 HandFrame scripted(bool left) {
   HandFrame frame;
   make_scripted_hand({}, {})->sample(5.0, frame);

@@ -1,5 +1,5 @@
 #pragma once
-/// Hands as a Leap service would send them: protocol version 6 with every bone.
+/// Hands in the messages of a Leap service: protocol version 6 with every bone.
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -15,13 +15,13 @@ inline nlohmann::json axis_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Rows x, y, z of a joint's frame; `mirrored` as the original service has it for left hands.
+/// Returns rows x, y, z of a joint's frame; `mirrored` as the original service does for left hands.
 inline nlohmann::json basis_json(const Quat& q, bool mirrored) {
   return {axis_json((mirrored ? -1.0 : 1.0) * (q * Vec3::UnitX())), axis_json(q * Vec3::UnitY()),
           axis_json(q * Vec3::UnitZ())};
 }
 
-/// One message. `mirrored`: bases of left hands are left-handed.
+/// Returns one message. `mirrored`: bases of left hands are left-handed.
 inline nlohmann::json leap_json(const HandFrame& frame, bool mirrored = true) {
   using nlohmann::json;
   json hands = json::array(), pointables = json::array();

@@ -1,5 +1,5 @@
 #pragma once
-/// A Leap service that plays messages at their own times, for tests: on a free port of 127.0.0.1.
+/// A Leap service for tests that plays messages at their own times, on a free port of 127.0.0.1.
 
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
@@ -23,7 +23,7 @@ class LeapServer {
     std::string text;
   };
 
-  /// Sends `messages` to every client that asks for `path`, over and over when `loop`.
+  /// Sends `messages` to every client that asks for `path`, repeatedly if `loop`.
   explicit LeapServer(std::vector<Message> messages, bool loop = false,
                       std::string path = "/v6.json")
       : messages_(std::move(messages)), loop_(loop), path_(std::move(path)) {
@@ -36,7 +36,7 @@ class LeapServer {
   }
 
   std::uint16_t port() const { return port_; }
-  /// What clients have said so far, once `count` things were said.
+  /// Waits until clients have sent `count` messages; returns all so far.
   std::vector<std::string> requests(std::size_t count) {
     while (said_ < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::vector<std::string> all;
@@ -48,7 +48,7 @@ class LeapServer {
     while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return all;
   }
-  /// Ends the connections there are, without a word.
+  /// Ends all connections without a message.
   void cut() {
     boost::asio::post(io_, [this] {
       for (const auto& session : sessions_) session->close();

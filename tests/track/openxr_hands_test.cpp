@@ -25,7 +25,7 @@ std::size_t hands_of(HandSource& source) {
   return frame.hands.size();
 }
 
-/// The environment that the loader and the replay runtime read, set back afterwards.
+/// Sets the environment of the loader and the replay runtime, and restores it afterwards.
 class OpenXr : public testing::Test {
  protected:
   OpenXr() {
@@ -40,13 +40,14 @@ class OpenXr : public testing::Test {
     names_.insert(name);
   }
 
-  /// Two hands: recorded ones where they are there, else the scripted hand and its mirror image.
+  /// Returns a file with two hands: recorded ones if available, else the scripted hand and its
+  /// mirror image.
   std::string recording_file() {
     const std::string flapping = test::shared_file("data/hands/flapping.hands.jsonl");
     if (std::filesystem::exists(flapping)) return flapping;
     return scripted_file({}, 300);
   }
-  /// Two hands that do not move at all.
+  /// Returns a file with two hands that do not move at all.
   std::string still_file() {
     ScriptedHandSettings still;
     still.still = true;
@@ -85,7 +86,7 @@ class OpenXr : public testing::Test {
   std::set<std::string> names_;
 };
 
-/// Which frame of the recording these hands are, if any.
+/// Returns the index of the recording's frame with these hands, if any.
 std::optional<std::size_t> frame_of(const HandFrame& frame, const HandRecording& recording) {
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     const HandFrame& known = recording.frames[i];
@@ -153,7 +154,7 @@ TEST_F(OpenXr, ConfidenceIsTheShareOfJointsThatAreTracked) {
     EXPECT_NEAR(frame.hands[0].confidence, confidence, 1e-12);
     EXPECT_EQ(hands->tracker_status()->unsure, 0);
   }
-  // who is nearly all guessed is not taken
+  // hands with nearly all joints inferred are not accepted
   set("PROSTM_REPLAY_INFERRED", "24");
   const auto hands = make_live_hand(make_openxr_tracker(), {});
   HandFrame frame;

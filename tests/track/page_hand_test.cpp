@@ -21,7 +21,7 @@ PagePose pose_at(const Vec3& p_D) {
   return pose;
 }
 
-/// The hand at rest in `pose`, in D.
+/// Returns the hand at rest in `pose`, in D.
 Hand resting(const PagePose& pose) {
   PageHand page{TrackSettings()};
   EXPECT_TRUE(page.place(pose));
@@ -81,7 +81,7 @@ TEST(PageHand, AnglesTurnAsDescribed) {
 }
 
 TEST(PageHand, MessagesOfUnevenTimingMakeAFluidMotion) {
-  // a pointer at 0.3 m/s, seen at about 60 Hz, sampled at 50 Hz
+  // a pointer at 0.3 m/s, reported at about 60 Hz, sampled at 50 Hz
   const TrackSettings settings;
   PageHand page{settings};
   Random random(3);
@@ -99,7 +99,7 @@ TEST(PageHand, MessagesOfUnevenTimingMakeAFluidMotion) {
     if (i > 15) {
       EXPECT_NEAR((p - last).x() / kStep, 0.3, 0.10) << "stutters at " << time;
       EXPECT_NEAR(hand.velocity[kPalm].x(), 0.3, 0.10);
-      // the spring's lag is 2/ω = 50 ms, and the pointer's newest message up to 23 ms old
+      // the spring's lag is 2/ω = 50 ms, and the pointer's newest message is up to 23 ms old
       EXPECT_NEAR(p.x(), 0.3 * time - 0.15, 0.3 * 0.080);
     }
     last = p;

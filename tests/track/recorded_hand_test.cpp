@@ -19,7 +19,7 @@ constexpr double kStep = 0.02;
 
 using test::hand_at;
 
-/// A hand in linear motion, seen at irregular times.
+/// Returns a hand in linear motion, seen at irregular times.
 HandRecording linear_recording(const Vec3& start, const Vec3& velocity, int frames,
                                std::uint64_t seed) {
   Random random(seed);
@@ -94,7 +94,7 @@ TEST(RecordedHand, SpeedIsClampedAndKeepsItsDirection) {
   TrackSettings settings;
   settings.max_speed = 2.0;
   HandRecording recording = linear_recording(Vec3::Zero(), Vec3(0.1, 0, 0), 100, 3);
-  // a glitch: one frame half a metre away
+  // an outlier: one frame half a metre away
   for (Vec3& p : recording.frames[50].hands[0].position) p += Vec3(0.3, 0.4, 0.0);
   const double glitch = recording.frames[50].time;
   const auto source = make_recorded_hand(recording, settings, false, kStep);
@@ -259,7 +259,7 @@ TEST(RecordedHand, HandsBelowTheLeastConfidenceAreNotTaken) {
     unbounded->sample(length, frame);
     EXPECT_EQ(frame.hands.size(), 1u);
   }
-  // nothing would be played: that is said, not done
+  // nothing would be played: the source refuses with a message
   for (HandFrame& frame : recording.frames) frame.hands[0].confidence = 0.0;
   for (const auto make : {make_recorded_hand, make_replayed_hand}) {
     try {
@@ -273,7 +273,7 @@ TEST(RecordedHand, HandsBelowTheLeastConfidenceAreNotTaken) {
   }
 }
 
-// a recording may stand still, as no live tracker does
+// a recording may stand still, unlike a live tracker
 TEST(RecordedHand, AHandThatDoesNotMoveIsPlayedOnAndOn) {
   for (const auto make : {make_recorded_hand, make_replayed_hand}) {
     const auto source =
@@ -332,7 +332,7 @@ TEST(RecordedHand, ARecordingThinnedToHalfTellsNearlyTheSame) {
   EXPECT_LT(velocity, 0.1 * speed);
 }
 
-/// Two right hands and a left one that comes later, in linear motion.
+/// Returns two right hands and a left one that comes later, in linear motion.
 HandRecording three_hands(int frames) {
   HandRecording recording;
   for (int i = 0; i < frames; ++i) {
@@ -382,7 +382,7 @@ TEST(HandSources, ANewIdFarAwayIsAnotherHand) {
   for (int i = 0; i < 20; ++i) {
     HandFrame frame;
     frame.time = 0.01 * i;
-    // 40 mm in 10 ms: no hand is so fast
+    // 40 mm in 10 ms: faster than any hand
     frame.hands.push_back(hand_at(i < 10 ? 7 : 8, Vec3(i < 10 ? 0.0 : 0.04, 0.2, 0)));
     recording.frames.push_back(frame);
   }

@@ -131,7 +131,7 @@ TEST(ScriptedHand, JitterIsWhiteNoiseThatReachesTheVelocities) {
   double position = 0.0, velocity = 0.0;
   int count = 0;
   for (int i = 0; i < 500; ++i) {
-    // on the tracker's own frames positions carry all of the noise
+    // at the tracker's own frames positions have all of the noise
     const double t = 1.0 + 11.0 * i / 110.0;
     const HandFrame frame = at(*noisy, t), same = at(*again, t);
     for (std::size_t j = 0; j < kJointCount; ++j, ++count) {
@@ -141,7 +141,7 @@ TEST(ScriptedHand, JitterIsWhiteNoiseThatReachesTheVelocities) {
     }
   }
   EXPECT_NEAR(std::sqrt(position / count), settings.jitter, 0.03 * settings.jitter);
-  // the two means of (H1) hold 3.3 frames each: sqrt(2 / 3.3) * 0.3 mm / 30 ms
+  // both means of (H1) cover 3.3 frames: sqrt(2 / 3.3) * 0.3 mm / 30 ms
   const double expected =
       std::sqrt(2.0 / (track.smoothing_time * 110.0)) * settings.jitter / track.smoothing_time;
   EXPECT_NEAR(std::sqrt(velocity / count), expected, 0.2 * expected);

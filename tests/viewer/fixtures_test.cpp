@@ -1,4 +1,4 @@
-/// The encoder and the files that hold it and the page's decoder together.
+/// The encoder, and files that keep it consistent with the page's decoder.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// A frame, and which of the large sections are sent with it.
+/// A frame, and the large sections that are sent with it.
 struct Fixture {
   std::string name;
   ViewFrame frame;
@@ -122,12 +122,12 @@ std::vector<Fixture> fixtures() {
   return all;
 }
 
-/// null for what JSON cannot say.
+/// Returns null for a number that JSON does not have.
 Json number(double value) {
   return std::isnan(value) ? Json(nullptr) : Json(value);
 }
 
-/// What a decoder is to read, in the wire's own units.
+/// Returns the decoder's expected values, in the wire's own units.
 Json to_json(const Fixture& fixture) {
   const ViewFrame& f = fixture.frame;
   Json json = {{"version", kWireVersion},
@@ -195,7 +195,7 @@ std::string message(const Fixture& fixture) {
   return {out.begin(), out.end()};
 }
 
-// PROSTM_WRITE_FIXTURES=1 writes the files anew, after a change of the format that is meant.
+// PROSTM_WRITE_FIXTURES=1 rewrites the files, after an intended change of the format.
 TEST(Wire, TheFixturesAreWhatTheEncoderWrites) {
   const bool write = std::getenv("PROSTM_WRITE_FIXTURES") != nullptr;
   for (const Fixture& fixture : fixtures()) {
@@ -210,7 +210,8 @@ TEST(Wire, TheFixturesAreWhatTheEncoderWrites) {
   }
 }
 
-// Walks a message by the document alone: the header, then each section by the length that it says.
+// Walks through a message by the document alone: the header, then each section by its stated
+// length.
 TEST(Wire, SectionsAreWhereTheDocumentSaysTheyAre) {
   for (const Fixture& fixture : fixtures()) {
     SCOPED_TRACE(fixture.name);

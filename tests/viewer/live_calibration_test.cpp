@@ -1,4 +1,4 @@
-/// Calibration of a tracker from a page, while a run in real time goes on.
+/// Calibration of a tracker from a page during a run in real time.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using test::state_with;
 using test::transport_becomes;
 using testing::HasSubstr;
 
-/// Where the tracker of the tests stands in truth.
+/// Returns the true pose of the tests' tracker.
 Pose true_pose() {
   Pose X_DT = default_tracker_pose();
   X_DT.rotate(Eigen::AngleAxisd(0.2, Vec3(1, 2, 3).normalized()));
@@ -36,8 +36,8 @@ Pose true_pose() {
   return X_DT;
 }
 
-/// A tracker that sees one hand, the tip of whose index finger rests on a corner of the array; or,
-/// with corner −1, the hand over its middle.
+/// A tracker with one hand, whose index tip rests on a corner of the array, or which hovers over
+/// the array's middle for corner −1.
 class TouchingHand final : public HandSource {
  public:
   TouchingHand(const std::atomic<int>& corner, const PipelineSettings& s)
@@ -50,7 +50,7 @@ class TouchingHand final : public HandSource {
     corners_ = {Vec3(low.x(), low.y(), high.z()), Vec3(high.x(), low.y(), high.z()),
                 Vec3(high.x(), high.y(), high.z()), Vec3(low.x(), high.y(), high.z())};
   }
-  /// Of the tip while the tracker is believed to stand at X_DT.
+  /// Returns the place of the tip if the tracker is assumed to stand at X_DT.
   Vec3 tip(int corner, const Pose& X_DT) {
     HandFrame frame;
     hand_->sample(0.0, frame);
@@ -79,12 +79,12 @@ class TouchingHand final : public HandSource {
   std::array<Vec3, 4> corners_;
 };
 
-/// What makes the tracker of a run: the hand that touches `corner`, or none.
+/// Returns a maker of the run's tracker: a hand that touches `corner`.
 test::MakeHand touching(const std::atomic<int>& corner) {
   return [&corner](const PipelineSettings& s) { return std::make_unique<TouchingHand>(corner, s); };
 }
 
-/// The tip of the first hand's index finger [m].
+/// Returns the tip of the first hand's index finger [m].
 Vec3 tip_in(const std::string& bytes) {
   constexpr unsigned kOneHand = 1U << 16 | 3U;
   std::size_t at = 16;
@@ -113,7 +113,7 @@ TEST(LiveCalibration, ATrackersPoseIsFoundFromTouches) {
   set(page, "source", "leap");
   ASSERT_TRUE(transport_becomes(page, "base", "leap"));
 
-  // a tracker's states come four times a second, whatever happens
+  // a tracker's states come four times a second
   const auto becomes = [&](auto&& condition) {
     for (int i = 0; i < 100; ++i) {
       const Json text = page.next_text();
@@ -178,7 +178,8 @@ TEST(LiveCalibration, ATrackersPoseIsFoundFromTouches) {
   EXPECT_TRUE(finger_is_at(hand.tip(2, true_pose()))) << "what was saved stays";
 }
 
-/// Whether the array is silent for a fifth of a second, from 50 ms after now on, while plans go on.
+/// Checks that the array is silent for a fifth of a second, from 50 ms after now on, while plans
+/// continue.
 void expect_silence(const LiveRun& run) {
   const std::int64_t silent = run.device().samples() + 2000, end = silent + 8000;
   const int updates = run.plan_updates();
@@ -212,7 +213,7 @@ TEST(LiveCalibration, TheArrayIsSilentDuringACalibration) {
   say(page, "begin");
   ASSERT_TRUE(calibrates(true));
   expect_silence(run);
-  // another method has another emitter, which is silent too
+  // the other method has its own emitter, which is silent too
   set(page, "method", "am");
   state_with(page, "method", "am");
   expect_silence(run);

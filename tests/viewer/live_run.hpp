@@ -1,5 +1,5 @@
 #pragma once
-/// A run in real time with a server, for tests of pages that steer it.
+/// A run in real time with a server, for tests of pages that control it.
 
 #include <algorithm>
 #include <atomic>
@@ -44,7 +44,7 @@ inline PipelineSettings small_settings() {
   return s;
 }
 
-/// A second of a scripted hand, as a recording.
+/// Returns a second of a scripted hand, as a recording.
 inline HandRecording some_recording(const PipelineSettings& s) {
   const auto hand = make_scripted_hand(s.scripted_hand, s.track);
   HandRecording recording;
@@ -62,10 +62,10 @@ inline std::unique_ptr<HandSource> no_tracker(const PipelineSettings&) {
   return make_absent_hand();
 }
 
-/// A run, its server and the numbers that it tells.
+/// A run, its server and its reported numbers.
 class LiveRun {
  public:
-  /// @param tracker what its source "leap" is.
+  /// @param tracker makes the hands of the source "leap".
   explicit LiveRun(const PipelineSettings& settings = small_settings(),
                    RunOptions options = for_long(), const MakeHand& tracker = no_tracker) {
     link_.settings.pipeline = settings;
@@ -107,7 +107,7 @@ class LiveRun {
     observer_.stop = true;
     return wait();
   }
-  /// Until the run ends by itself.
+  /// Waits until the run ends by itself.
   RunSummary wait() {
     thread_.join();
     return summary_;
@@ -115,7 +115,7 @@ class LiveRun {
   /// Run time at which a pause was given up; −1 before [s].
   double abandoned_at() const { return observer_.abandoned_at; }
   int port() const { return server_->port(); }
-  /// As /numbers.json tells them.
+  /// Returns the contents of /numbers.json.
   Json numbers() const {
     const std::string answer = get(port(), "/numbers.json");
     return Json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
@@ -127,7 +127,7 @@ class LiveRun {
   int world_steps() const { return numbers().at("run").at("world_steps"); }
   int plan_updates() const { return numbers().at("run").at("plan_updates"); }
   const SimulatedArray& device() const { return simulated(*pipeline_); }
-  /// The strongest intensity of samples first … last − 1.
+  /// Returns the largest intensity of samples first … last − 1.
   float loudest(std::int64_t first, std::int64_t last) const {
     float most = 0.0F;
     for (const FocusSample& s : device().read_back(first, last - first))
@@ -140,7 +140,7 @@ class LiveRun {
   }
   unsigned flags() const { return numbers().at("run").at("flags"); }
 
-  std::atomic<double> prediction{-1};  // that the hands were last made with [s]
+  std::atomic<double> prediction{-1};  // setting of the hands made last [s]
   const std::string pose_file = testing::TempDir() + "prostm_live_test_tracker.json";
 
  private:
@@ -163,7 +163,7 @@ inline Json control(const Json& state, const std::string& id) {
   return nullptr;
 }
 
-/// The next state in which a control has a value; what comes before may be of something else.
+/// Returns the next state in which a control has this value; other values may precede it.
 inline Json state_with(Page& page, const std::string& id, const Json& value) {
   for (int i = 0; i < 1000; ++i) {
     Json state = page.next_text("state");
@@ -172,7 +172,7 @@ inline Json state_with(Page& page, const std::string& id, const Json& value) {
   throw std::runtime_error("no state has " + value.dump() + " for the control " + id);
 }
 
-/// The next state whose transport says this.
+/// Waits for a state whose transport has this value.
 inline bool transport_becomes(Page& page, const char* key, const Json& value) {
   for (int i = 0; i < 1000; ++i)
     if (page.next_text("state").at("transport").at(key) == value) return true;

@@ -1,4 +1,4 @@
-/// A run in real time with a page that steers it: what is asked is seen in what is planned.
+/// A run in real time with a page that controls it: requests show up in the plans.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ using test::state_with;
 using test::transport_becomes;
 using testing::HasSubstr;
 
-/// The plan section: how many paths or foci, and the kind of the first.
+/// The plan section: number of paths or foci, and the kind of the first.
 struct PlanSeen {
   unsigned count = 0, kind = 9;
 };
@@ -42,7 +42,7 @@ PlanSeen plan_in(const std::string& bytes) {
   return {};
 }
 
-/// Waits for a frame whose plan is as it should be.
+/// Waits for a frame whose plan satisfies the condition.
 template <class Condition>
 bool plan_becomes(Page& page, Condition&& condition) {
   for (int i = 0; i < 2000; ++i)
@@ -105,7 +105,7 @@ TEST(Live, PredictionMakesTheHandsAnew) {
 
 TEST(Live, WhatCannotBeIsRefusedInASentenceAndChangesNothing) {
   PipelineSettings settings = small_settings();
-  settings.plan.draw_rate = 500.0;  // so that a slow focal point has no room for a path
+  settings.plan.draw_rate = 500.0;  // leaves a slow focal point no room for a path
   LiveRun run(settings);
   Page page(run.port());
   page.next_text("state");
@@ -148,7 +148,7 @@ TEST(Live, APausedRunStandsStillAndGoesOnByUpdates) {
     EXPECT_TRUE(eventually([&] { return run.plan_updates() > updates + 1; }));
   }
   {
-    // whoever comes now sees the smoke too
+    // a page that connects now sees the smoke too
     Page late(run.port());
     EXPECT_TRUE(test::has_section(late.next_frame(), 4));
   }
@@ -165,7 +165,7 @@ TEST(Live, APauseEndsWhenNobodyLooksAnyMore) {
     Page page(run.port());
     page.say(R"({"type":"transport","do":"pause"})");
     EXPECT_TRUE(transport_becomes(page, "playing", false));
-    // a page that looks keeps the pause, however long
+    // a page that watches keeps the pause, however long
     ASSERT_TRUE(eventually([&] { return (run.flags() & kViewPaused) != 0; }));
     std::this_thread::sleep_for(std::chrono::seconds(1));
     EXPECT_NE(run.flags() & kViewPaused, 0U);
@@ -189,7 +189,7 @@ TEST(Live, RatesAreThoseOfTheRunHoweverSeldomTheyAreAskedFor) {
 
 TEST(Live, TellsHowWellWhatIsFeltRendersTheTarget) {
   LiveRun run;
-  Page page(run.port());  // it is computed while somebody looks
+  Page page(run.port());  // it is computed while a page watches
   EXPECT_TRUE(eventually([&] {
     page.next_text();
     const Json skill = run.numbers().at("numbers").at("felt_skill");
@@ -230,7 +230,7 @@ TEST(Live, ThePagesHandTakesOverAndLetsGo) {
   EXPECT_TRUE(transport_becomes(page, "source", "scripted"));
 }
 
-// sliders that are dragged by several people at once, while pages come and go
+// several people drag sliders at once, while pages come and go
 TEST(Live, SurvivesManyChangesAtOnce) {
   LiveRun run;
   std::vector<std::thread> pages;

@@ -1,4 +1,4 @@
-/// The server and pages without browsers.
+/// The server, and pages without browsers.
 
 #include "prostm/viewer/server.hpp"
 
@@ -34,7 +34,7 @@ std::span<const PageFile> some_files() {
   return kFiles;
 }
 
-/// Listens on a port that is free.
+/// Returns settings to listen on a free port.
 ViewSettings anywhere() {
   ViewSettings settings;
   settings.port = 0;
@@ -276,9 +276,9 @@ TEST(ServerLimits, EndsRequestsThatNeverCome) {
   EXPECT_EQ(test::raw_exchange(server.port(), "GET / HT"), "");
 }
 
-// One page stops reading: the others go on, and after a while it is dropped.
+// One page stops reading: the others continue, and after a while it is dropped.
 TEST(ServerLimits, APageThatStopsReadingHoldsUpNobody) {
-  StandIn source(96);  // frames of 0.9 MB, so that the kernel's buffers are full at once
+  StandIn source(96);  // frames of 0.9 MB fill the kernel's buffers at once
   ViewSettings settings = anywhere();
   settings.stall_time = 3.0;
   const ViewServer server(settings, source, some_files());
@@ -305,7 +305,7 @@ TEST(ServerLimits, APageThatStopsReadingHoldsUpNobody) {
   EXPECT_TRUE(eventually([&] { return server.stats().pages == 0; }));
 }
 
-// ---- where it listens ----
+// ---- listening address ----
 
 TEST(ServerPort, OneThatIsInUseIsRefusedInASentence) {
   StandIn source;

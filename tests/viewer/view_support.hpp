@@ -1,5 +1,5 @@
 #pragma once
-/// A page, and something to look at, for tests of the server.
+/// A page and a view source for tests of the server.
 
 #include <atomic>
 #include <boost/asio/connect.hpp>
@@ -27,7 +27,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 using Json = nlohmann::json;
 
-/// A run that nobody runs: frames count up, and what pages ask is kept.
+/// A source without a run: frames count up, and the pages' requests are kept.
 class StandIn final : public ViewSource {
  public:
   explicit StandIn(std::uint32_t smoke_cells = 32) { smoke_cells_ = smoke_cells; }
@@ -87,8 +87,8 @@ class StandIn final : public ViewSource {
   std::deque<std::pair<std::uint32_t, std::string>> refusals_;
 };
 
-/// What a connection answers to raw bytes, until it closes (or, with `enough`, until that many
-/// bytes have come).
+/// Returns the answer of a connection to raw bytes, until it closes or, with `enough`, until that
+/// many bytes have come.
 inline std::string raw_exchange(int port, const std::string& bytes,
                                 std::size_t enough = std::string::npos) {
   asio::io_context io;
@@ -105,12 +105,12 @@ inline std::string raw_exchange(int port, const std::string& bytes,
   return answer;
 }
 
-/// Status of the answer to one request; 0 when there is none.
+/// Returns the status of the answer to one request; 0 without an answer.
 inline int status_of(const std::string& answer) {
   return answer.rfind("HTTP/1.1 ", 0) == 0 ? std::stoi(answer.substr(9, 3)) : 0;
 }
 
-/// GET of a target with "Connection: close".
+/// Sends a GET of a target with "Connection: close".
 inline std::string get(int port, const std::string& target, const std::string& headers = "",
                        const std::string& method = "GET") {
   return raw_exchange(port, method + " " + target + " HTTP/1.1\r\n" +
@@ -125,7 +125,7 @@ class Page {
  public:
   using Socket = beast::websocket::stream<asio::ip::tcp::socket, false>;
 
-  /// @throws boost::system::system_error when it is refused.
+  /// @throws boost::system::system_error if it is refused.
   explicit Page(int port, const std::string& origin = "", const std::string& host = "",
                 const std::string& target = "/live")
       : socket_(io_) {
@@ -144,7 +144,7 @@ class Page {
     socket_.text(true);
     socket_.write(asio::buffer(text));
   }
-  /// The next message of a kind; those of the other kind go. @throws when the connection closes.
+  /// Returns the next message of a kind and skips others. @throws if the connection closes.
   std::string next(bool text) {
     for (;;) {
       beast::flat_buffer buffer;
@@ -154,14 +154,14 @@ class Page {
   }
   std::string next_frame() { return next(false); }
   Json next_text() { return Json::parse(next(true)); }
-  /// The next text of a type.
+  /// Returns the next text of a type.
   Json next_text(const std::string& type) {
     for (;;) {
       Json json = next_text();
       if (json.at("type") == type) return json;
     }
   }
-  /// Reads on until the server closes; nothing else ends it.
+  /// Reads until the server closes the connection.
   void read_to_the_end() {
     boost::system::error_code wrong;
     while (!wrong) {
@@ -184,7 +184,7 @@ inline std::uint32_t u32_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-/// Whether a frame has a section.
+/// Returns whether a frame has a section.
 inline bool has_section(const std::string& bytes, unsigned id) {
   std::size_t at = 16;
   while (at < bytes.size()) {
