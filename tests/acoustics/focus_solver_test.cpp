@@ -257,7 +257,7 @@ TEST(Propagation, RefusesFocalPointsThatCannotBe) {
   refuses(std::vector<Vec3>(1000, Vec3(0, 0, 0.2)), "1000 focal points");
   refuses({{0, 0, -0.2}}, "behind the array");
   refuses({{0, 0, 0.2}, {5.25e-3, 5.25e-3, 1e-3}}, "focal point 2 is on transducer");
-  refuses({{0, 0, 0.2}, {0.02, 0, 0.2}, {0, 0, 0.2}}, "at the place of focal point 1");
+  refuses({{0, 0, 0.2}, {0.02, 0, 0.2}, {0, 0, 0.2}}, "at the position of focal point 1");
   refuses({{0, std::numeric_limits<double>::quiet_NaN(), 0.2}}, "finite");
 }
 

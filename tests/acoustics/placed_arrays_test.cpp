@@ -160,9 +160,9 @@ TEST(Arrays, JoinRefusesWhatCannotSoundAsOne) {
     return refusal([&] { join(std::vector<TransducerArray>{autd3, other}); });
   };
   EXPECT_EQ(joined_with([](auto&) {}), "not refused");
-  EXPECT_EQ(joined_with([](auto& a) { a.frequency = 25e3; }),
-            "the arrays \"autd3\" and \"other\" differ in frequency; arrays that sound as one must "
-            "have the same");
+  EXPECT_EQ(
+      joined_with([](auto& a) { a.frequency = 25e3; }),
+      "the arrays \"autd3\" and \"other\" differ in frequency; joined arrays must have the same");
   EXPECT_THAT(joined_with([](auto& a) { a.directivity = Directivity::Omni; }),
               HasSubstr("differ in directivity"));
   EXPECT_THAT(joined_with([](auto& a) { a.radius = 5e-3; }), HasSubstr("differ in radius"));
@@ -179,7 +179,7 @@ TEST(Arrays, PlaceRefusesWhatIsNoPose) {
   lost.translation().x() = std::numeric_limits<double>::quiet_NaN();
   far.translation().y() = std::numeric_limits<double>::infinity();
   for (const Pose& pose : {stretched, mirrored, lost, far}) {
-    EXPECT_THAT(refusal([&] { place(array, pose); }), HasSubstr("a rotation and a shift"));
+    EXPECT_THAT(refusal([&] { place(array, pose); }), HasSubstr("a rotation and a translation"));
   }
 }
 

@@ -11,7 +11,7 @@
 namespace prostm {
 namespace {
 
-/// A transducer facing +z at a place of a grid in z = 0 whose middle is the origin.
+/// Adds a transducer facing +z at (col, row) of a grid that is centred on the origin, in z = 0.
 void add_grid_point(TransducerArray& array, double pitch, int cols, int rows, int col, int row) {
   array.position.emplace_back(pitch * (col - 0.5 * (cols - 1)), pitch * (row - 0.5 * (rows - 1)),
                               0.0);
@@ -27,7 +27,7 @@ void validate_kind(const TransducerArray& array) {
   require_between("amplitude_high", array.amplitude_high, array.amplitude, kMost, "Pa·m");
 }
 
-/// Along x only neighbours in the order of x can be near.
+/// In order of x, only neighbours can be near each other.
 void refuse_duplicates(const std::vector<Vec3>& position) {
   std::vector<std::size_t> order(position.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -52,7 +52,7 @@ void refuse_duplicates(const std::vector<Vec3>& position) {
 void require_same(const char* what, bool same, const TransducerArray& a, const TransducerArray& b) {
   if (same) return;
   throw std::invalid_argument("the arrays \"" + a.name + "\" and \"" + b.name + "\" differ in " +
-                              what + "; arrays that sound as one must have the same");
+                              what + "; joined arrays must have the same");
 }
 
 }  // namespace
@@ -113,14 +113,14 @@ void validate(const TransducerArray& array) {
 }
 
 TransducerArray place(const TransducerArray& array, const Pose& X_DA) {
-  // what is not finite is refused before it is compared or subtracted, which would trap
+  // non-finite values are refused first: comparing or subtracting them would trap
   const Eigen::Matrix4d matrix = X_DA.matrix();
   const bool finite =
       std::all_of(matrix.data(), matrix.data() + 16, [](double x) { return std::isfinite(x); });
   const Eigen::Matrix3d R_DA = X_DA.linear();
   if (!finite || !R_DA.isUnitary(1e-9) || R_DA.determinant() < 0.0) {
     throw std::invalid_argument("the pose of the array \"" + array.name +
-                                "\" must be finite, a rotation and a shift");
+                                "\" must be finite, a rotation and a translation");
   }
   TransducerArray placed = array;
   for (Vec3& p : placed.position) p = X_DA * p;

@@ -13,20 +13,20 @@
 namespace prostm {
 
 inline constexpr int kMaxTransducers = 4096;
-/// Transducers nearer to each other than this are the same one, written twice [m].
+/// Transducers nearer to each other than this count as duplicates [m].
 inline constexpr double kMinTransducerDistance = 1e-4;
 
 /// Transducers of one kind, driven at one frequency, at fixed places: one array, or several.
 struct TransducerArray {
   std::string name;
   std::vector<Vec3> position;  ///< centres in D [m]
-  std::vector<Vec3> normal;    ///< unit vectors in D that they sound along, one for each
+  std::vector<Vec3> normal;    ///< unit vectors in D along the transducers' axes, one for each
   double frequency = 40e3;     ///< [Hz]
-  double radius = 4.5e-3;      ///< of the piston that gives the directivity [m]
+  double radius = 4.5e-3;      ///< radius of the piston that gives the directivity [m]
   Directivity directivity = Directivity::Piston;
   double amplitude = 0.0;  ///< rms acoustic pressure × distance on axis at full drive [Pa·m]
-  /// What the sources say of the amplitude, from the lowest to the highest [Pa·m]; both are
-  /// `amplitude` where there is but one source.
+  /// Lowest and highest amplitude in the sources [Pa·m]; both equal `amplitude` if there is only
+  /// one source.
   double amplitude_low = 0.0, amplitude_high = 0.0;
 };
 
@@ -39,31 +39,32 @@ TransducerArray usx_array();
 /// as everywhere in D (AUTD3's own is transducer 0). Amplitude 4.386 Pa·m rms.
 TransducerArray autd3_array();
 
-/// @throws std::invalid_argument with a sentence: no transducer or more than kMaxTransducers, not a
-/// normal for each; a position that is not finite or has a coordinate beyond 10 m, a normal
-/// whose length is not 1 within 1e-9, two transducers within kMinTransducerDistance; frequency not
-/// in 20 to 100 kHz, radius not in 0.1 to 50 mm, amplitudes not in 1e-6 to 1e3 Pa·m or not in the
-/// order low ≤ amplitude ≤ high.
+/// Checks an array.
+/// @throws std::invalid_argument for no transducer or more than kMaxTransducers; normals that are
+/// not one per transducer; a position that is not finite or has a coordinate beyond 10 m; a normal
+/// whose length is not 1 within 1e-9; two transducers within kMinTransducerDistance; a frequency
+/// not in 20 to 100 kHz; a radius not in 0.1 to 50 mm; amplitudes not in 1e-6 to 1e3 Pa·m or not in
+/// the order low ≤ amplitude ≤ high.
 void validate(const TransducerArray& array);
 
-/// The array moved as a whole: positions and normals of `array`, given in its own frame A, in D.
-/// @throws std::invalid_argument when X_DA is not finite or not a rotation and a shift.
+/// Returns `array` with its positions and normals moved from its own frame A to D.
+/// @throws std::invalid_argument if X_DA is not finite or not a rotation and a translation.
 TransducerArray place(const TransducerArray& array, const Pose& X_DA);
 
-/// Several arrays as one, transducers in the order given; the name is theirs with " + " between.
-/// @throws std::invalid_argument when there is none, or when they differ in frequency, directivity,
-/// radius or amplitude, which one TransducerArray has but once.
+/// Joins arrays into one, with the transducers in the order given and the names joined by " + ".
+/// @throws std::invalid_argument if `arrays` is empty, or if they differ in frequency, directivity,
+/// radius or amplitude.
 TransducerArray join(std::span<const TransducerArray> arrays);
 
 /// Wave number k = 2πf/c [rad/m].
 double wave_number(const TransducerArray& array, const Medium& medium);
 
-/// What the air does to an array's sound on its way.
+/// Wave number and absorption of an array's sound in air.
 struct Wave {
   double number = 0.0;      ///< k [rad/m]
   double absorption = 0.0;  ///< α [Np/m], (M5)
 };
-/// Takes some exponentials: worth keeping for many calls of `propagate`.
+/// Takes some exponentials: keep the result for repeated calls of `propagate`.
 Wave wave(const TransducerArray& array, const Medium& medium);
 
 /// Complex rms acoustic pressure at p for unit drive of transducer i, (A1): A·D(θ)/r·e^{(ik − α)r}

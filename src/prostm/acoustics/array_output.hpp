@@ -1,5 +1,5 @@
 #pragma once
-/// What an array sends out while it plays focal points: solved drives, and transducers that follow
+/// The output of an array that plays focal points: solved drives and the transducers' response to
 /// them.
 
 #include <complex>
@@ -16,10 +16,10 @@ struct ArrayOutputSettings {
   TransducerSettings transducer;
 };
 
-/// One sample after the other; allocates nothing once made.
+/// Plays one sample after another; allocates nothing after construction.
 class ArrayOutput {
  public:
-  /// All silent. @throws std::invalid_argument as LiveFocusSolver and TransducerDynamics do.
+  /// Starts silent. @throws std::invalid_argument as LiveFocusSolver and TransducerDynamics do.
   ArrayOutput(const TransducerArray& array, const Medium& medium,
               const ArrayOutputSettings& settings);
 
@@ -28,11 +28,11 @@ class ArrayOutput {
 
   /// Drives q of the last sample, |q| ≤ 1, one for each transducer.
   std::span<const std::complex<double>> drives() const { return drives_; }
-  /// Envelopes of the transducers at its end: they take the place of q in (A1).
+  /// Envelopes of the transducers at the end of the last sample; they replace q in (A1).
   std::span<const std::complex<double>> envelopes() const { return transducers_.output(); }
   const LiveFocusSolver& solver() const { return solver_; }
 
-  /// Forgets what was played: all silent again.
+  /// Forgets what was played and falls silent.
   void reset();
 
  private:

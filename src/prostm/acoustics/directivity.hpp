@@ -1,5 +1,5 @@
 #pragma once
-/// How loud a transducer is beside its axis.
+/// Loudness of a transducer off its axis.
 
 namespace prostm {
 
@@ -9,13 +9,13 @@ enum class Directivity {
   Omni,     ///< the same in all directions, behind the transducer too
 };
 
-/// The name in files: "piston", "t4010a1", "omni".
+/// Returns the name in files: "piston", "t4010a1", "omni".
 const char* directivity_name(Directivity kind);
 
-/// Far-field pressure at the angle θ from the transducer's normal over that on its axis, 0..1 (up
-/// to 1.008 where the spline of T4010A1 overshoots). Piston (A2) and T4010A1 (A8) are 0 behind the
-/// transducer's plane, cos θ < 0.
-/// @param ka wave number × radius of the piston; other kinds do not ask for it.
+/// Far-field pressure at the angle θ from the transducer's normal, relative to that on its axis:
+/// 0..1 (up to 1.008 where the spline of T4010A1 overshoots). Piston (A2) and T4010A1 (A8) are 0
+/// behind the transducer's plane, cos θ < 0.
+/// @param ka wave number × radius of the piston; used only by Piston.
 /// @param cos_theta may be out of [-1, 1] by rounding.
 double directivity(Directivity kind, double ka, double cos_theta);
 

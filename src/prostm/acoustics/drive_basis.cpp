@@ -19,13 +19,13 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr Index kChunk = 256;    // samples that are added up in single precision
-constexpr Index kRowBlock = 48;  // rows of C that are a task
+constexpr Index kRowBlock = 48;  // rows of C per task
 
 void check(const LoopDrives& drives) {
   if (drives.size() == 0) {
     throw std::invalid_argument("a loop has " + std::to_string(drives.rows()) +
                                 " transducers and " + std::to_string(drives.cols()) +
-                                " samples; it must have one of each at least");
+                                " samples; it must have at least one of each");
   }
   constexpr float kMost = 1e6F;
   const auto usable = [](float x) { return std::isfinite(x) && std::abs(x) <= kMost; };
@@ -38,7 +38,7 @@ void check(const LoopDrives& drives) {
   }
 }
 
-/// Row by row, as its blocks are added up.
+/// Row-major, the order in which its blocks are added up.
 using Covariance =
     Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -78,7 +78,7 @@ void add_covariance(const LoopDrives& drives, Index first, Index count, WorkerPo
   });
 }
 
-/// C, both triangles.
+/// Returns C with both triangles filled.
 Covariance covariance(const LoopDrives& drives, WorkerPool& pool) {
   Covariance c = Covariance::Zero(drives.rows(), drives.rows());
   for (Index first = 0; first < drives.cols(); first += kChunk) {
@@ -103,7 +103,7 @@ Eigen::MatrixXcf covariance_factor(const LoopDrives& drives, WorkerPool& pool, d
     Index next = 0;
     const double most = left.maxCoeff(&next);
     if (most <= enough) break;
-    // what the columns before have left of the pivot's
+    // the pivot's column less what the earlier columns account for
     VectorXcd column = c.col(next);
     column.noalias() -= factor.leftCols(rank) * factor.row(next).head(rank).adjoint();
     factor.col(rank) = column / std::sqrt(most);
@@ -114,7 +114,7 @@ Eigen::MatrixXcf covariance_factor(const LoopDrives& drives, WorkerPool& pool, d
 }
 
 Eigen::MatrixXcf orthonormal(const Eigen::MatrixXcf& factor) {
-  // Cholesky's factor of LᴴL, in double precision, since that squares the condition
+  // Cholesky factor of LᴴL, in double precision, since LᴴL squares the condition number
   const MatrixXcd l = factor.cast<std::complex<double>>();
   const Eigen::LLT<MatrixXcd> gram(l.adjoint() * l);
   return gram.matrixU().solve<Eigen::OnTheRight>(l).cast<std::complex<float>>();

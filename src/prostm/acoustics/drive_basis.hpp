@@ -1,5 +1,5 @@
 #pragma once
-/// What the drives of a whole loop have in common.
+/// A basis of the drives of a whole loop.
 
 #include <Eigen/Core>
 
@@ -7,21 +7,21 @@
 
 namespace prostm {
 
-/// Drives of a loop, or what transducers put out for them: transducers × samples, column k at the
-/// k-th sample, |element| of about 1 at most.
+/// Drives of a loop, or the transducers' outputs for them: transducers × samples. Column k is the
+/// k-th sample; elements have magnitudes of about 1 at most.
 using LoopDrives = Eigen::MatrixXcf;
 
-/// L of C ≈ L Lᴴ, (A21), where C = Σ_k a_k a_kᴴ / K is the covariance of the drives a_k:
-/// transducers × rank. Fields that an aperture can make on a hand have far fewer degrees of freedom
-/// than it has transducers, and so has L few columns. It is the pivoted Cholesky factor, until no
-/// transducer has more than `tolerance` of the mean of |a|² left; no column for drives that are all
-/// 0. The same for any number of threads.
-/// @throws std::invalid_argument with a sentence when there is no sample or no transducer, a drive
-/// is not finite or above 1e6, or the tolerance is not in 1e-6 to 1: single precision has no more.
+/// Returns L with C ≈ L Lᴴ, (A21), where C = Σ_k a_k a_kᴴ / K is the covariance of the drives a_k:
+/// transducers × rank. L has few columns, because the fields that an aperture can make on a hand
+/// have far fewer degrees of freedom than it has transducers. L is the pivoted Cholesky factor,
+/// continued until no transducer has more than `tolerance` of the mean of |a|² left; it has no
+/// column if all drives are 0. The same for any number of threads.
+/// @throws std::invalid_argument if there is no sample or no transducer, a drive is not finite or
+/// above 1e6, or the tolerance is not in 1e-6 (the limit of single precision) to 1.
 Eigen::MatrixXcf covariance_factor(const LoopDrives& drives, WorkerPool& pool, double tolerance);
 
-/// Q of the same range as `factor` with Qᴴ Q = 1, so that a_k ≈ Q (Qᴴ a_k) as well as it can be
-/// from that range. @pre the columns of `factor` are independent, as covariance_factor's are.
+/// Returns Q with the range of `factor` and Qᴴ Q = 1: Q (Qᴴ a_k) is the best approximation of a_k
+/// in that range. @pre the columns of `factor` are independent, as covariance_factor's are.
 Eigen::MatrixXcf orthonormal(const Eigen::MatrixXcf& factor);
 
 }  // namespace prostm

@@ -19,16 +19,16 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr int kPowerIterations = 100;
-constexpr int kReferenceFactor = 50;      // of iterations that the reference may take
-constexpr double kConverged = 1e-12;      // of an eigenvector's or of the targets' square norm
-constexpr double kFirstDamping = 1e-3;    // of (A15), over the mean of the diagonal of JJᵀ
-constexpr double kDamping = 1e-2;         // of (A17), over the mean of its diagonal
-constexpr double kLeastDamping = 1e-9;    // where no phase changes anything
-constexpr double kLeastShare = 1e-6;      // of what a focal point has alone
-constexpr double kMostWeight = 10.0;      // in (A16), and its inverse
-constexpr double kLargestDamping = 1e12;  // where no step lowers the error
+constexpr int kReferenceFactor = 50;    // iterations of the reference per iteration of the settings
+constexpr double kConverged = 1e-12;    // share of an eigenvector's or the pressures' square norm
+constexpr double kFirstDamping = 1e-3;  // in (A15), relative to the mean of the diagonal of JJᵀ
+constexpr double kDamping = 1e-2;       // in (A17), relative to the mean of its diagonal
+constexpr double kLeastDamping = 1e-9;  // added in case no phase changes anything
+constexpr double kLeastShare = 1e-6;    // share of the pressure of a focal point alone
+constexpr double kMostWeight = 10.0;    // highest weight in (A16); the lowest is its inverse
+constexpr double kLargestDamping = 1e12;  // reached if no step lowers the error
 
-/// z/|z|, and 1 for 0.
+/// z/|z|; 1 for 0.
 Complex direction(const Complex& z) {
   const double size = std::abs(z);
   return size > 0.0 ? z / size : Complex(1.0);
@@ -71,7 +71,7 @@ VectorXcd gs_pat(const Propagation& g, const VectorXd& target, const VectorXcd& 
   return b * with_phases(target, directions(p));
 }
 
-/// Phases of the focal points that let their naive foci add up most.
+/// Phases of the focal points with which their naive foci add up most.
 VectorXcd eigenvector_phases(const Propagation& g, const VectorXd& target, const VectorXcd& phase) {
   const MatrixXcd r = g * back_propagation(g) * target.cast<Complex>().asDiagonal();
   VectorXcd v = phase.normalized();
@@ -84,9 +84,9 @@ VectorXcd eigenvector_phases(const Propagation& g, const VectorXd& target, const
   return directions(v);
 }
 
-/// (A14): q of least Σ_m |G q − p|² + Σ_n |s_n^γ q_n|², s_n² = |Σ_m G_mn a_m| / M, with G over the
-/// root mean square norm of its rows. With W = diag(s^−2γ) it is
-/// W Gᴴ (G W Gᴴ + 1)⁻¹ p.
+/// (A14): the q that minimises Σ_m |G q − p|² + Σ_n |s_n^γ q_n|², s_n² = |Σ_m G_mn a_m| / M, with G
+/// divided by the root mean square norm of its rows. With W = diag(s^−2γ), q = W Gᴴ (G W Gᴴ + 1)⁻¹
+/// p.
 VectorXcd least_squares(const Propagation& propagation, const VectorXd& target, const VectorXcd& p,
                         double gamma) {
   const auto foci = static_cast<double>(propagation.rows());
@@ -106,18 +106,19 @@ double level_of(const VectorXcd& pressure, const VectorXd& target) {
   return target.dot(pressure.cwiseAbs()) / target.squaredNorm();
 }
 
-/// How the |p_m| change with the phases of the drives: ∂|p_m|/∂θ_n = −Im(conj(p_m)/|p_m| G_mn q_n).
+/// Derivatives of |p_m| with respect to the phases of the drives: ∂|p_m|/∂θ_n = −Im(conj(p_m)/|p_m|
+/// G_mn q_n).
 Eigen::MatrixXd phase_gradients(const Propagation& g, const VectorXcd& p, const VectorXcd& q) {
   const MatrixXcd turned = directions(p).conjugate().asDiagonal() * g * q.asDiagonal();
   return -turned.imag();
 }
 
-/// q with its phases turned by these angles [rad].
+/// Turns the phases of q by these angles [rad].
 VectorXcd turned(const VectorXcd& q, const VectorXd& angle) {
   return q.cwiseProduct(VectorXcd(angle.unaryExpr([](double t) { return std::polar(1.0, t); })));
 }
 
-/// (A16), and once in the end (A17), over the pressures that each focal point has alone.
+/// (A16), then one step of (A17), with pressures relative to those of each focal point alone.
 VectorXcd weighted(const Propagation& propagation, const VectorXd& target, VectorXcd phase,
                    int iterations) {
   const VectorXd alone = propagation.cwiseAbs().rowwise().sum();
@@ -141,7 +142,7 @@ VectorXcd weighted(const Propagation& propagation, const VectorXd& target, Vecto
   return turned(q, -j.transpose() * normal.llt().solve(residual));
 }
 
-/// (A15) from the phases of `drive`: Gauss-Newton on |p_m| − s a_m with s the level, damped.
+/// (A15), starting from the phases of `drive`: damped Gauss-Newton on |p_m| − s a_m, s the level.
 VectorXcd levenberg_marquardt(const Propagation& g, const VectorXd& target, const VectorXcd& drive,
                               int iterations) {
   VectorXcd q = directions(drive);
@@ -196,14 +197,14 @@ void check(const Propagation& g, const VectorXd& target, const FocusSettings& se
            const VectorXd& start) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
   const Eigen::Index foci = g.rows();
-  if (foci < 1) refuse("there must be a focal point");
+  if (foci < 1) refuse("there must be at least one focal point");
   if (foci > g.cols()) {
-    refuse(std::to_string(foci) + " focal points must be no more than the " +
-           std::to_string(g.cols()) + " transducers");
+    refuse("there are " + std::to_string(foci) + " focal points; there must be at most " +
+           std::to_string(g.cols()) + ", one for each transducer");
   }
   if (target.size() != foci || (start.size() != 0 && start.size() != foci)) {
-    refuse("there must be a target, and a phase or none, for each of " + std::to_string(foci) +
-           " focal points");
+    refuse("there must be a target for each of " + std::to_string(foci) +
+           " focal points, and as many phases or none");
   }
   for (Eigen::Index m = 0; m < foci; ++m) {
     const std::string which = "focal point " + std::to_string(m + 1);
@@ -211,7 +212,7 @@ void check(const Propagation& g, const VectorXd& target, const FocusSettings& se
       refuse(which + ": the target must be a pressure of 0 Pa or more");
     }
     if (start.size() != 0 && !std::isfinite(start[m])) refuse(which + ": the phase must be finite");
-    // one at a time: Eigen's own test subtracts infinities, which traps
+    // element by element: Eigen's own test subtracts infinities, which traps
     double most = 0.0;
     for (const Complex& p : g.row(m)) {
       if (!std::isfinite(p.real()) || !std::isfinite(p.imag())) {
@@ -221,7 +222,7 @@ void check(const Propagation& g, const VectorXd& target, const FocusSettings& se
     }
     if (most == 0.0) refuse(which + " must be reached by some transducer");
   }
-  if (target.isZero(0.0)) refuse("one focal point must have a target above 0 Pa");
+  if (target.isZero(0.0)) refuse("at least one focal point must have a target above 0 Pa");
   require_between("iterations", settings.iterations, 1, 10'000);
   require_between("regularisation", settings.regularisation, 0.0, 1.0);
 }
@@ -231,7 +232,7 @@ void check(const Propagation& g, const VectorXd& target, const FocusSettings& se
 FocusSolution solve_foci(const Propagation& propagation, const Eigen::VectorXd& target,
                          const FocusSettings& settings, const Eigen::VectorXd& start) {
   check(propagation, target, settings, start);
-  // over the largest, so that squares of any target are in a double's range
+  // relative to the largest, so that squares of any target are in a double's range
   const double highest = target.maxCoeff();
   const VectorXd shares = target / highest;
   FocusSolution out;
@@ -239,7 +240,7 @@ FocusSolution solve_foci(const Propagation& propagation, const Eigen::VectorXd& 
   const double largest = out.drive.cwiseAbs().maxCoeff();
   if (largest > 0.0) out.drive /= largest;
   out.pressure = propagation * out.drive;
-  // to the targets where the largest drive, now 1, is more than that takes
+  // scale down to the targets if a largest drive of 1 exceeds them
   const double reached = level_of(out.pressure, shares);
   if (reached > highest) {
     out.drive *= highest / reached;

@@ -11,12 +11,13 @@ namespace prostm {
 
 enum class FocusMethod {
   Superposition,  ///< (A11): the naive foci, added
-  Ibp,            ///< (A12): iterative back-propagation, phases alone [Marzo and Drinkwater 2019]
+  Ibp,            ///< (A12): iterative back-propagation, phases only [Marzo and Drinkwater 2019]
   GsPat,          ///< (A13): Gerchberg-Saxton on the focal points [Plasencia et al. 2020]
-  Weighted,  ///< (A16): weighted Gerchberg-Saxton on phases alone [Di Leonardo et al. 2007], (A17)
-  Eigenvector,  ///< (A14): phases of the dominant eigenvector, then least squares with Tikhonov's
-                ///< regularisation [Long et al. 2014]
-  LevenbergMarquardt  ///< (A15): phases alone, to convergence: the slow reference
+  Weighted,  ///< (A16): weighted Gerchberg-Saxton on phases only [Di Leonardo et al. 2007], (A17)
+  /// (A14): phases of the dominant eigenvector, then least squares with Tikhonov's regularisation
+  /// [Long et al. 2014]
+  Eigenvector,
+  LevenbergMarquardt  ///< (A15): phases only, to convergence; the slow reference
 };
 
 template <>
@@ -25,25 +26,26 @@ inline constexpr std::array<std::string_view, 6> kNames<FocusMethod> = {
 
 struct FocusSettings {
   FocusMethod method = FocusMethod::Weighted;
-  int iterations =
-      20;  ///< of Ibp, GsPat and Weighted; LevenbergMarquardt may take 50 times as many
+  /// Iterations of Ibp, GsPat and Weighted; LevenbergMarquardt may take 50 times as many.
+  int iterations = 20;
   double regularisation = 1.0;  ///< γ of Eigenvector, 0..1
 };
 
 struct FocusSolution {
   Eigen::VectorXcd drive;     ///< q, N; |q_n| <= 1
   Eigen::VectorXcd pressure;  ///< G q [Pa, rms], M
-  double level = 0.0;         ///< what is reached of the targets together: Σ a |Gq| / Σ a²
+  double level = 0.0;         ///< share of the targets that is reached together: Σ a |Gq| / Σ a²
 };
 
-/// Drives whose pressures at the focal points have the magnitudes `target`, or, where that is more
-/// than the array can do, as large a common share of them as no drive above 1 allows: levels are
-/// lowered together, none is clipped. @param target a, M [Pa, rms]. @param start phases [rad] of
-/// the focal points to begin with, M, or empty: 0; those of the solution before keep drives from
-/// jumping.
-/// @throws std::invalid_argument for sizes that do not agree, no focal point or more than
-/// transducers, a target that is negative or not finite or none above 0, and a focal point that no
-/// transducer reaches.
+/// Finds drives whose pressures at the focal points have the magnitudes `target`. If that is more
+/// than the array can do, all levels are lowered by one factor, no more than |q| ≤ 1 requires; none
+/// is clipped.
+/// @param target a, M [Pa, rms].
+/// @param start phases [rad] of the focal points to begin with, M; 0 if empty. The phases of the
+/// previous solution keep drives from jumping.
+/// @throws std::invalid_argument for sizes that disagree, no focal point or more than transducers,
+/// a target that is negative or not finite, no target above 0, and a focal point that no transducer
+/// reaches.
 FocusSolution solve_foci(const Propagation& propagation, const Eigen::VectorXd& target,
                          const FocusSettings& settings, const Eigen::VectorXd& start = {});
 

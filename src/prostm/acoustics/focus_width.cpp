@@ -10,8 +10,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kReach = 20e-3, kStep = 0.25e-3;  // of the lines through the focus [m]
-constexpr double kLowest = 0.1;                    // share of the focus's pressure that is fitted
+constexpr double kReach = 20e-3, kStep = 0.25e-3;  // half length and step of the lines [m]
+constexpr double kLowest = 0.1;  // least share of the focus's pressure that is fitted
 
 Eigen::VectorXcf focusing_drives(const PackedArray& packed, const Medium& medium,
                                  const Vec3& focus) {
@@ -24,8 +24,8 @@ Eigen::VectorXcf focusing_drives(const PackedArray& packed, const Medium& medium
   return drives;
 }
 
-/// σ of the main lobe along a line through the focus. ln(P₀/P) = s²/2σ², each point weighted by P²,
-/// so that errors count as they would in P itself.
+/// Returns σ of the main lobe along a line through the focus. Fits ln(P₀/P) = s²/2σ² with each
+/// point weighted by P², so that errors count as they would in P itself.
 double fitted_width(const PackedArray& packed, const Medium& medium, const Eigen::VectorXcf& drives,
                     const Vec3& focus, const Vec3& normal, const Vec3& direction, double level) {
   SurfacePoints line;
@@ -59,7 +59,7 @@ double FocusWidth::sigma() const {
 
 FocusWidth focus_width(const PackedArray& packed, const Medium& medium, const Vec3& focus,
                        const Vec3& normal, const Vec3& x) {
-  propagation_to(packed.array, medium, std::span(&focus, 1));  // says what is wrong with a focus
+  propagation_to(packed.array, medium, std::span(&focus, 1));  // throws if the focus is invalid
   const Eigen::VectorXcf drives = focusing_drives(packed, medium, focus);
   FocusWidth out;
   out.level =

@@ -16,12 +16,12 @@ namespace {
 using Complex = std::complex<float>;
 
 constexpr int kMost = static_cast<int>(kMaxLiveFoci);
-constexpr float kFarthest = 10.0F;      // coordinates of focal points, as of transducers [m]
-constexpr float kSilent = 1e-4F;        // amplitude
-constexpr float kLeastShare = 1e-6F;    // of what a focal point has alone
-constexpr float kMostWeight = 10.0F;    // in (A16), and its inverse
-constexpr double kDamping = 1e-2;       // in (A17), of the mean diagonal
-constexpr double kLeastDamping = 1e-9;  // where no phase changes anything
+constexpr float kFarthest = 10.0F;      // largest coordinate of focal points, as of transducers [m]
+constexpr float kSilent = 1e-4F;        // amplitudes up to this are silent
+constexpr float kLeastShare = 1e-6F;    // share of the pressure of a focal point alone
+constexpr float kMostWeight = 10.0F;    // highest weight in (A16); the lowest is its inverse
+constexpr double kDamping = 1e-2;       // in (A17), relative to the mean diagonal
+constexpr double kLeastDamping = 1e-9;  // added in case no phase changes anything
 
 static_assert(ComplexRows::kBlock == PackedArray::kRowBlock);  // rows of G are written in place
 
@@ -43,7 +43,7 @@ Complex direction(const Complex& z) {
   return size > 0.0F ? z / size : Complex(1.0F);
 }
 
-/// The box around an array's transducers and all that is nearer than kNearestPoint.
+/// Returns a box that holds every point nearer than kNearestPoint to a transducer.
 Eigen::AlignedBox3f box_around(const TransducerArray& array) {
   Eigen::AlignedBox3f box;
   const Eigen::Vector3f margin = Eigen::Vector3f::Constant(static_cast<float>(kNearestPoint));
@@ -54,7 +54,7 @@ Eigen::AlignedBox3f box_around(const TransducerArray& array) {
   return box;
 }
 
-/// Whether p is on no transducer, where (A1) does not hold.
+/// Whether p is at least kNearestPoint from every transducer; nearer, (A1) does not hold.
 bool is_clear(const PackedArray& packed, const Eigen::AlignedBox3f& box, const Eigen::Vector3f& p) {
   if (!box.contains(p)) return true;
   const Vec3 at = p.cast<double>();
@@ -62,7 +62,7 @@ bool is_clear(const PackedArray& packed, const Eigen::AlignedBox3f& box, const E
                      [&](const Vec3& t) { return (at - t).norm() >= kNearestPoint; });
 }
 
-/// Finite and in range; comparing what is not a number would trap where that is on.
+/// Whether x is finite and in range, tested in this order, since comparing NaN may trap.
 bool is_within(float x, float low, float high) {
   return std::isfinite(x) && x >= low && x <= high;
 }
@@ -120,7 +120,7 @@ void LiveFocusSolver::solve(std::span<const LiveFocus> foci) noexcept {
   }
 }
 
-/// Takes a focal point, unless it cannot be had.
+/// Adds a focal point unless it is invalid.
 void LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
   if (!is_sound(focus) || !is_clear(packed_, near_, focus.p_D)) return;
   propagation_row_in_single(packed_, focus.p_D.cast<double>(), g_.re(count_), g_.im(count_));
@@ -136,7 +136,7 @@ void LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
   ++count_;
 }
 
-/// (A11). This and the next two set the drives, and return the largest.
+/// (A11). Like the next two functions, sets the drives and returns the largest |q|.
 float LiveFocusSolver::superpose() {
   for (std::size_t m = 0; m < count_; ++m) c_[m] = wanted_[m] * alone_[m] / squares_[m];
   return solving::back_propagate(g_, {c_.data(), count_}, drive_);
@@ -158,7 +158,7 @@ float LiveFocusSolver::gs_pat() {
   return solving::back_propagate(g_, {c_.data(), count_}, drive_);
 }
 
-/// (A16) and, once in the end, (A17)
+/// (A16), then one step of (A17)
 float LiveFocusSolver::weighted() {
   if (count_ == 0) return superpose();
   for (int i = 0; i < settings_.iterations; ++i) {
@@ -176,7 +176,8 @@ float LiveFocusSolver::weighted() {
   return 1.0F;
 }
 
-/// Phases are those reached, and weights grow where less than its share is.
+/// Takes over the phases reached, and raises the weights of focal points that are below their
+/// share.
 void LiveFocusSolver::reweigh(float level) {
   float sum = 0.0F, all = 0.0F;
   for (std::size_t m = 0; m < count_; ++m) {
@@ -192,7 +193,8 @@ void LiveFocusSolver::reweigh(float level) {
   }
 }
 
-/// (A17): one step of Gauss-Newton on the phases of the drives. @pre y_ and level_ are theirs.
+/// (A17): one Gauss-Newton step on the phases of the drives. @pre y_ and level_ are those of the
+/// drives.
 void LiveFocusSolver::even_out() {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
@@ -218,7 +220,7 @@ void LiveFocusSolver::even_out() {
   solving::turn_phases(turns_, {turn.data(), count_}, drive_);
 }
 
-/// y_ = G q. @return their level.
+/// Computes y_ = G q. @return its level.
 float LiveFocusSolver::reach() {
   solving::propagate_drives(g_, drive_, {y_.data(), count_});
   float sum = 0.0F, squares = 0.0F;
@@ -229,7 +231,7 @@ float LiveFocusSolver::reach() {
   return count_ == 0 ? 0.0F : sum / squares;
 }
 
-/// One factor for all drives, so that the level is 1 or the largest drive is.
+/// Scales all drives by one factor, so that either the level or the largest drive is 1.
 void LiveFocusSolver::scale(float largest) {
   const float level = reach();
   const float factor = count_ == 0 ? 0.0F : 1.0F / std::max(level, largest);

@@ -15,51 +15,51 @@ namespace prostm {
 inline constexpr std::size_t kMaxLiveFoci = 32;
 
 struct LiveFocusSettings {
-  FocusMethod method = FocusMethod::Weighted;  ///< or Superposition, GsPat
-  int iterations = 1;    ///< per sample; for GsPat, which learns little from the last one, 20
-  int phase_levels = 0;  ///< steps of a turn that phases of drives are rounded to; 0: any phase
-  bool warm = true;      ///< a sample begins with the phases and weights of the one before
-  /// Acoustic pressure (rms) of amplitude 1 [Pa], wherever the focal point is; 0: what the whole
-  /// array makes there alone.
+  FocusMethod method = FocusMethod::Weighted;  ///< Weighted, Superposition or GsPat
+  int iterations = 1;    ///< per sample; GsPat, which gains little from the last one, takes 20
+  int phase_levels = 0;  ///< steps per turn that the drives' phases are rounded to; 0: any phase
+  bool warm = true;      ///< whether a sample begins with the previous phases and weights
+  /// Acoustic pressure (rms) of amplitude 1 [Pa], the same everywhere; 0: the pressure that the
+  /// whole array makes there with a single focal point.
   double full_scale = 0.0;
-  /// Where the array makes less than full_scale alone, its share of it is taken as at least
-  /// 1/bound, so that a far focal point does not take what nearer ones need.
+  /// Where a single focal point gets less than full_scale, its share of full_scale counts as at
+  /// least 1/bound, so that a far focal point does not take what nearer ones need.
   double bound = 2.0;
 };
 
 /// A focal point in one sample.
 struct LiveFocus {
   Eigen::Vector3f p_D = Eigen::Vector3f::Zero();  ///< [m]
-  /// Acoustic pressure wanted over full_scale, or over that which the whole array makes there
-  /// alone, 0..1.
+  /// Wanted acoustic pressure over full_scale, or over that of a single focal point there, 0..1.
   float amplitude = 0.0F;
 };
 
-/// Drives for one sample after the other, in single precision and by vector kernels. As with
+/// Finds the drives for one sample after another, in single precision with vector kernels. As in
 /// solve_foci, amplitudes that are more than the array can do are lowered together, and no |q|
-/// exceeds 1. A focal point is known by its place in the list: its phase and weight are kept from
-/// sample to sample, so that drives move smoothly when it does.
+/// exceeds 1. A focal point is identified by its index in the list: its phase and weight are kept
+/// from sample to sample, so that drives move smoothly when it does.
 class LiveFocusSolver {
  public:
-  /// @throws std::invalid_argument with a sentence: an array that is not valid, a method that does
-  /// not run live, iterations not in 1 to 1000, phase_levels neither 0 nor 2 to 65536, full_scale
-  /// not in 0 to 1e6 Pa, bound not in 1 to 100.
+  /// @throws std::invalid_argument for an array that is not valid, a method that does not run live,
+  /// iterations not in 1 to 1000, phase_levels neither 0 nor 2 to 65536, full_scale not in 0 to 1e6
+  /// Pa, bound not in 1 to 100.
   LiveFocusSolver(const TransducerArray& array, const Medium& medium,
                   const LiveFocusSettings& settings);
 
-  /// Finds the drives for these focal points. Those with an amplitude below 1e-4 are silent and do
-  /// not count. Nor do those that cannot be had: a position or an amplitude that is out of range or
+  /// Finds the drives for these focal points. Focal points with an amplitude below 1e-4 are silent
+  /// and do not count. Nor do invalid ones: with a position or an amplitude that is out of range or
   /// not finite, behind the array, nearer than kNearestPoint to a transducer, or beyond
   /// kMaxLiveFoci. Allocates and throws nothing.
   void solve(std::span<const LiveFocus> foci) noexcept;
 
   /// q in row 0, a column for each transducer.
   const ComplexRows& drive() const { return drive_; }
-  /// What is reached of the amplitudes together, Σ a |y| / Σ a², a and y over what each focal point
-  /// has alone; at most 1, and 0 without focal points. Phases are not rounded yet.
+  /// Share of the amplitudes that is reached together, Σ a |y| / Σ a², where y is relative to the
+  /// pressure of each focal point alone, as a is; at most 1, and 0 without focal points. Taken
+  /// before phases are rounded.
   float level() const { return level_; }
 
-  /// Forgets the sample before.
+  /// Forgets the previous sample.
   void reset();
 
  private:
@@ -78,16 +78,17 @@ class LiveFocusSolver {
   PackedArray packed_;
   Eigen::AlignedBox3f near_;
   ComplexRows g_, drive_, turns_;  // a row for each focal point that counts; q; (A17)
-  ComplexRows correlation_, magnitude_, x_, scratch_;  // of (A13)
+  ComplexRows correlation_, magnitude_, x_, scratch_;  // for (A13)
 
-  // of every focal point, by its place in the list
+  // for every focal point, by its index in the list
   std::array<Complex, kMaxLiveFoci> phase_;
   std::array<float, kMaxLiveFoci> weight_;
 
-  // of those that count
+  // for the focal points that count
   std::size_t count_ = 0;
   std::array<std::size_t, kMaxLiveFoci> place_{};
-  std::array<float, kMaxLiveFoci> wanted_{}, alone_{}, squares_{};  // over alone; Σ|G| [Pa]; Σ|G|²
+  // relative to alone; Σ|G| [Pa]; Σ|G|²
+  std::array<float, kMaxLiveFoci> wanted_{}, alone_{}, squares_{};
   std::array<Complex, kMaxLiveFoci> c_{}, y_{};
   float level_ = 0.0F;
 };

@@ -13,7 +13,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of the drives' power
+constexpr double kTolerance = 1e-6;  // share of the drives' power
 constexpr std::size_t kBlock = 48;   // points whose rows stay in the cache together
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -30,14 +30,14 @@ PackedMatrix packed_from(const Eigen::MatrixXcf& m, std::size_t rows) {
   return out;
 }
 
-/// What one thread computes blocks of points with.
+/// Buffers of one thread for a block of points.
 struct Scratch {
   Scratch(const PackedArray& packed, std::size_t cols)
       : g_re(kBlock * packed.stride()), g_im(g_re.size()), z_re(kBlock * cols), z_im(z_re.size()) {}
   std::vector<float> g_re, g_im, z_re, z_im;
 };
 
-/// The course of the pressure over the loop at a block's points.
+/// Field and pressure at a block's points over the loop.
 struct Course {
   explicit Course(std::size_t cols) : re(kBlock * cols), im(re.size()), pressure(cols) {}
   std::vector<float> re, im, pressure;
@@ -48,8 +48,8 @@ float mean_of(std::span<const float> x) {
                             static_cast<double>(x.size()));
 }
 
-/// Calls f(first point, number of points, scratch, thread) for all blocks, each thread with a
-/// scratch of its own, which holds G's rows there and their product with `right`.
+/// Calls f(first point, number of points, scratch, thread) for all blocks. Each thread has its own
+/// scratch, which holds the rows of G at the points and their product with `right`.
 template <class F>
 void for_blocks(const PackedArray& packed, const SurfacePoints& surface, const PackedMatrix& right,
                 WorkerPool& pool, F&& f) {
@@ -75,12 +75,11 @@ void check(const PackedArray& packed, const LoopDrives& drives, const SurfacePoi
   validate(surface, packed.array);
   if (static_cast<std::size_t>(drives.rows()) != packed.transducers()) {
     refuse("the loop has drives for " + std::to_string(drives.rows()) +
-           " transducers; it must have them for the array's " +
-           std::to_string(packed.transducers()));
+           " transducers, but the array has " + std::to_string(packed.transducers()));
   }
 }
 
-/// v of (A20) for one set of drives, or p of (A1) without normals.
+/// Returns v of (A20) for one set of drives; p of (A1) without normals.
 Eigen::VectorXcf field_of(const PackedArray& packed, std::span<const Vec3> points,
                           std::span<const Vec3> normals, const Eigen::VectorXcf& drives) {
   const PackedMatrix right = packed_from(drives, packed.stride());
@@ -98,7 +97,7 @@ Eigen::VectorXcf field_of(const PackedArray& packed, std::span<const Vec3> point
 }  // namespace
 
 void validate(const SurfacePoints& surface, const TransducerArray& array) {
-  if (surface.p_D.empty()) refuse("a surface has no point; it must have one at least");
+  if (surface.p_D.empty()) refuse("a surface has no point; it must have at least one");
   if (surface.normal.size() != surface.p_D.size()) {
     refuse("a surface has " + std::to_string(surface.normal.size()) +
            " normals; it must have one for each of its " + std::to_string(surface.p_D.size()) +
@@ -110,7 +109,7 @@ void validate(const SurfacePoints& surface, const TransducerArray& array) {
   for (std::size_t m = 0; m < surface.p_D.size(); ++m) {
     const std::string which = "point " + std::to_string(m) + " (from 0) of a surface ";
     if (!finite(surface.p_D[m]) || !finite(surface.normal[m])) {
-      refuse(which + "must have a finite place and normal");
+      refuse(which + "must have a finite position and normal");
     }
     if (std::abs(surface.normal[m].squaredNorm() - 1.0) > 2e-6) {
       refuse(which + "must have a normal of length 1");
@@ -181,7 +180,7 @@ LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium,
   std::vector<Course> courses(static_cast<std::size_t>(pool.threads()), Course(course.cols()));
   for_blocks(packed, surface, factor, pool,
              [&](std::size_t first, std::size_t count, const Scratch& s, std::size_t thread) {
-               // what the fields of the basis at these points make of each sample
+               // combine the basis's fields at these points to those of each sample
                Course& c = courses[thread];
                complex_product({s.z_re.data(), s.z_im.data(), count, factor.cols()}, course, 0,
                                c.re.data(), c.im.data());

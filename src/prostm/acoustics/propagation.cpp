@@ -13,9 +13,9 @@ namespace {
 
 void check(const TransducerArray& array, std::span<const Vec3> foci) {
   if (foci.empty() || foci.size() > array.position.size()) {
-    throw std::invalid_argument("there are " + std::to_string(foci.size()) +
-                                " focal points; there must be from 1 to one for each of the " +
-                                std::to_string(array.position.size()) + " transducers");
+    throw std::invalid_argument(
+        "there are " + std::to_string(foci.size()) + " focal points; there must be from 1 to " +
+        std::to_string(array.position.size()) + ", one for each transducer");
   }
   for (std::size_t m = 0; m < foci.size(); ++m) {
     for (const double x : foci[m]) {
@@ -33,7 +33,7 @@ void check(const TransducerArray& array, std::span<const Vec3> foci) {
     if (!in_front) refuse(m, "is behind the array; it must be in front of a transducer");
     for (std::size_t other = 0; other < m; ++other) {
       if ((foci[m] - foci[other]).norm() >= kNearestFoci) continue;
-      refuse(m, "is at the place of focal point " + std::to_string(other + 1) +
+      refuse(m, "is at the position of focal point " + std::to_string(other + 1) +
                     "; they must be at least 0.1 mm apart");
     }
   }

@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-/// The array filled up by copies of its last transducer, whose gain is 0.
+/// Number of transducers with padding: copies of the last transducer with gain 0.
 std::size_t padded(std::size_t count) {
   constexpr std::size_t kBlock = PackedArray::kRowBlock;
   return (count + kBlock - 1) / kBlock * kBlock;
@@ -29,7 +29,7 @@ void tabulate_directivity(PackedArray& packed) {
   }
 }
 
-/// Chebyshev's polynomials T_0 … of v, added up with these weights, in powers of v.
+/// Converts a sum of Chebyshev polynomials T_0 … of v with these weights to powers of v.
 std::array<double, PackedArray::kBeamTerms> in_powers(
     const std::array<double, PackedArray::kBeamTerms>& weight) {
   std::array<double, PackedArray::kBeamTerms> sum{}, before{}, now{};
@@ -45,8 +45,8 @@ std::array<double, PackedArray::kBeamTerms> in_powers(
   return sum;
 }
 
-/// D as a polynomial in v = 2 cos²θ − 1, interpolated at Chebyshev's points. @return whether it is
-/// good enough.
+/// Fits D by a polynomial in v = 2 cos²θ − 1, interpolated at the Chebyshev points. @return whether
+/// it is within 2e-7.
 bool fit_directivity(PackedArray& packed) {
   constexpr std::size_t kTerms = PackedArray::kBeamTerms;
   const double ka = packed.wave.number * packed.array.radius;

@@ -11,8 +11,8 @@
 #include <hwy/highway.h>
 
 // A vector holds transducers, so that few points are as fast as many. At 0.5 m the phase is 400
-// rad, of which single precision would leave 2e-5 rad: so r² is computed in double precision, from
-// |p|² − 2 p·t + |t|², and with r₀ its root in single precision
+// rad, which single precision would resolve only to 2e-5 rad. So r² is computed in double
+// precision, from |p|² − 2 p·t + |t|², and with r₀ its root in single precision
 //   kr/π = r₀ k/π + (r² − r₀²) (k/π)/(2 r₀),
 // where the first term is reduced to the nearest whole half turn in double precision and the
 // second is small.
@@ -74,7 +74,7 @@ HWY_INLINE void sin_cos_pi(V g, V& sine, V& cosine) {
   cosine = hn::MulAdd(c, u, set(1.0F));
 }
 
-/// kr/π = whole + rest, whole a whole number.
+/// Splits kr/π into whole + rest, `whole` being an integer.
 HWY_INLINE void half_turns(const Pair& square, V r, V per_r, double per_metre, V& whole, V& rest) {
   const DD dd;
   const Pair root = widen(r);
@@ -97,7 +97,7 @@ HWY_INLINE V dot(const Direction& a, const Direction& b) {
   return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
 }
 
-/// D(θ) from the polynomial; cosine is that of θ.
+/// D(θ) from the polynomial, given cos θ.
 HWY_INLINE V polynomial_beam(const PackedArray& packed, V cosine) {
   const V v = hn::MulSub(hn::Add(cosine, cosine), cosine, set(1.0F));
   V value = set(packed.polynomial[PackedArray::kBeamTerms - 1]);
@@ -107,8 +107,8 @@ HWY_INLINE V polynomial_beam(const PackedArray& packed, V cosine) {
   return hn::IfThenZeroElse(hn::Lt(cosine, hn::Zero(D())), value);
 }
 
-/// D(θ) from the table. `chord`, the distance of the unit vectors along the way and along the
-/// normal squared, is 4 sin²(θ/2), exact also where θ is small.
+/// D(θ) from the table. `chord`, the squared distance between the unit vectors along the way and
+/// along the normal, is 4 sin²(θ/2), which is exact also for small θ.
 HWY_INLINE V table_beam(const PackedArray& packed, V chord) {
   const D d;
   const DI di;
@@ -122,7 +122,7 @@ HWY_INLINE V table_beam(const PackedArray& packed, V chord) {
   return hn::IfThenElseZero(hn::Le(chord, set(2.0F)), value);
 }
 
-/// D(θ) along the way from the transducers from n on.
+/// D(θ) along the ways from the transducers from n on.
 HWY_INLINE V directivity_of(const PackedArray& packed, const Direction& way, std::size_t n) {
   const D d;
   const Direction normal{hn::LoadU(d, packed.normal_x.data() + n),
@@ -136,7 +136,7 @@ HWY_INLINE V directivity_of(const PackedArray& packed, const Direction& way, std
   return table_beam(packed, dot(apart, apart));
 }
 
-/// e^{−αr} = e^{−αr_c} e^{−α(r − r_c)}, where r_c is the way from the array's centre: for most
+/// e^{−αr} = e^{−αr_c} e^{−α(r − r_c)}, where r_c is the distance from the array's centre. For most
 /// arrays α(r − r_c) is so small that four terms of the series are exact to rounding.
 struct Absorption {
   float per_metre, middle, at_middle;  // −α, r_c, e^{−αr_c}
@@ -159,15 +159,15 @@ Absorption absorption_around(const PackedArray& packed, const Vec3& p) {
           static_cast<float>(std::exp(-alpha * middle)), alpha * packed.reach < kSmall};
 }
 
-/// One point, as all lanes need it.
+/// One point, in the form that all lanes use.
 struct Point {
   double x2, y2, z2, square;  // −2x, −2y, −2z, |p|²
   float x, y, z;
-  float nx, ny, nz;  // of the surface, turned into it
+  float nx, ny, nz;  // the surface's normal, reversed to point into it
   Absorption absorption;
 };
 
-/// r² of the transducers from n on.
+/// r² for the transducers from n on.
 HWY_INLINE VD square_distance(const PackedArray& packed, const Point& p, std::size_t n) {
   const DD dd;
   VD sum = hn::Add(hn::LoadU(dd, packed.square.data() + n), hn::Set(dd, p.square));
@@ -176,11 +176,11 @@ HWY_INLINE VD square_distance(const PackedArray& packed, const Point& p, std::si
   return hn::MulAdd(hn::LoadU(dd, packed.z.data() + n), hn::Set(dd, p.z2), sum);
 }
 
-/// From transducers to a point.
+/// The ways from transducers to a point.
 struct Way {
   V r, per_r;
   Direction direction;
-  V whole, rest;  // kr/π, as half_turns has it
+  V whole, rest;  // kr/π, split as by half_turns
 };
 
 HWY_INLINE Way way_from(const PackedArray& packed, const Point& p, double per_metre,

@@ -11,23 +11,23 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kLossOmega = 2.0 * kPi;  // at which `loss` is stated [rad/s]
+constexpr double kLossOmega = 2.0 * kPi;  // angular frequency at which `loss` is stated [rad/s]
 
 double square(double x) {
   return x * x;
 }
 
-/// The smaller τ for which tan δ = ωτ(m − 1)/(1 + m ω²τ²) at 1 Hz, m the ratio of the moduli: the
-/// skin relaxes well above 1 Hz, (S2).
+/// Returns the smaller τ with tan δ = ωτ(m − 1)/(1 + m ω²τ²) at 1 Hz, m the ratio of the moduli,
+/// (S2): the skin relaxes well above 1 Hz.
 double relaxation(const SkinSettings& s) {
   if (s.slow_speed == s.fast_speed && s.loss == 0.0) return 0.0;
   const double m = square(s.fast_speed / s.slow_speed);
   const double root = square(m - 1.0) - 4.0 * m * square(s.loss);
   if (s.loss == 0.0 || root < 0.0) {
     throw std::invalid_argument(
-        "loss must be 0 where slow_speed and fast_speed are the same, and else above 0 and at most "
-        "what a single relaxation between the two can have, (m - 1)/(2 sqrt(m)), m the square of "
-        "the speeds' ratio");
+        "loss must be 0 if slow_speed and fast_speed are the same; otherwise it must be above 0 "
+        "and at most (m - 1)/(2 sqrt(m)), the largest loss of a single relaxation between the "
+        "two, where m is the square of the speeds' ratio");
   }
   return 2.0 * s.loss / ((m - 1.0 + std::sqrt(root)) * kLossOmega);
 }
@@ -66,7 +66,7 @@ Complex SkinModel::compliance(double wave_number, double omega) const {
 }
 
 Complex SkinModel::surface_wave_number(double omega) const {
-  // the root with Re k > 0, Im k < 0, as M is in the first quadrant
+  // the root with Re k > 0 and Im k < 0, as M is in the first quadrant
   return omega * std::sqrt(settings_.density / (kRayleigh * shear_modulus(omega)));
 }
 
@@ -85,7 +85,7 @@ Complex SkinModel::surface_frequency(double wave_number) const {
     const double s = 0.5 * (low + high);
     (s * s * (s + rate) + fast * s + slow * rate > 0.0 ? high : low) = s;
   }
-  // the other two are the wave: s² + 2 d s + q
+  // the other two roots are the wave: s² + 2 d s + q
   const double d = 0.5 * (rate + low), q = fast + low * (rate + low);
   return Complex(0.0, d) + std::sqrt(Complex(q - d * d, 0.0));
 }

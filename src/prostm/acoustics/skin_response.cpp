@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// of the integral over wave numbers [rad/m]: a fraction of what the loss blurs the pole by
+// step of the integral over wave numbers [rad/m]: a fraction of the pole's width due to the loss
 constexpr double kWaveNumberStep = 1.0;
 
 const SkinPatch& checked(const SkinPatch& patch) {
@@ -37,7 +37,7 @@ SkinResponse::SkinResponse(const SkinModel& model, const SkinPatch& patch)
 }
 
 void SkinResponse::make_radii() {
-  // distances, cyclic in the padded raster, whose squares in cells are whole numbers
+  // cyclic distances in the padded raster; in cells, their squares are integers
   const auto squared = [](int i, int n) { return std::min(i, n - i) * std::min(i, n - i); };
   std::map<int, int> index;
   radius_of_.reserve(padded_.size());

@@ -27,8 +27,8 @@ TransducerDynamics::TransducerDynamics(const TransducerSettings& settings, std::
 }
 
 void TransducerDynamics::step(std::span<const std::complex<double>> drives) {
-  // what is left below this is silence; without the cut it would fade into slow subnormal numbers
-  constexpr double kSilence = 1e-60;  // of the square
+  // remainders below this count as silence, or they would fade into slow subnormal numbers
+  constexpr double kSilence = 1e-60;  // squared magnitude
   for (std::size_t i = 0; i < output_.size(); ++i) {
     const std::complex<double> end = gain_ * drives[i];
     const std::complex<double> left = decay_ * (output_[i] - end);

@@ -1,6 +1,6 @@
 #include "prostm/acoustics/detail/complex_product.hpp"
 
-// vectors of a length known at compile time only: sums are arrays of them
+// only targets whose vectors have a length known at compile time: the sums are arrays of vectors
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #endif
@@ -23,8 +23,8 @@ using D = hn::CappedTag<float, kPanel>;
 using V = hn::Vec<D>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
-constexpr std::size_t kVectors = kLanes == kPanel ? 1 : 2;  // of a tile's row
-constexpr std::size_t kTileRows = kVectors == 1 ? 6 : 3;    // what 32 or 16 registers hold
+constexpr std::size_t kVectors = kLanes == kPanel ? 1 : 2;  // per row of a tile
+constexpr std::size_t kTileRows = kVectors == 1 ? 6 : 3;    // as many as 32 or 16 registers hold
 
 template <std::size_t kRows>
 HWY_INLINE void tile(const PlanarRows& x, std::size_t first_row, const float* HWY_RESTRICT y,

@@ -1,5 +1,5 @@
 #pragma once
-/// Matrices of complex numbers as vector kernels want them.
+/// Complex matrices in the layout of the vector kernels.
 
 #include <complex>
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace prostm {
 
-/// Rows of complex numbers in single precision, real and imaginary parts apart, each padded with
-/// zeros to whole blocks of kBlock and aligned to one.
+/// Rows of complex numbers in single precision, real and imaginary parts apart. Each row is padded
+/// with zeros to whole blocks of kBlock floats and aligned to a block.
 class ComplexRows {
  public:
   static constexpr std::size_t kBlock = 16;

@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, ComplexRows::kBlock>;
 using V = hn::Vec<D>;
 
-constexpr float kNothing = 1e-30F;  // a square up to which a number has no phase
+constexpr float kNothing = 1e-30F;  // a number with a square up to this has no phase
 
 struct C {
   V re, im;
@@ -51,7 +51,7 @@ HWY_INLINE C add_product(const C& a, const C& b, const C& sum) {
           hn::MulAdd(a.im, b.re, hn::MulAdd(a.re, b.im, sum.im))};
 }
 
-/// factor/|z|, 0 where z is nothing.
+/// factor/|z|; 0 where |z|² ≤ kNothing.
 HWY_INLINE V over_magnitude(V factor, const C& z) {
   const D d;
   const V square = squared(z), some = hn::Set(d, kNothing);
@@ -104,7 +104,7 @@ void BackPropagatePhases(const ComplexRows& g, std::span<const Complex> c, Compl
   }
 }
 
-/// y = G q for `kRows` focal points from m on: so many sums that they need not wait for each other.
+/// y = G q for `kRows` focal points from m on: enough independent sums to hide their latency.
 template <std::size_t kRows>
 HWY_INLINE void sum_rows(const ComplexRows& g, const ComplexRows& drive, std::size_t m,
                          std::span<Complex> y) {
@@ -124,7 +124,7 @@ void PropagateDrives(const ComplexRows& g, const ComplexRows& drive, std::span<C
   for (; m < y.size(); ++m) sum_rows<1>(g, drive, m, y);
 }
 
-/// Σ_n G_in conj(G_jn) for a square of focal points from i and j on.
+/// Σ_n G_in conj(G_jn) for kRows focal points from i on by kRows from j on.
 template <std::size_t kRows>
 HWY_INLINE void correlate_square(const ComplexRows& g, std::size_t i, std::size_t j,
                                  ComplexRows& out) {
@@ -172,8 +172,8 @@ void Correlate(const ComplexRows& g, std::size_t foci, ComplexRows& out) {
   }
 }
 
-/// y = R x at the focal points of kBlocks vectors from i on: so many sums do not wait for each
-/// other.
+/// y = R x at the focal points of kBlocks vectors from i on: enough independent sums to hide their
+/// latency.
 template <std::size_t kBlocks>
 HWY_INLINE void apply_blocks(const ComplexRows& r, std::size_t foci, const ComplexRows& x,
                              std::size_t i, ComplexRows& y) {
@@ -199,7 +199,7 @@ HWY_INLINE void apply_blocks(const ComplexRows& r, std::size_t foci, const Compl
   }
 }
 
-/// Row 0 of y = R x, x in row 0.
+/// y = R x, each in row 0.
 HWY_INLINE void apply(const ComplexRows& r, std::size_t foci, const ComplexRows& x,
                       ComplexRows& y) {
   const std::size_t lanes = hn::Lanes(D());

@@ -1,6 +1,6 @@
 #pragma once
-/// The inner loops of the focus solvers that run for every sample. G has a row of transducers for
-/// each of M focal points; drives are row 0 of their matrix.
+/// The inner loops of the focus solvers that run for every sample. G has a row for each of M focal
+/// points, with a column for each transducer; drives are row 0 of their matrix.
 
 #include <complex>
 #include <span>
@@ -20,7 +20,7 @@ Magnitudes magnitudes(const ComplexRows& g, std::size_t m);
 /// q = Gᴴ c. @return the largest |q_n|.
 float back_propagate(const ComplexRows& g, std::span<const Complex> c, ComplexRows& drive);
 
-/// q = the phases of Gᴴ c, |q_n| = 1; 0 where Gᴴ c is.
+/// q = the phases of Gᴴ c, |q_n| = 1; 0 where Gᴴ c is 0.
 void back_propagate_phases(const ComplexRows& g, std::span<const Complex> c, ComplexRows& drive);
 
 /// y = G q.
@@ -29,13 +29,13 @@ void propagate_drives(const ComplexRows& g, const ComplexRows& drive, std::span<
 /// R = G B of (A13), B the naive focus of each focal point; row j of `out` is column j of R.
 void correlate(const ComplexRows& g, std::size_t foci, ComplexRows& out);
 
-/// (A13)'s iterations on x, M numbers in row 0, which are left with the magnitudes a.
-/// @param a in row 0's real parts. @param scratch a row of M.
+/// Runs the iterations of (A13) on x, M numbers in row 0, and leaves x with the magnitudes a.
+/// @param a in the real parts of row 0. @param scratch one row of M numbers.
 void iterate_gs_pat(const ComplexRows& r, const ComplexRows& a, std::size_t foci, int iterations,
                     ComplexRows& x, ComplexRows& scratch);
 
-/// t_mn = −Im(conj(u_m) G_mn q_n), the derivative of |y_m| with the phase of q_n for u = ŷ, in the
-/// real parts of `turns`, and t tᵀ, M × M.
+/// Writes t_mn = −Im(conj(u_m) G_mn q_n), the derivative of |y_m| with respect to the phase of q_n
+/// for u = ŷ, to the real parts of `turns`, and t tᵀ, M × M, to `normal`.
 void phase_gradients(const ComplexRows& g, std::span<const Complex> u, const ComplexRows& drive,
                      ComplexRows& turns, std::span<float> normal);
 
