@@ -16,13 +16,13 @@ using namespace planning;
 
 namespace {
 
-// of the highest pressure; less is none, so that no mean is taken of numbers near the least double
+// share of the highest pressure; less counts as 0, so that means keep clear of the smallest doubles
 constexpr double kLeastShare = 1e-12;
 
 using Places = boost::container::static_vector<Vec2, kMaxPaths>;
 
-/// (B1): the cells of highest pressure that lie farther than `apart` from each other, one after the
-/// other; of equals the first in the raster. Fewer than `count` where no more fit.
+/// (B1): picks the cells of highest pressure that lie farther than `apart` from each other, one
+/// after another; of equal ones the first in the raster. Picks fewer than `count` if no more fit.
 /// @param maximum the target's largest pressure.
 Places greedy_start(const TargetField& target, int count, double apart, double maximum) {
   Places places;
@@ -48,9 +48,10 @@ Places greedy_start(const TargetField& target, int count, double apart, double m
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"foci", "", 1, kMaxPaths, "N, focal points at most"}, s.foci);
+  v.field({"foci", "", 1, kMaxPaths, "N, maximum number of focal points"}, s.foci);
   v.field({"sigma", "m", 1e-3, 0.1, "fall-off of a focal point"}, s.sigma);
-  v.field({"lloyd_iterations", "", 1, 1'000'000, "of the k-means, at most"}, s.lloyd_iterations);
+  v.field({"lloyd_iterations", "", 1, 1'000'000, "maximum iterations of the k-means"},
+          s.lloyd_iterations);
 }
 
 }  // namespace

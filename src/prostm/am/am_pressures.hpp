@@ -1,5 +1,5 @@
 #pragma once
-/// The pressures that AM gives to foci whose places are known.
+/// Pressures of AM's foci at given positions.
 
 #include "prostm/plan/plan.hpp"
 #include "prostm/target/target_field.hpp"
@@ -7,9 +7,8 @@
 namespace prostm {
 
 /// Sets each focus's pressure by (B3), p_i = Σ p* φ / Σ φ² over the skin cells that are nearest to
-/// it (of equals the first focus), which is the least-squares solution of the model (B2). A focus
-/// that has no such cell within 5 σ is left out: the model would ask for e^12.5 times p*.
-/// Allocates nothing.
+/// it (ties go to the first focus), the least-squares solution of the model (B2). A focus without
+/// such a cell within 5 σ is left out: the model would ask for e^12.5 times p*. Allocates nothing.
 /// @param sigma fall-off of a focal point [m], > 0.  @pre p* is finite, not negative and at most
 /// 1e300.
 void set_pressures(const TargetField& target, double sigma, FocalPoints& foci);

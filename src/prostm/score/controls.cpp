@@ -12,8 +12,7 @@ namespace prostm {
 namespace {
 
 constexpr int kCircles = 4, kCirclePoints = 20, kDraws = 20, kPlacements = 50, kSweeps = 100;
-constexpr double kWeak =
-    0.01;  // points below this share of the maximum have no say in where the mass is
+constexpr double kWeak = 0.01;  // points below this share of the maximum do not count
 
 FocalPath circle(const Vec2& centre, double length, double period, double pressure) {
   FocalPath path;
@@ -29,7 +28,7 @@ FocalPath circle(const Vec2& centre, double length, double period, double pressu
   return path;
 }
 
-/// Visits the skin cells: position, p* over its maximum.
+/// Visits the skin cells with their position and p* over its maximum.
 template <typename Visit>
 void for_skin(const TargetField& target, double maximum, const Visit& visit) {
   for (int row = 0; row < target.rows; ++row) {
@@ -49,7 +48,7 @@ Metrics flat_field(const TargetField& target, double maximum, const Scorer& scor
   return scorer.field(std::vector<double>(target.size(), sum / cells * maximum), 0.0);
 }
 
-/// Up to four circles about random skin cells that do not cross.
+/// Makes up to four circles that do not cross, around random skin cells.
 Plan random_circles(const TargetField& target, double maximum, double length, double period,
                     Random& random) {
   std::vector<Vec2> skin;
@@ -118,8 +117,8 @@ Vec2 centre_of_mass(const TargetField& target, double maximum) {
   return sum / mass;
 }
 
-/// The plan moved so that its mean sample or focus lies at `centre`, its highest effective pressure
-/// set to `maximum`.
+/// Moves the plan so that its mean sample or focus lies at `centre`, and scales its highest
+/// effective pressure to `maximum`.
 Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw& gain) {
   Vec2 mean = Vec2::Zero();
   double samples = 0.0, highest = 0.0;
@@ -129,7 +128,7 @@ Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw&
     highest = std::max(highest, effective);
   };
   for (const FocalPath& path : other.paths) {
-    // what pressures of a path come to at the γ of the longest
+    // converts the path's pressures to the γ of the longest path
     const double weight = gain.gain / gain.of(path.period);
     for (std::size_t i = 0; i < path.points.size(); ++i)
       count(path.points[i], path.pressure[i] * weight);
@@ -149,7 +148,7 @@ Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw&
   return plan;
 }
 
-/// Foci at random skin cells with the pressures that AM gives them there.
+/// Makes foci at random skin cells, with the pressures that AM gives them there.
 Plan random_foci(const TargetField& target, std::size_t count, double sigma, double maximum,
                  Random& random) {
   std::vector<Vec2> skin;

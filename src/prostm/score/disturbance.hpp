@@ -1,5 +1,5 @@
 #pragma once
-/// How a plan does when the world is not the model that it was optimised for, (Q8)–(Q9) of
+/// Scores of a plan when the world differs from the model that it was optimised for, (Q8)–(Q9) of
 /// docs/design.md.
 
 #include <string>
@@ -12,25 +12,25 @@ namespace prostm {
 /// A rendering that differs from the planner's Eq. (1).
 struct Disturbance {
   std::string name;
-  double sigma = 0.0;  ///< fall-off of a focal point that is rendered with [m], > 0
-  double shift = 0.0;  ///< paths against skin within the plane [m], over kShiftDirections
+  double sigma = 0.0;  ///< fall-off of a focal point in the rendering [m], > 0
+  double shift = 0.0;  ///< shift of the paths over the skin, in the plane [m]; in kShiftDirections
 };
 
 /// Directions of a shift: 0°, 45°, …, 315°.
 inline constexpr int kShiftDirections = 8;
 
-/// The disturbances that plans for `sigma` [m] are judged under: the array's own focus (σ = 3.9
-/// mm), σ 30 % less and 30 % more, the hand displaced by 3 mm, and the tracker's pose wrong by 5
-/// mm.
+/// Returns the disturbances that plans for `sigma` [m] are judged under: the array's own focus (σ =
+/// 3.9 mm), σ 30 % less and 30 % more, the hand displaced by 3 mm, and the tracker's pose wrong by
+/// 5 mm.
 std::vector<Disturbance> disturbances(double sigma);
 
 /// score_plan() with every path moved by `shift` [m] in the plane: p̂(x) becomes p̂(x − shift), (Q8).
 Metrics score_shifted(const TargetField& target, const Plan& plan, int patch, double sigma,
                       const GainLaw& gain, const Vec2& shift);
 
-/// Scores a plan on one patch under a disturbance, coverage included, which then means "within the
-/// disturbance's σ". With a shift each metric is the mean over the directions, (Q9). Without one,
-/// and with the planner's σ, score_plan() to the bit. @param gain γ of Eq. (1).
+/// Scores a plan on one patch under a disturbance. Coverage then means "within the disturbance's
+/// σ". With a shift, each metric is the mean over the directions, (Q9). Without a shift and with
+/// the planner's σ, the result equals score_plan() to the bit. @param gain γ of Eq. (1).
 Metrics score_disturbed(const TargetField& target, const Plan& plan, int patch,
                         const Disturbance& disturbance, const GainLaw& gain);
 

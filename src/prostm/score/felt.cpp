@@ -9,10 +9,10 @@ namespace prostm {
 namespace {
 
 constexpr int kPart = kLoopUnit;   // samples of a part of the loop, 0.2 ms at 40 kHz
-constexpr double kBeside = 10e-3;  // of a ghost from where something is to be felt [m]
-constexpr double kNothing = 0.1;   // share of the target's maximum that is nothing
+constexpr double kBeside = 10e-3;  // least distance of a ghost from anything to be felt [m]
+constexpr double kNothing = 0.1;   // share of the target's maximum below which it counts as nothing
 
-/// Pressures of a loop over the whole raster, part by part: 0 off the skin.
+/// Spreads the pressures of a loop over the whole raster, part by part; 0 off the skin.
 std::vector<double> on_raster(const TargetField& raster, const SkinSurface& skin,
                               const LoopPressure& pressure) {
   const auto parts = static_cast<std::size_t>(pressure.frames);

@@ -1,5 +1,5 @@
 #pragma once
-/// What the skin makes of the pressure that an array puts on it.
+/// The percept of the pressure that an array puts on the skin.
 
 #include <span>
 #include <vector>
@@ -12,15 +12,15 @@ namespace prostm {
 /// The longest loop whose percept is computed [s].
 inline constexpr double kLongestFelt = 0.25;
 
-/// Whether what is felt of a loop is computed: it takes at most kLongestFelt, at up to 100 kHz, and
-/// the raster has at most 128 cells along an edge, of 0.1 to 20 mm. Beyond, the skin has too many
-/// harmonics or places.
+/// Whether the percept of a loop is computed: the loop takes at most kLongestFelt, at up to
+/// 100 kHz, and the raster has at most 128 cells along an edge, of 0.1 to 20 mm. Beyond these, the
+/// skin has too many harmonics or places.
 bool is_felt(const TargetField& raster, const LoopSamples& loop);
 
-/// How strongly a loop is felt, rows·cols; 0 where there is no skin.
+/// Perceived strength of a loop, rows·cols; 0 where there is no skin.
 struct FeltField {
   std::vector<double> percept;  ///< √e, (S7) [m]
-  double largest = 0.0;         ///< of `percept` [m]
+  double largest = 0.0;         ///< largest value of `percept` [m]
   double intensity = 0.0;       ///< √E, (S8) [m]
 };
 
@@ -30,12 +30,14 @@ class FeelingSkin {
   /// @throws std::invalid_argument as SkinResponse does.
   explicit FeelingSkin(const TargetField& raster);
 
+  /// Computes the percept of a given pressure.
   /// @param pressure on the raster for each of `parts` equal parts of a loop of `period` [s], part
-  /// by part [Pa]. @throws std::invalid_argument as SkinResponse does. @pre the raster of the
-  /// constructor.
+  /// by part [Pa]. @throws std::invalid_argument as SkinResponse does. @pre the raster is that of
+  /// the constructor.
   FeltField feel(const TargetField& raster, double period, int parts,
                  std::span<const double> pressure);
-  /// The loop that an array plays. @throws as loop_pressure() does. @pre is_felt(raster, loop)
+  /// Computes the percept of the loop that an array plays. @throws as loop_pressure() does. @pre
+  /// is_felt(raster, loop)
   FeltField feel(const PackedArray& packed, const Medium& medium, const TargetField& raster,
                  const LoopSamples& loop, const LoopDriveResult& drives, WorkerPool& pool);
 
@@ -43,12 +45,13 @@ class FeelingSkin {
   SkinResponse response_;
 };
 
-/// Strong places of what is felt where nothing is to be felt.
+/// Strong places of the percept where the target has nothing to feel.
 struct Ghosts {
   int count = 0;         ///< local maxima above half of the map's largest value
   double largest = 0.0;  ///< of all local maxima there, over the map's largest value
 };
-/// Local maxima of a percept on skin farther than 10 mm from all with a target of 0.1 max or more.
+/// Finds the local maxima of a percept on skin that is farther than 10 mm from every cell with a
+/// target of 0.1 max or more.
 Ghosts ghosts_of(const TargetField& target, const std::vector<double>& percept);
 
 }  // namespace prostm

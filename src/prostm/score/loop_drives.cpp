@@ -17,11 +17,11 @@ using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr double kAboveAll = 1e9;  // more than any array reaches: then drives go up to 1 [Pa]
+constexpr double kAboveAll = 1e9;  // target beyond any array, so that drives go up to 1 [Pa]
 constexpr int kWarmUp = 64;        // samples before the first, for the phases to settle
-constexpr double kFull = 0.99;     // |q| that counts as full drive
+constexpr double kFull = 0.99;     // |q| above which a drive counts as full
 
-/// The focal points of a sample that sound, each with its index; of two within kNearestFoci the
+/// The sounding focal points of a sample, each with its index; of two within kNearestFoci only the
 /// stronger.
 struct Sounding {
   std::vector<Vec3> p_D;
@@ -90,7 +90,8 @@ class Solver {
   VectorXd phase_, errors_;
 };
 
-/// Drives at their largest, and the acoustic pressure per intensity that each sample then has [Pa].
+/// Computes the drives at their largest, and the acoustic pressure per intensity that each sample
+/// then reaches [Pa]. @return false if `progress` stopped it.
 bool solve_all(const TransducerArray& array, const Medium& medium, const LoopSamples& loop,
                const FocusSettings& settings, const std::function<bool(int, int)>& progress,
                Eigen::MatrixXcd& drives, std::vector<double>& reached, LoopDriveResult& out) {
@@ -110,7 +111,7 @@ bool solve_all(const TransducerArray& array, const Medium& medium, const LoopSam
   return true;
 }
 
-/// One common scale: no sample above the full scale.
+/// Scales all samples to one full scale, and counts those that do not reach it.
 void scale(const std::vector<double>& reached, double full_scale, Eigen::MatrixXcd& drives,
            LoopDriveResult& out) {
   out.full_scale_pa = full_scale > 0.0 ? full_scale : std::numeric_limits<double>::max();
@@ -131,7 +132,7 @@ void measure_power(const Eigen::MatrixXcd& drives, LoopDriveResult& out) {
   out.full_share = static_cast<double>((size > kFull).count()) / static_cast<double>(drives.size());
 }
 
-/// Twice round, so that the second time starts with what it ends with.
+/// Plays the loop twice, so that the second round starts from the state in which it ends.
 LoopDrives through_transducers(const Eigen::MatrixXcd& drives, const TransducerSettings& settings) {
   const auto transducers = static_cast<std::size_t>(drives.rows());
   TransducerDynamics dynamics(settings, transducers);

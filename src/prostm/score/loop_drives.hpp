@@ -1,6 +1,5 @@
 #pragma once
-/// What an array does to play a loop of focal points: drives, and what the transducers make of
-/// them.
+/// Drives of an array that plays a loop of focal points, and the transducers' outputs for them.
 
 #include <functional>
 
@@ -16,27 +15,29 @@ struct LoopDriveSettings {
   FocusSettings focus;
   TransducerSettings transducer;
   /// Acoustic pressure of a focal point of intensity 1 [Pa, rms]; 0: the most that the array can
-  /// hold over the whole loop, so that no sample is weaker than its plan says.
+  /// hold over the whole loop, so that no sample is weaker than the plan asks for.
   double full_scale_pa = 0.0;
 };
 
 struct LoopDriveResult {
-  LoopDrives output;               ///< what the transducers put out, in the place of drives in (A1)
+  LoopDrives output;               ///< outputs of the transducers; they replace the drives in (A1)
   double full_scale_pa = 0.0;      ///< acoustic pressure of intensity 1 [Pa, rms]
-  int short_samples = 0;           ///< that did not reach it
+  int short_samples = 0;           ///< samples that do not reach full_scale_pa
   double largest_drive = 0.0;      ///< |q|, 0..1
   double mean_power = 0.0;         ///< Σ_n |q_n|², mean over the loop
-  double full_share = 0.0;         ///< of all transducers and samples, those with |q| > 0.99
+  double full_share = 0.0;         ///< share of transducers and samples with |q| > 0.99
   double worst_focus_error = 0.0;  ///< largest error of a focal point's share of its sample
-  int merged = 0;                  ///< focal points left out since one stronger was within 0.1 mm
+  int merged = 0;                  ///< focal points left out for a stronger one within 0.1 mm
 };
 
-/// Drives for each sample by `solve_foci`, from the phases of the sample before, at one common
-/// scale, then transducers' outputs once the loop repeats, (A10). Intensity 0 is no focal point.
-/// @param progress called with samples done and all; false stops. @return false when it was
-/// stopped; `out` is then of no meaning.
+/// Computes drives for each sample by `solve_foci`, from the phases of the sample before, at one
+/// common scale, then the transducers' outputs once the loop repeats, (A10). Focal points of
+/// intensity 0 are ignored.
+/// @param progress called with the number of samples done and of all; returning false stops.
+/// @return false if stopped; `out` is then unspecified.
 /// @throws std::invalid_argument as propagation_to(), solve_foci() and TransducerDynamics do, and
-/// for a loop that is silent throughout, or a full scale that is negative or not finite.
+/// for a loop that is silent throughout, or a full scale that is negative, not finite or above 1e6
+/// Pa.
 bool loop_drives(const TransducerArray& array, const Medium& medium, const LoopSamples& loop,
                  const LoopDriveSettings& settings,
                  const std::function<bool(int done, int all)>& progress, LoopDriveResult& out);

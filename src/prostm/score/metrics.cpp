@@ -19,7 +19,7 @@ constexpr std::array<Quantity<Metrics>, 8> kMetrics{{
      .label = "RMSE"},
     {.name = "correlation",
      .unit = "",
-     .help = "Pearson's; 0 when either field is constant.",
+     .help = "Pearson's correlation; 0 if either field is constant.",
      .value = &Metrics::correlation,
      .better = Better::More,
      .label = "corr"},
@@ -37,7 +37,7 @@ constexpr std::array<Quantity<Metrics>, 8> kMetrics{{
      .label = "S_0"},
     {.name = "skill_8",
      .unit = "",
-     .help = "The same after a Gaussian blur of 8.5 mm of both.",
+     .help = "skill_0 after a Gaussian blur of both fields by 8.5 mm.",
      .value = &Metrics::skill_8,
      .better = Better::More,
      .label = "S_8.5"},
@@ -55,14 +55,14 @@ constexpr std::array<Quantity<Metrics>, 8> kMetrics{{
      .label = "spill"},
     {.name = "felt_skill",
      .unit = "",
-     .help = "skill_8 of what is felt of the field as an array plays it; NaN without an array.",
+     .help = "skill_8 of the percept of the field as an array plays it; NaN without an array.",
      .value = &Metrics::felt_skill,
      .better = Better::More,
      .optional = true,
      .label = "felt"},
 }};
 
-/// `of` the values of each metric.
+/// Applies `of` to the values of each metric; NaN if any value is NaN.
 template <class Of>
 Metrics each(std::span<const Metrics> all, const Of& of) {
   Metrics out;

@@ -14,11 +14,11 @@ namespace prostm {
 namespace {
 
 constexpr int kSamplesLookedAt = 64;
-constexpr double kLoudEnough = 0.1;  // intensity of a focal point that is looked at
+constexpr double kLoudEnough = 0.1;  // only focal points above this intensity are looked at
 constexpr int kSide = 13;            // points along each edge of the grid around a focal point
-constexpr double kStep = 0.75e-3;    // between them [m]
+constexpr double kStep = 0.75e-3;    // distance between them [m]
 
-/// Acoustic pressure squared on the grid around a focal point, row by row along y.
+/// Returns the acoustic pressure squared on the grid around a focal point, row by row along y.
 std::array<double, static_cast<std::size_t>(kSide* kSide)> around(const PackedArray& packed,
                                                                   const Vec3& focus,
                                                                   const Pose& X_DP,
@@ -38,13 +38,14 @@ std::array<double, static_cast<std::size_t>(kSide* kSide)> around(const PackedAr
   return out;
 }
 
-/// Where a parabola through three values a step apart is highest, from the middle, in steps.
+/// Position of the maximum of a parabola through three values one step apart, relative to the
+/// middle one, in steps.
 double peak(double before, double here, double after) {
   const double bend = before - 2.0 * here + after;
   return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
 }
 
-/// How far the highest place is from the grid's middle [m].
+/// Distance of the highest place from the grid's middle [m].
 double offset_of(const std::array<double, static_cast<std::size_t>(kSide* kSide)>& square) {
   const auto at = static_cast<int>(std::max_element(square.begin(), square.end()) - square.begin());
   const int col = at % kSide, row = at / kSide;
@@ -60,7 +61,7 @@ double offset_of(const std::array<double, static_cast<std::size_t>(kSide* kSide)
   return kStep * std::hypot(x - half, y - half);
 }
 
-/// Where a loop's focal points that sound are, every 0.7 mm of a path.
+/// Positions of a loop's sounding focal points, every 0.7 mm of a path.
 std::vector<Eigen::Vector3f> places_of(const LoopSamples& loop) {
   constexpr std::size_t kEvery = 4;  // samples
   std::vector<Eigen::Vector3f> places;
@@ -73,8 +74,8 @@ std::vector<Eigen::Vector3f> places_of(const LoopSamples& loop) {
   return places;
 }
 
-/// Computes a PhysicalField. Cells may be wider than a lobe, so its largest values are looked for
-/// on points 2 mm apart or less, and then on points 0.5 mm apart around the highest of these.
+/// Computes a PhysicalField. Cells may be wider than a lobe, so its largest values are searched on
+/// points 2 mm apart or less, and then on points 0.5 mm apart around the highest of these.
 class Looking {
  public:
   Looking(const PackedArray& packed, const Medium& medium, const TargetField& raster,
@@ -89,7 +90,7 @@ class Looking {
         pool_(pool) {
     field.mean.assign(raster.size(), 0.0);
     field.envelope.assign(raster.size(), 0.0);
-    // an odd number along each edge, so that one is in the middle
+    // an odd number along each edge, so that one point is in the middle
     const int parts =
         1 + 2 * std::max(0, static_cast<int>(std::ceil(raster.cell / kLook / 2 - 0.5)));
     std::vector<Place> all, near;
@@ -103,7 +104,7 @@ class Looking {
       field.envelope[skin.cell[m]] =
           static_cast<double>(found.envelope[m * of_a_cell + of_a_cell / 2]);
     }
-    // a place stands for its surroundings too: some of them are beside the paths where it is not
+    // a place also stands for its surroundings, which may be beside the paths where it is not
     for (const Place& place : std::exchange(highest_, {})) {
       divide(place, 2.0 * kLook, 2 * kFiner, near);
     }
@@ -116,13 +117,13 @@ class Looking {
 
  private:
   struct Place {
-    std::size_t of;  // the cell whose normal it has: index in skin.cell
+    std::size_t of;  // index in skin.cell of the cell whose normal it has
     Vec2 x;          // in P
   };
   static constexpr double kLook = 2e-3;  // [m]
   static constexpr int kFiner = 4;
   static constexpr std::size_t kHighest = 32;  // places of each kind that are looked at again
-  static constexpr double kApart = kLook;      // between them [m]
+  static constexpr double kApart = kLook;      // least distance between them [m]
 
   static void divide(const Place& middle, double edge, int parts, std::vector<Place>& out) {
     for (int j = 0; j < parts; ++j) {
@@ -148,7 +149,7 @@ class Looking {
     });
   }
 
-  /// Takes the largest values of places, and adds the highest places of each kind to `highest_`.
+  /// Updates the largest values, and adds the highest places of each kind to `highest_`.
   LoopPressure look(const std::vector<Place>& at) {
     SurfacePoints points;
     for (const Place& place : at) {
@@ -162,7 +163,7 @@ class Looking {
       std::iota(order.begin(), order.end(), std::size_t{0});
       std::sort(order.begin(), order.end(),
                 [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
-      // apart from each other, so that they are of different lobes
+      // apart from each other, so that they belong to different lobes
       const std::size_t before = highest_.size();
       for (std::size_t i = 0; i < order.size() && highest_.size() < before + kHighest; ++i) {
         const Place& place = at[order[i]];
@@ -244,7 +245,7 @@ PhysicalField physical_field(const PackedArray& packed, const Medium& medium,
                              const LoopDriveResult& drives, WorkerPool& pool) {
   const SkinSurface skin = skin_surface(raster);
   if (skin.cell.empty()) {
-    throw std::invalid_argument("the raster has no skin; there must be a cell with a height");
+    throw std::invalid_argument("the raster has no skin; at least one cell must have a height");
   }
   return Looking(packed, medium, raster, skin, loop, drives, pool).field;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What an array really puts on the skin when it plays a plan, and how good that is.
+/// The pressure that an array really puts on the skin when it plays a plan, and its score.
 
 #include <cstddef>
 #include <vector>
@@ -16,29 +16,29 @@ struct SkinSurface {
   std::vector<std::size_t> cell;
   SurfacePoints points;
 };
-/// @pre validate(raster) passes.
+/// Returns the skin of a raster. @pre validate(raster) passes.
 SkinSurface skin_surface(const TargetField& raster);
 
-/// How near focal points are to where and how strong they should be, over samples of a loop. The
-/// place is that of the largest acoustic pressure within 4.5 mm along the plane; the level is
-/// acoustic pressure over what the sample asks for.
+/// Errors of focal points' positions and levels over samples of a loop. The position is that of the
+/// largest acoustic pressure within 4.5 mm along the plane; the level is the acoustic pressure over
+/// that which the sample asks for.
 struct FocusAccuracy {
   int looked_at = 0;                             ///< focal points, in all samples looked at
   double mean_offset = 0.0, worst_offset = 0.0;  ///< [m]
   double mean_level = 0.0, least_level = 0.0, most_level = 0.0;
 };
-/// Of focal points with an intensity above 0.1, in up to 64 samples of equal distance.
+/// Measures the focal points with an intensity above 0.1, in about 64 samples at equal distances.
 /// @param X_DP the plane along which a focus may be off.
 FocusAccuracy focus_accuracy(const PackedArray& packed, const LoopSamples& loop,
                              const LoopDriveResult& drives, const Pose& X_DP);
 
-/// Cells of the skin farther from every path than this are beside it: twice the distance of the
-/// first zero of a focus at 200 mm, about [m].
+/// Skin farther from every path than this is beside the paths [m]: about twice the distance of the
+/// first zero of a focus at 200 mm.
 inline constexpr double kBesidePaths = 20e-3;
 
 /// Radiation pressure of a loop on the skin [Pa]: rows·cols values at the middles of cells, 0 where
-/// there is no skin. The largest values are those between them too, found on points 0.5 mm apart,
-/// so that they do not depend on the cells.
+/// there is no skin. The largest values also cover the points between, 0.5 mm apart, so that they
+/// do not depend on the cells.
 struct PhysicalField {
   std::vector<double> mean, envelope;
   double largest = 0.0;       ///< of the envelope
@@ -46,14 +46,15 @@ struct PhysicalField {
   double side_lobe = 0.0;     ///< largest of the envelope beside the paths, over `largest`
 };
 
-/// @throws std::invalid_argument as loop_pressure() does, and when the raster has no skin.
+/// Computes the field. @throws std::invalid_argument as loop_pressure() does, and if the raster has
+/// no skin.
 PhysicalField physical_field(const PackedArray& packed, const Medium& medium,
                              const TargetField& raster, const LoopSamples& loop,
                              const LoopDriveResult& drives, WorkerPool& pool);
 
-/// The metrics (Q1) to (Q7) of a physical field against a target on the same raster, after the gain
-/// g of least squares, Σ p* p / Σ p²: units of targets are free. All zeros for a target or a field
-/// without pressure. @param coverage is passed through.
+/// Computes the metrics (Q1) to (Q7) of a physical field against a target on the same raster, after
+/// scaling the field by the least-squares gain g = Σ p* p / Σ p²: the target's unit does not
+/// matter. All zeros for a target or a field without pressure. @param coverage is passed through.
 Metrics score_physical(const TargetField& target, const std::vector<double>& field,
                        double coverage);
 

@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kSpillShare = 0.1;  // of max p*: pressure below this is not to be felt
+constexpr double kSpillShare = 0.1;  // share of max p* below which nothing is to be felt
 
 /// Target and rendered field on the skin, both over max p*.
 struct SkinValues {
@@ -35,7 +35,7 @@ double squared_deviation(const std::vector<double>& a) {
   return sum;
 }
 
-/// g that minimises Σ (target − g rendered)²; 0 when nothing is rendered.
+/// The g that minimises Σ (target − g rendered)²; 0 if nothing is rendered.
 double best_gain(const SkinValues& v) {
   const double norm = dot(v.rendered, v.rendered);
   return norm > 0.0 ? dot(v.target, v.rendered) / norm : 0.0;
@@ -141,7 +141,7 @@ Metrics Scorer::field(const std::vector<double>& rendered, double coverage) cons
   m.skill_0 = skill(v);
   m.overlap = overlap(v);
   m.spill = spill(v);
-  // the same skill on what is left when detail finer than b is blurred away
+  // the same skill after detail finer than b is blurred away
   m.skill_8 = skill({blurred_, blurred});
   return m;
 }

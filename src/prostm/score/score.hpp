@@ -1,6 +1,6 @@
 #pragma once
-/// How well a plan's quasi-static field (Eq. 1) renders its target, with the controls that keep the
-/// numbers honest.
+/// Scores of a plan's quasi-static field (Eq. 1) against its target, with the controls that keep
+/// the numbers honest.
 
 #include <cstdint>
 #include <functional>
@@ -21,22 +21,21 @@ namespace prostm {
 /// p*.
 struct Metrics {
   double rmse = 0;
-  double correlation = 0;  ///< Pearson's; 0 when either field is constant
+  double correlation = 0;  ///< Pearson's correlation; 0 if either field is constant
   double coverage = 0;     ///< share of Σ p* within σ of a path
   double skill_0 = 0;  ///< S_0: 1 − min_g Σ(p* − g p̂)² / Σ(p* − mean)²; 0 = a flat field
-  double skill_8 = 0;  ///< S_8.5: the same after a Gaussian blur of 8.5 mm of both, within the skin
+  double skill_8 = 0;  ///< S_8.5: S_0 after a Gaussian blur of both by 8.5 mm, within the skin
   double overlap = 0;  ///< Σ min(p*, g p̂) / Σ max(p*, g p̂), g of skill_0
   double spill = 0;    ///< share of Σ p̂ on skin where p* < 0.1 max p*
-  /// S_8.5 of what is felt of the field as an array plays it (felt_skill()); NaN where nobody
-  /// asked.
+  /// S_8.5 of the percept of the field as an array plays it (felt_skill()); NaN if not computed.
   double felt_skill = std::numeric_limits<double>::quiet_NaN();
 };
 template <>
 std::span<const Quantity<Metrics>> quantities<Metrics>();
 
-/// Each metric's mean for itself; NaN where one is. @pre there are some.
+/// Mean of each metric; NaN if any value is NaN. @pre `all` is not empty.
 Metrics mean(std::span<const Metrics> all);
-/// Each metric's median for itself. @pre as of mean().
+/// Median of each metric; NaN if any value is NaN. @pre as for mean().
 Metrics median(std::span<const Metrics> all);
 
 /// Scores a given field; all zeros for a target without pressure. @param rendered rows·cols, the
@@ -49,40 +48,40 @@ Metrics score_field(const TargetField& target, const std::vector<double>& render
 double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma);
 
 /// Scores a plan on one patch through Eq. (1) with σ [m] and the γ of each path; all zeros for a
-/// target without pressure. @param instead pressures that count in place of the plan's own:
-/// played_pressures() makes it the quality of what is played.
+/// target without pressure. @param instead pressures that replace the plan's own: with
+/// played_pressures() the score is that of the pressures as played.
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
                    const GainLaw& gain, const SegmentPressures* instead = nullptr);
 
-/// (Q1) of a plan with each cell's error counted by its weight, √(Σ w (p̂ − p*)² / Σ w); 0 for a
+/// (Q1) of a plan with each cell's error weighted by its weight, √(Σ w (p̂ − p*)² / Σ w); 0 for a
 /// target without pressure. @pre the target has weights, at least one > 0 on skin.
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,
                      const GainLaw& gain, const SegmentPressures* instead = nullptr);
 
-/// One row of the controls' table: what a metric says about something that must lose.
+/// One row of the controls' table: the metrics of something that must lose to the plan.
 struct Control {
   std::string name;
   Metrics metrics;
 };
 
-/// The circles of the control "four circles at the mass centres": as they stand in `controls`; none
-/// for a target without pressure.
+/// Returns the circles of the control "four circles at the mass centres", as in controls(); an
+/// empty plan for a target without pressure.
 Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, double length,
                              std::uint64_t seed);
 
-/// The controls of a plan on a target, which must lose to it; empty for a target without pressure:
+/// Scores the controls of a plan on a target, which must lose to it; empty for a target without
+/// pressure:
 /// - "flat field": the mean p* everywhere (no path, so coverage 0);
 /// - "four circles at the mass centres": one about each centre of a weighted 4-means, each `length`
-/// long, p_i = γ times the mean p* of
-///   the points above 1 % of the maximum;
+///   long, p_i = γ times the mean p* of the points above 1 % of the maximum;
 /// - "random circles, solved pressures": up to four circles `length` long about random skin cells
-/// that do not cross, with the
-///   non-negative least-squares p_i; the median of each metric over 20 draws;
-/// - "random foci, solved pressures", when `other` holds foci: as many at random skin cells, with
-/// the pressures of (B3); the median of each metric over 20 draws;
-/// - "paths of another target", or foci, when `other` is given and not empty: its paths with their
-/// mean sample moved to this target's centre of
-///   mass, their highest p_i/γ set to max p*.
+///   that do not cross, with the non-negative least-squares p_i; the median of each metric over 20
+///   draws;
+/// - "random foci, solved pressures", if `other` holds foci: as many at random skin cells, with the
+///   pressures of (B3); the median of each metric over 20 draws;
+/// - "paths of another target" or "foci of another target", if `other` is given and not empty: its
+///   paths or foci, their mean moved to this target's centre of mass, their highest p_i/γ set to
+///   max p*.
 /// @param sigma fall-off of a focal point [m].  @param gain γ of each path; circles take a lap of
 /// 1/draw_rate.  @param length of a circle, e.g. L [m].  @param progress is told after each field
 /// that is scored: a large raster takes seconds.

@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-// poses that went through a file or a fit are orthonormal to about this much
+// poses from a file or a fit are orthonormal to about this
 constexpr double kOrthonormalTolerance = 1e-6;
 
 std::string text(double value) {
@@ -23,7 +23,7 @@ std::string cell_name(int row, int col) {
   return "row " + std::to_string(row) + ", column " + std::to_string(col);
 }
 
-// Eigen's allFinite subtracts, which is an invalid operation on infinities
+// Eigen's allFinite subtracts, an invalid operation on infinities
 template <class Derived>
 bool all_finite(const Eigen::MatrixBase<Derived>& values) {
   return values.unaryExpr([](double x) { return std::isfinite(x); }).all();
@@ -179,7 +179,7 @@ void fill_heights(TargetField& field, std::vector<std::uint32_t>& queue) {
     return;
   }
 
-  // each cell hands its height to the neighbours along rows and columns that have none yet
+  // each cell hands its height to its row and column neighbours that have none yet
   const auto cols = static_cast<std::uint32_t>(field.cols);
   const auto rows = static_cast<std::uint32_t>(field.rows);
   for (std::size_t head = 0; head < queue.size(); ++head) {

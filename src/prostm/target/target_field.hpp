@@ -1,5 +1,6 @@
 #pragma once
-/// What is to be felt: a pressure on the skin, projected on a plane and sampled on a raster.
+/// The target: a pressure on the skin that is to be felt, projected on a plane and sampled on a
+/// raster.
 
 #include <boost/container/static_vector.hpp>
 #include <cstddef>
@@ -19,8 +20,8 @@ inline constexpr std::size_t kMaxFieldCells = 1'000'000;
 /// Row-major: the centre of cell (row, col) lies at origin + cell·(col, row) in P. `pressure` is
 /// any non-negative quantity (a plan scales with it); `height` is the skin's distance from the
 /// plane along its normal, positive away from the array, so that a point x of the plane is lifted
-/// to X_DP · (x, height); `weight` is how much the error of a cell counts where a plan is fitted to
-/// the field (presets `best` and `fast`): only the weights' ratios matter.
+/// to X_DP · (x, height); `weight` is how much the error of a cell counts when a plan is fitted to
+/// the field (presets `best` and `fast`); only the weights' ratios matter.
 struct TargetField {
   int rows = 0, cols = 0;
   double cell = 0.0;               ///< edge of a cell [m]
@@ -37,7 +38,7 @@ struct TargetField {
            static_cast<std::size_t>(col);
   }
   Vec2 position(int row, int col) const { return origin + cell * Vec2(col, row); }
-  /// Of a cell by its index. @pre index < size().
+  /// Position of a cell by its index. @pre index < size().
   Vec2 position(std::size_t index) const {
     const auto width = static_cast<std::size_t>(cols);
     return position(static_cast<int>(index / width), static_cast<int>(index % width));
@@ -47,11 +48,12 @@ struct TargetField {
   /// Allocates only when it grows.
   void resize(int new_rows, int new_cols);
 
-  /// Parallel to the array, 200 mm above its centre.
+  /// The plane parallel to the array, 200 mm above its centre.
   static Pose default_plane();
 };
 
-/// @throws std::invalid_argument with a sentence that names the value and the bound: sizes that
+/// Checks a field.
+/// @throws std::invalid_argument with a message that names the value and the bound, for sizes that
 /// disagree, an empty or too large raster, a cell size that is not positive and finite, a pressure
 /// that is negative or not finite, pressure where there is no skin, a height or plane that is not
 /// finite, a plane whose axes are not orthonormal, a weight that is negative or not finite, weights
@@ -67,12 +69,12 @@ double total_pressure(const TargetField& field);
 /// Largest weight on skin; 0 for a field without skin. @pre the field has weights.
 double max_weight(const TargetField& field);
 
-/// Continues the heights of the skin to the cells without skin (each takes the height of the
-/// nearest skin cell, by breadth-first spreading), so that a path that bridges a gap between
-/// fingers stays near the skin. 0 when no skin.
+/// Continues the heights of the skin to the cells without skin: each takes the height of the
+/// nearest skin cell, by breadth-first spreading. So a path that bridges a gap between fingers
+/// stays near the skin. All heights become 0 if there is no skin.
 void fill_heights(TargetField& field);
-/// The same for a loop: `queue` is scratch that is kept between calls; nothing is allocated once it
-/// holds rows·cols.
+/// The same for repeated calls: `queue` is scratch memory that is kept between calls; nothing is
+/// allocated once it holds rows·cols.
 void fill_heights(TargetField& field, std::vector<std::uint32_t>& queue);
 
 /// Height at a point of the plane [m]: bilinear between cell centres, clamped to the raster's
@@ -82,7 +84,7 @@ double height_at(const TargetField& field, const Vec2& x);
 /// One frame of targets: a patch per hand, each with its own plane.
 inline constexpr int kMaxPatches = 2;
 struct TargetFrame {
-  double time = 0.0;  ///< [s] of the hand frame that it was computed from
+  double time = 0.0;  ///< time of the hand frame it was computed from [s]
   boost::container::static_vector<TargetField, kMaxPatches> patches;
 };
 

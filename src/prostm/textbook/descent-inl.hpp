@@ -40,13 +40,13 @@ double row(const double* w, const double* p) {
   return w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3];
 }
 
-/// p*/max p* of the skin, interpolated by Catmull-Rom bicubics; zero elsewhere. Kept with a border
-/// of zeros.
+/// p*/max p* of the skin, interpolated by Catmull-Rom bicubics; zero elsewhere. Stored with a
+/// border of zeros.
 class Bicubic {
  public:
   Bicubic(const Field& field, double maximum);
   double value(double x, double y) const;
-  /// Value, and its gradient [1/mm] in gx, gy.
+  /// Returns the value, and writes its gradient [1/mm] to gx, gy.
   double value(double x, double y, double& gx, double& gy) const;
 
  private:
@@ -89,8 +89,8 @@ Bicubic::Bicubic(const Field& field, double maximum)
   }
 }
 
-/// First of the 4×4 neighbours of (u, v) in cells, or null where all are zero; s, t are the
-/// fractions.
+/// Returns the first of the 4×4 neighbours of (u, v) in cells, or null if all are zero; s, t are
+/// the fractions.
 const double* Bicubic::corner(double u, double v, double& s, double& t) const {
   if (!(u > -2.0 && u < cols_ + 1.0 && v > -2.0 && v < rows_ + 1.0)) return nullptr;
   const double i = std::floor(u), j = std::floor(v);

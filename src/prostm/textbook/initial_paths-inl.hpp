@@ -80,7 +80,7 @@ struct Axis {
   }
 };
 
-/// Nearest centre of every point. @return whether any label changed.
+/// Assigns every point to its nearest centre. @return whether any label changed.
 bool assign(const Points& p, const Points& centres, std::vector<int>& label) {
   bool changed = false;
   const std::size_t k = centres.size();
@@ -117,7 +117,7 @@ void update(const Points& p, const std::vector<int>& label, Points& centres) {
   }
 }
 
-/// Closed polygon about clusters that lie on a line, or are one or two.
+/// Makes a closed polygon around clusters on a line, or around one or two clusters.
 Points ellipse(const Axis& axis, double low, double high) {
   constexpr int kVertices = 64;
   constexpr double kHalfWidth = 3.0;  // [mm]
@@ -132,8 +132,8 @@ Points ellipse(const Axis& axis, double low, double high) {
   return p;
 }
 
-/// Lloyd's iteration from k random points until no point changes its cluster. @return the clusters
-/// that kept points.
+/// Runs Lloyd's iteration from k random points until no point changes its cluster. @return the
+/// clusters that kept points.
 Points lloyd(const Points& points, int k, int max_iterations, Random& random, int& iterations) {
   // k different points drawn at random
   std::vector<int> order(points.size());
@@ -171,7 +171,7 @@ double tour_length(const Points& points, const Tour& tour) {
   return length;
 }
 
-/// 2-opt from a random order of the tour's points.
+/// Improves the tour by 2-opt, from a random order of its points.
 void two_opt(const Points& points, Tour& tour, Random& random) {
   shuffle(tour, random);
   const std::size_t n = tour.size();
@@ -229,8 +229,8 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
   return leaves;
 }
 
-/// n points at equal distances along the closed tour; a circle of 3 mm for one point, an ellipse
-/// for points on a line.
+/// Appends n points at equal distances along the closed tour; a circle of 3 mm for one point, an
+/// ellipse for points on a line.
 void resample(const Points& points, const Tour& tour, int n, std::vector<double>& x,
               std::vector<double>& y) {
   // the polygon: the tour itself, or an ellipse when it encloses nothing

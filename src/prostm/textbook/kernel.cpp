@@ -6,8 +6,8 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/target/pressure_share.hpp"
 
-// The baseline is compiled for every kind of machine and chosen where it runs, so that one program
-// runs everywhere and loses nothing to one that was compiled for the machine at hand.
+// The baseline is compiled for every kind of machine and the code is selected at run time, so that
+// one program runs everywhere and is as fast as one compiled for the machine at hand.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "prostm/textbook/kernel.cpp"
 #include <hwy/foreach_target.h>

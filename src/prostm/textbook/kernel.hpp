@@ -1,7 +1,7 @@
 #pragma once
 /// The textbook planner's computation, on plain arrays. This header and its sources hold no Eigen
-/// type: they are compiled once for each kind of machine, for which Eigen's types may have another
-/// alignment than in the rest of the program. Lengths in mm from the centre of cell (0, 0).
+/// type: they are compiled once for each kind of machine, on which Eigen's types may be aligned
+/// differently than in the rest of the program. Lengths in mm from the centre of cell (0, 0).
 
 #include <cstdint>
 #include <vector>
@@ -29,13 +29,13 @@ struct Path {
 };
 
 struct Result {
-  std::vector<Path> paths;  ///< empty when there is no pressure on skin
+  std::vector<Path> paths;  ///< empty if there is no pressure on skin
   double init = 0, kmeans = 0, tour = 0, split = 0, resample = 0, refine = 0, total = 0;  ///< [s]
   int clusters = 0, leaves = 0, lloyd_iterations = 0, refine_iterations = 0, cost_evaluations = 0;
   double cost = 0;
 };
 
-/// @pre the field's pressures are finite and not negative.
+/// Plans the paths of a field. @pre the field's pressures are finite and not negative.
 Result run(const Field& field, const Settings& settings);
 
 }  // namespace prostm::textbook

@@ -8,14 +8,14 @@
 
 namespace prostm {
 
-/// What score_field and score_plan need of a target alone, computed once.
+/// The part of score_field and score_plan that depends on the target alone, computed once.
 class Scorer {
  public:
   /// Refers to the target, which must outlive it.
   explicit Scorer(const TargetField& target);
-  /// As score_field.
+  /// The same as score_field().
   Metrics field(const std::vector<double>& rendered, double coverage) const;
-  /// As score_plan.
+  /// The same as score_plan().
   Metrics plan(const Plan& plan, int patch, double sigma, const GainLaw& gain,
                const SegmentPressures* instead = nullptr) const;
 

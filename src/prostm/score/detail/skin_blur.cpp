@@ -8,7 +8,7 @@ namespace prostm {
 namespace {
 
 constexpr double kBlur = 8.5e-3;    // b of skill_8 [m]
-constexpr double kBlurReach = 4.0;  // the Gaussian is cut off at so many b, along each axis
+constexpr double kBlurReach = 4.0;  // cut-off of the Gaussian along each axis, in b
 
 }  // namespace
 
@@ -34,8 +34,8 @@ std::vector<double> SkinBlur::of(const std::vector<double>& field) const {
   return out;
 }
 
-/// The kernel over a square is separable: along rows, then along columns. Both add whole stretches
-/// of rows, which vectorises; the columns' cost no more than the rows'.
+/// Blurs along rows, then along columns, since the kernel over a square is separable. Both passes
+/// add whole stretches of rows, which vectorises; columns cost no more than rows.
 std::vector<double> SkinBlur::blur(const std::vector<double>& in) const {
   std::vector<double> along(in.size(), 0.0), out(in.size(), 0.0);
   const auto reach = static_cast<std::ptrdiff_t>(kernel_.size()) - 1;
