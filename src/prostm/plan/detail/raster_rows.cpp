@@ -27,8 +27,8 @@ HWY_INLINE V ones(const std::uint8_t* mask) {
   return hn::PromoteTo(D(), hn::Min(hn::PromoteTo(d32, bytes), hn::Set(d32, 1)));
 }
 
-/// The bits of a double as a whole number, which has the order of the doubles that are not
-/// negative; −0 counts as 0.
+/// Returns the bits of a double as an integer, which orders non-negative doubles as their values
+/// do; −0 counts as 0.
 std::int64_t bits_of(double value) {
   return std::bit_cast<std::int64_t>(value + 0.0);
 }
@@ -42,7 +42,7 @@ double CheckedMaximum(std::span<const double> values, std::span<const std::uint8
   const std::size_t n = values.size(), step = hn::Lanes(d);
   const std::int64_t limit = bits_of(most);
   const auto limits = hn::Set(di, limit);
-  // negative where any value was, or was above the limit
+  // negative where a value was negative or above the limit
   auto bad = hn::Zero(di), on_skin = hn::Zero(di);
   std::size_t i = 0;
   for (; i + step <= n; i += step) {

@@ -6,16 +6,17 @@
 
 namespace prostm::planning {
 
-/// The largest value on skin, or 0; −1 if any value, on skin or not, is negative, above `most` or
-/// not a number. Raises no floating-point exception for those. @pre most > 0; equal sizes.
+/// Returns the largest value on skin, or 0; −1 if any value, on skin or not, is negative, above
+/// `most` or not a number. Raises no floating-point exception for those. @pre most > 0; equal
+/// sizes.
 double checked_maximum(std::span<const double> values, std::span<const std::uint8_t> skin,
                        double most);
 
 /// Sums over some rows of a raster, column by column; only cells with skin count.
 struct ColumnSums {
   std::span<double> value;
-  std::span<double> count;  ///< of cells
-  std::span<double> row;    ///< of their rows' indices
+  std::span<double> count;  ///< number of cells
+  std::span<double> row;    ///< sum of their row indices
 };
 
 /// Sets the sums over rows [begin, end). @param values, skin the whole raster, row by row, with as

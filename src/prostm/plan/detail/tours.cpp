@@ -8,9 +8,8 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kTourStarts = 4;  // 2-opt runs of which the best is kept
-constexpr double kGain =
-    1e-9;  // a reversal must shorten the tour by more, so that rounding cannot cycle [mm]
+constexpr int kTourStarts = 4;      // 2-opt runs of which the best is kept
+constexpr double kGain = 1e-9;      // least gain of a reversal, so that rounding cannot cycle [mm]
 constexpr double kThinWidth = 3.0;  // half the width of an ellipse that replaces a thin tour [mm]
 
 /// Unit vector of largest weighted spread: the eigenvector of the covariance (P7) with the higher
@@ -162,7 +161,7 @@ boost::container::static_vector<Leaf, kMaxClusters> split_tours(const Clusters& 
     leaves.push_back(leaf);
   }
 
-  // the heaviest first; of equals the one found first (insertion sort is stable and needs no heap)
+  // heaviest first, equal ones in the order found (insertion sort is stable and needs no heap)
   for (std::size_t i = 1; i < leaves.size(); ++i) {
     for (std::size_t j = i; j > 0 && leaves[j].mass > leaves[j - 1].mass; --j) {
       std::swap(leaves[j], leaves[j - 1]);

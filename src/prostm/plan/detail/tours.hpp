@@ -11,8 +11,8 @@
 
 namespace prostm::planning {
 
-using Tour =
-    boost::container::static_vector<std::uint8_t, kMaxClusters>;  ///< indices of clusters, closed
+/// A closed tour, as indices of clusters.
+using Tour = boost::container::static_vector<std::uint8_t, kMaxClusters>;
 
 /// Distances between all clusters [mm].
 class DistanceTable {
@@ -30,8 +30,8 @@ double tour_length(const DistanceTable& distance, std::span<const std::uint8_t> 
 /// 2-opt [Croes 1958]: reverses stretches of the closed tour while that shortens it.
 void two_opt(const DistanceTable& distance, std::span<std::uint8_t> tour);
 
-/// Shortest of a few 2-opt optima, from the order given and from seeded random orders. @return
-/// its length [mm].
+/// Finds the shortest of a few 2-opt optima, from the order given and from seeded random orders.
+/// @return its length [mm].
 double shortest_tour(const DistanceTable& distance, std::span<std::uint8_t> tour,
                      std::uint64_t seed);
 
@@ -51,9 +51,9 @@ boost::container::static_vector<Leaf, kMaxClusters> split_tours(const Clusters& 
                                                                 double max_length,
                                                                 std::uint64_t seed);
 
-/// Samples the closed tour at x.size() equal arc lengths [mm]. Clusters that lie within kThinWidth
-/// of a line (or are one or two) enclose nothing: they get an ellipse about them, since a path that
-/// runs back on itself starts with coinciding samples.
+/// Samples the closed tour at x.size() equal arc lengths [mm]. Clusters within kThinWidth of a line
+/// (or only one or two) enclose nothing. They get an ellipse about them, since a path that runs
+/// back on itself would start with coinciding samples.
 void resample_tour(const Clusters& clusters, std::span<const std::uint8_t> tour, std::span<Vec2> x);
 
 }  // namespace prostm::planning

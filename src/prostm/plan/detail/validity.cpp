@@ -10,10 +10,9 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kPushes = 12;       // 1 mm each, away from the path that is crossed
-constexpr double kShrink = 0.95;  // factor of one shrinking step
-constexpr double kSmallestShare =
-    0.25;  // of the longest length: the shortest path that shrinking leaves
+constexpr int kPushes = 12;              // 1 mm each, away from the path that is crossed
+constexpr double kShrink = 0.95;         // factor of one shrinking step
+constexpr double kSmallestShare = 0.25;  // least length that shrinking leaves, over the longest
 
 using Loop = std::span<Vec2>;
 using ConstLoop = std::span<const Vec2>;
@@ -63,7 +62,7 @@ void untangle(Loop loop) {
   }
 }
 
-/// The paths that have been accepted so far: the first `count` of `samples` points each in `x`.
+/// The paths accepted so far: the first `count` of `samples` points each in `x`.
 struct Accepted {
   ConstLoop x;
   std::size_t samples, count;
@@ -104,8 +103,8 @@ bool shrink_off(const Accepted& accepted, Loop loop, double smallest) {
   return false;
 }
 
-/// Changes `loop` until it is valid beside the accepted paths, as little as it takes. @return false
-/// when nothing helped.
+/// Changes `loop` as little as it takes to be valid beside the accepted paths. @return false if
+/// nothing helps.
 bool fit(const Accepted& accepted, Loop loop, double max_length) {
   untangle(loop);
   shorten(loop, max_length);
@@ -134,7 +133,7 @@ bool segments_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) 
       std::min(c.y(), d.y()) > std::max(a.y(), b.y()) + kClearance) {
     return false;
   }
-  // each segment's ends on either side of the other
+  // each segment has its ends on both sides of the other
   const double c_side = cross(b - a, c - a), d_side = cross(b - a, d - a);
   const double a_side = cross(d - c, a - c), b_side = cross(d - c, b - c);
   if (((c_side > 0.0 && d_side < 0.0) || (c_side < 0.0 && d_side > 0.0)) &&

@@ -1,5 +1,5 @@
 #pragma once
-/// When closed polygons cross, and how the paths of a plan are made valid. All lengths in mm.
+/// Crossings of closed polygons, and paths of a plan made valid. All lengths in mm.
 
 #include <span>
 
@@ -20,33 +20,33 @@ double loop_length(std::span<const Vec2> loop);
 /// Mean of the samples.
 Vec2 centroid(std::span<const Vec2> loop);
 
-/// Scales a loop that is longer about its centroid to `most_length`.
+/// Scales a loop that is longer than `most_length` down to it, about its centroid.
 void shorten(std::span<Vec2> loop, double most_length);
 
-/// Makes the loop a regular polygon of `length` about `centre`: what remains of a path that cannot
-/// be mended.
+/// Makes the loop a regular polygon of `length` about `centre`: the replacement of a path that
+/// cannot be mended.
 void make_circle(std::span<Vec2> loop, const Vec2& centre, double length);
 
-/// Pairs of non-adjacent segments of one closed polygon that cross.
+/// Counts the pairs of non-adjacent segments of one closed polygon that cross.
 int count_self_crossings(std::span<const Vec2> loop);
 
-/// Pairs of segments of two closed polygons that cross.
+/// Counts the pairs of segments of two closed polygons that cross.
 int count_crossings(std::span<const Vec2> a, std::span<const Vec2> b);
 
 /// Whether a segment folds back on its neighbour, or their points coincide.
 bool folds_back(std::span<const Vec2> loop);
 
-/// No two non-adjacent segments cross, no segment folds back on its neighbour and no points
+/// Whether no two non-adjacent segments cross, no segment folds back on its neighbour and no points
 /// coincide.
 bool is_simple(std::span<const Vec2> loop);
 
-/// Makes paths valid, the heaviest first: a path that crosses itself is untangled by reversing the
-/// stretch between two crossing segments (2-opt), one longer than `max_length` is scaled down to it
-/// about its centroid, one that crosses a heavier one is pushed off it or shrunk (not below a
-/// quarter of `max_length`), and left out where that does not help. Every path that remains is
-/// simple, at most `max_length` long and crosses no other; the first always remains.
+/// Makes paths valid, the heaviest first. A path that crosses itself is untangled by reversing the
+/// stretch between two crossing segments (2-opt). A path longer than `max_length` is scaled down to
+/// it about its centroid. A path that crosses a heavier one is pushed off it or shrunk (not below a
+/// quarter of `max_length`), and left out if that does not help. Every path that remains is simple,
+/// at most `max_length` long and crosses no other; the first always remains.
 /// @param x paths of `samples` points each, by descending mass; the kept ones are moved to the
-/// front. @return how many are kept.
+/// front. @return the number of paths kept.
 int make_valid(std::span<Vec2> x, int samples, double max_length);
 
 }  // namespace prostm::planning

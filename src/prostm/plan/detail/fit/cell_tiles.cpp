@@ -25,11 +25,11 @@ std::size_t ceil_div(N n, N divisor) {
 CellTiles::CellTiles(std::size_t max_cells) {
   tiles_.reserve(std::min(max_cells, kMaxTiles));
   mean_weight_.reserve(tiles_.capacity());
-  // up to five times the columns or rows, since blocks fill the last tile up
+  // up to five times the columns or rows, since padding fills up the last tile
   for (std::vector<double>& sums : columns_) sums.reserve(5 * max_cells);
 }
 
-/// Sums rows [begin, end) into columns_. @param weights of the cells, or null: 1.
+/// Sums rows [begin, end) into columns_. @param weights of the cells; null: all 1.
 void CellTiles::sum_rows(const TargetField& target, const CellWeights* weights, int begin,
                          int end) {
   const auto cols = static_cast<std::size_t>(target.cols);

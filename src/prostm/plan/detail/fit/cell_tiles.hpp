@@ -1,5 +1,5 @@
 #pragma once
-/// The skin of a target as weighted points in small tiles: what a plan is fitted to.
+/// The skin of a target as weighted points in small tiles, to which plans are fitted.
 
 #include <array>
 #include <cstddef>
@@ -19,13 +19,13 @@ struct alignas(32) CellTile {
   float centre_x, centre_y, radius;
 };
 
-/// Mean weight (P17) of each cell of each tile; empty where the target has none: 1.
+/// Mean weight (P17) of each cell of each tile; empty if the target has no weights (all 1).
 using MeanWeights = std::vector<std::array<float, 8>>;
 
-inline constexpr float kUnitArea = 4.0F;  ///< [mm²] that counts as 1 in the reconstruction error
+inline constexpr float kUnitArea = 4.0F;  ///< area counted as 1 in the reconstruction error [mm²]
 
-/// The target on a raster of its own or of a coarser resolution: blocks of factor × factor cells
-/// are averaged over their skin, by its weights where the target has some.
+/// The target at its own or a coarser resolution: blocks of factor × factor cells are averaged over
+/// their skin, with the target's weights if it has any.
 class CellTiles {
  public:
   static constexpr std::size_t kMaxTiles = 8192;
@@ -33,14 +33,14 @@ class CellTiles {
   /// @param max_cells the largest target that set() will be given.
   explicit CellTiles(std::size_t max_cells);
 
-  /// Takes over the skin cells of `target`, averaged so that a block is no wider than `width` [mm]
-  /// where the target's cells allow it, and wider where there is no room for so many blocks.
-  /// Allocates nothing. @pre maximum > 0, sizes agree, the target has no more than max_cells and,
-  /// if it has weights, one > 0 on skin.
+  /// Takes over the skin cells of `target`, averaged into blocks. These are no wider than `width`
+  /// [mm] unless the target's cells are, or there is no room for so many blocks. Allocates nothing.
+  /// @pre maximum > 0, sizes agree, the target has no more than max_cells cells and, if it has
+  /// weights, one > 0 on skin.
   void set(const TargetField& target, double maximum, double width);
 
   const std::vector<CellTile>& tiles() const { return tiles_; }
-  /// Mean weights (P17) of the skin in the cells of tile t, 0 where no skin counts; null where the
+  /// Mean weights (P17) of the skin in the cells of tile t, 0 where no skin counts; null if the
   /// target has no weights.
   const float* mean_weights(std::size_t t) const {
     return mean_weight_.empty() ? nullptr : mean_weight_[t].data();
@@ -57,8 +57,8 @@ class CellTiles {
 
   std::vector<CellTile> tiles_;
   MeanWeights mean_weight_;
-  std::array<std::vector<double>, 4> columns_;  // of a row of blocks: pressure, weights, row
-                                                // indices, and cells where the target has weights
+  // sums over a row of blocks: pressure, weights, row indices and, if the target has weights, cells
+  std::array<std::vector<double>, 4> columns_;
   float peak_ = 0.0F;
   double square_ = 0.0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// How much the error of each cell counts where a plan is fitted to a target: (P17).
+/// Weight of each cell's error when a plan is fitted to a target, (P17).
 
 #include <cstddef>
 
@@ -7,8 +7,8 @@
 
 namespace prostm::planning {
 
-/// A target's weights over their mean by pressure, Σ w p* / Σ p*: a common factor of the weights
-/// does not matter, and pressure that all lies under one weight is fitted as it is without weights.
+/// A target's weights over their mean by pressure, Σ w p* / Σ p*. A common factor of the weights
+/// does not matter, and pressure that all lies under one weight is fitted as without weights.
 /// Weights below kLeastShare of the largest count as 0. Refers to the target.
 class CellWeights {
  public:
@@ -20,8 +20,8 @@ class CellWeights {
 
   /// Weight of cell i over the mean, at most 1/kLeastShare; exactly 1 where all weights are 1.
   double operator[](std::size_t i) const { return share(i) / mean_; }
-  /// Whether some of the pressure counts: more than kLeastShare of what the largest weight
-  /// everywhere would make count.
+  /// Whether enough pressure counts: more than kLeastShare of what would count if all weights were
+  /// the largest.
   bool any_pressure() const { return any_pressure_; }
 
  private:

@@ -9,14 +9,14 @@ namespace prostm::planning {
 namespace {
 
 constexpr float kArmijo = 1e-4F;
-constexpr float kLeastSlope = 1e-12F;  // a direction that is flatter leads nowhere
+constexpr float kLeastSlope = 1e-12F;  // flatter directions lead nowhere
 constexpr float kLeastCurvature = 1e-6F;
-constexpr int kHalvings = 12;         // of one step, before the memory is dropped
+constexpr int kHalvings = 12;         // shorter trials of a step before the memory is dropped
 constexpr float kFirstStep = 1.5F;    // longest move of a sample before curvature is known [mm]
-constexpr float kLongestStep = 6.0F;  // of a sample in any step [mm]
+constexpr float kLongestStep = 6.0F;  // longest move of a sample in any step [mm]
 
-// The curvature that the preconditioner expects of a mode with q = 2 − 2 cos(2πf/N): the error's
-// own share, and how much of the length and bending weights acts across a mode.
+// Curvature that the preconditioner expects of a mode with q = 2 − 2 cos(2πf/N): that of the error
+// itself, and the share of the length weight that acts across a mode.
 constexpr double kErrorCurvature = 0.15, kLengthShare = 0.3;
 
 }  // namespace
@@ -36,7 +36,7 @@ Descent::Descent(std::size_t max_tiles, int samples, const FitSettings& settings
     }
     taps_[static_cast<std::size_t>(d)] = static_cast<float>(tap / samples);
   }
-  // the last tap of an even number is its own mirror image
+  // with an even number of samples, the last tap is its own mirror image
   if (samples % 2 == 0) taps_[static_cast<std::size_t>(samples / 2)] *= 0.5F;
 }
 
@@ -45,7 +45,7 @@ void Descent::evaluate(const CellTiles& cells, Fit& fit) {
   evaluate_near(cells, fit);
 }
 
-/// Of paths near those that were evaluated last.
+/// The same as evaluate() for paths near those that were evaluated last.
 void Descent::evaluate_near(const CellTiles& cells, Fit& fit) {
   pairs_.update(fit.loops, settings_.shape);
   reconstruct_(cells, fit.loops, settings_.reconstruction, Wanted::PressuresAndGradient, scratch_,
@@ -126,7 +126,7 @@ void Descent::remember(const Fit& from, const Fit& to) {
     change.x[i] = to.reconstruction.gradient_x[i] - from.reconstruction.gradient_x[i];
     change.y[i] = to.reconstruction.gradient_y[i] - from.reconstruction.gradient_y[i];
   }
-  // a step against the curvature would make the direction point uphill
+  // remembering a step of negative curvature would make the direction point uphill
   const float curvature = dot(from.loops, step, change);
   if (curvature <= kLeastCurvature * dot(from.loops, change, change)) return;
   inverse_curvature_[spare_] = 1.0F / curvature;
@@ -136,7 +136,7 @@ void Descent::remember(const Fit& from, const Fit& to) {
   precondition(from.loops, scaled);
   scale_ = curvature / dot(from.loops, change, scaled);
 
-  // the oldest makes room
+  // the oldest entry makes room
   const std::size_t taken = spare_;
   if (remembered_ == kMemory) {
     spare_ = order_[0];

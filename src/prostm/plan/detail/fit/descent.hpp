@@ -1,5 +1,5 @@
 #pragma once
-/// Preconditioned L-BFGS on the places of the samples of a few closed paths.
+/// Preconditioned L-BFGS on the positions of the samples of a few closed paths.
 
 #include <array>
 #include <vector>
@@ -11,13 +11,14 @@
 
 namespace prostm::planning {
 
-/// What descends: the reconstruction error (P11) and the shape's costs (P13)–(P15).
+/// Settings of the cost that descends: the reconstruction error (P11) and the shape's costs
+/// (P13)–(P15).
 struct FitSettings {
   ReconstructionSettings reconstruction;
   ShapeSettings shape;
 };
 
-/// A set of paths with what it costs.
+/// A set of paths with its cost.
 struct Fit {
   Loops loops;
   Reconstruction reconstruction;  ///< of `loops`
@@ -27,21 +28,21 @@ struct Fit {
 /// Sized once; allocates nothing after construction.
 class Descent {
  public:
-  /// @param max_tiles of the cells that run() will be given. @param samples of each path.
+  /// @param max_tiles the most tiles that run() will be given. @param samples of each path.
   Descent(std::size_t max_tiles, int samples, const FitSettings& settings);
 
   const FitSettings& settings() const { return settings_; }
   FitSettings& settings() { return settings_; }
 
-  /// The closest points of the cells in the last evaluation.
+  /// Closest points of the cells in the last evaluation.
   const std::vector<ReconstructionScratch::TileFit>& fits() const { return scratch_.fits; }
   /// Computes `fit.reconstruction` at `fit.loops`.
   void solve(const CellTiles& cells, Fit& fit);
-  /// The same, and `fit.cost`, of any paths.
+  /// The same, and `fit.cost`, for any paths.
   void evaluate(const CellTiles& cells, Fit& fit);
-  /// Moves the samples downhill for at most `evaluations` evaluations, the last of which begins
-  /// before the deadline if it is not the first; the cost never rises.
-  /// @return evaluations used; fewer also when no step lowers the cost.
+  /// Moves the samples downhill for at most `evaluations` evaluations; all but the first begin
+  /// before the deadline. The cost never rises.
+  /// @return evaluations used; fewer also if no step lowers the cost.
   int run(const CellTiles& cells, Fit& fit, int evaluations, const Deadline& deadline = {});
 
  private:
@@ -60,8 +61,8 @@ class Descent {
   ReconstructFunction reconstruct_;
   ReconstructionScratch scratch_;
   SpacedPairs pairs_;
-  std::array<float, kMaxPathPoints / 2 + 1> taps_{};  // of the circulant preconditioner
-  // the last steps and the changes of the gradient over them, and one to write to
+  std::array<float, kMaxPathPoints / 2 + 1> taps_{};  // taps of the circulant preconditioner
+  // the last steps, the changes of the gradient over them, and one spare slot of each
   std::array<Plane, kMemory + 1> step_, change_;
   std::array<float, kMemory + 1> inverse_curvature_{};
   std::array<std::size_t, kMemory> order_{};

@@ -15,7 +15,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// For the points from `begin` on, one vector of them.
+/// Finds the nearest centres for one vector of points, from `begin` on.
 template <class D>
 HWY_INLINE void NearestOf(D d, std::span<const float> x, std::span<const float> y,
                           std::span<const float> centre_x, std::span<const float> centre_y,
@@ -48,11 +48,11 @@ void NearestCentres(std::span<const float> x, std::span<const float> y,
   for (std::size_t i = 0; i + step <= n; i += step) {
     NearestOf(d, x, y, centre_x, centre_y, i, nearest);
   }
-  // the last vector may do some points twice
+  // the last vector may repeat some points
   if (n % step != 0) NearestOf(d, x, y, centre_x, centre_y, n - step, nearest);
 }
 
-/// Packs a pair in 32 bits, the first node in the lower ones.
+/// Packs each pair into 32 bits, the first node in the lower 16.
 std::size_t PairsNear(const NodeArray& x, const NodeArray& y, std::size_t nodes, float distance,
                       std::uint32_t* packed) {
   const hn::CappedTag<float, 8> d;

@@ -11,8 +11,8 @@
 
 namespace prostm::planning {
 
-/// Places of the bits that are set in each byte, lowest first: lists what a comparison of vectors
-/// found without branches. (Highway's own CompressStore is slow on AVX2.)
+/// Positions of the set bits of each byte, lowest first: they list the lanes that a vector
+/// comparison found, without branches. (Highway's own CompressStore is slow on AVX2.)
 using SetBits = std::array<std::array<std::uint8_t, 8>, 256>;
 constexpr SetBits set_bits() {
   SetBits places{};
@@ -26,25 +26,25 @@ constexpr SetBits set_bits() {
 }
 alignas(64) inline constexpr SetBits kSetBits = set_bits();
 
-/// Writes which of the centres is nearest to each point; the first of those that are equally near.
+/// Writes the index of the centre nearest to each point; ties go to the first.
 /// @pre x, y and nearest have the same size; centre_x and centre_y too, at least one.
 void nearest_centres(std::span<const float> x, std::span<const float> y,
                      std::span<const float> centre_x, std::span<const float> centre_y,
                      std::span<std::int32_t> nearest);
 
-/// first < second.
+/// Two nodes; first < second.
 struct NodePair {
   std::size_t first, second;
 };
 
-/// The pairs of nodes that are near each other, in ascending order. Sized once, for as many as
-/// there can be.
+/// The pairs of nodes that are near each other, in ascending order. Sized once, for all possible
+/// pairs.
 class NodePairs {
  public:
   NodePairs();
 
-  /// Lists the pairs of the first `nodes` nodes that are nearer than `distance`. @pre x and y are
-  /// aligned as a vector is.
+  /// Lists the pairs of the first `nodes` nodes that are nearer than `distance`.
+  /// @pre x and y are aligned like a vector.
   void set(const NodeArray& x, const NodeArray& y, std::size_t nodes, float distance);
 
   void clear() { size_ = 0; }

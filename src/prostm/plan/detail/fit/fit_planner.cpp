@@ -12,21 +12,21 @@
 namespace prostm::planning {
 namespace {
 
-constexpr double kSpacingShare = 0.9;   // of σ: what valid paths keep
-constexpr double kAlongShare = 2.0;     // of σ: nearer along the path, spacing is not asked for
+constexpr double kSpacingShare = 0.9;   // spacing that valid paths keep, over σ
+constexpr double kAlongShare = 2.0;     // over σ: samples nearer along a path need no spacing
 constexpr double kRounding = 1e-4;      // share of a bound that single precision may cost
-constexpr double kFastWidth = 6.0;      // of the cells of preset fast [mm]
-constexpr double kFastFineWidth = 4.0;  // of those that its pressures are solved on [mm]
+constexpr double kFastWidth = 6.0;      // width of the cells of preset fast [mm]
+constexpr double kFastFineWidth = 4.0;  // width of the cells that its pressures are solved on [mm]
 constexpr int kFastEvaluations = 2, kFastWarmEvaluations = 4, kFastSmallEvaluations = 4;
-constexpr int kFastFinePaths = 1;  // of a target that is small enough to need finer cells
+constexpr int kFastFinePaths = 1;  // most paths of a target small enough to need finer cells
 constexpr int kFastRegionPasses = 3, kFastStopPasses = 2;
-constexpr int kMendRounds = 8;      // at most, on uneven skin
-constexpr double kMendStep = 2e-3;  // share of its bound that a path gives up more in each round
-constexpr int kMostHalvings = 60;   // of a circle, until it is short enough on any skin
-// Output that is so many times what is wanted bounds nothing, and what is wanted above so many
-// times the output counts as that: single precision resolves what lies between.
+constexpr int kMendRounds = 8;      // rounds at most, on uneven skin
+constexpr double kMendStep = 2e-3;  // further share of its bound that a path gives up in each round
+constexpr int kMostHalvings = 60;   // halvings of a circle until it is short enough on any skin
+// Output that is this many times the wanted pressure bounds nothing, and wanted pressure above this
+// many times the output is cut to that: single precision resolves the range between.
 constexpr double kAmple = 1e4;
-constexpr int kPieces = 2;  // of a segment, once preset best has found its paths
+constexpr int kPieces = 2;  // pieces of a segment once preset best has found its paths
 
 SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   SearchSettings search;
@@ -55,14 +55,14 @@ SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   return search;
 }
 
-/// Whether each number has the bits of the one before; much faster than to compare the numbers.
+/// Whether all numbers have the same bits; much faster than comparing numbers.
 bool is_constant(const std::vector<double>& values) {
   return values.size() < 2 ||
          std::memcmp(values.data(), values.data() + 1, (values.size() - 1) * sizeof(double)) == 0;
 }
 
-/// Of each segment that is searched for: the pressure is linear between samples, and so follows the
-/// field the better the closer they lie.
+/// Number of pieces of each segment of the search. The pressure is linear between samples, so it
+/// follows the field better the closer they lie.
 int pieces_of(Preset preset, int samples) {
   return preset == Preset::Best && kPieces * samples <= kMaxPathPoints ? kPieces : 1;
 }
@@ -88,12 +88,13 @@ FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t 
       search_(max_cells, fit_settings(settings), search_settings(settings, preset)),
       pieces_(pieces_of(preset, search_settings(settings, preset).samples)) {}
 
-/// (P18) where a path's rendered pressure is `gain` times what it is felt as.
+/// Bounds of (P18) for a path whose rendered pressure is `gain` times the effective one.
 PlayBounds FitPlanner::play_bounds(double gain) const {
   // full output over the target's maximum
   const double highest = gain * rendered_;
   const double room = full_scale_ >= kAmple * highest ? kAmple : full_scale_ / highest;
-  const double reach = kMmPerMetre * settings_.speed * settings_.rise_time;  // of a full rise [mm]
+  // length of a full rise [mm]
+  const double reach = kMmPerMetre * settings_.speed * settings_.rise_time;
   return PlayBounds::all(static_cast<float>(std::min(1.0, room)),
                          static_cast<float>(std::sqrt(room) / reach),
                          static_cast<float>(settings_.silent_below * room));
@@ -110,7 +111,7 @@ void FitPlanner::move_to(const Vec2& origin) {
   origin_ = origin;
 }
 
-/// Length on the skin over length in the plane. @param loop one path, as in fit_.
+/// Ratio of the length on the skin to that in the plane. @param loop one path, as in fit_.
 double FitPlanner::skin_factor(const TargetField& target, std::span<const Vec2> loop) {
   if (is_flat_) return 1.0;
   flat_.points.clear();
@@ -120,8 +121,8 @@ double FitPlanner::skin_factor(const TargetField& target, std::span<const Vec2> 
   return flat > 0.0 ? std::max(skin_length(flat_, target) / flat, 1.0) : 1.0;
 }
 
-/// Copies path k of fit_ to place `to` of points_, each segment cut into as many pieces as make
-/// samples_.
+/// Copies path k of fit_ to place `to` of points_, cutting each segment into pieces so that the
+/// path has samples_ points.
 std::span<Vec2> FitPlanner::copy_path(int k, int to) {
   const std::span<Vec2> loop = path_at(to);
   const int pieces = samples_ / fit_.loops.samples;
@@ -151,9 +152,10 @@ boost::container::static_vector<int, kMaxPaths> FitPlanner::by_pressure() const 
   return order;
 }
 
-/// Bounds each path of points_ by the length in the plane at which it is as long on the skin as it
-/// may be, if its slopes stay as they are. @param share of that length to aim at.
-/// @return whether any path is too long.
+/// Bounds each path of points_ by the length in the plane at which it reaches its longest length on
+/// the skin, provided that its slopes stay as they are.
+/// @param share of that length at which a path that is too long aims. @return whether any path is
+/// too long.
 bool FitPlanner::bound_lengths(const TargetField& target, int paths, double share,
                                SpacingRule& rule) {
   bool any = false;
@@ -167,8 +169,8 @@ bool FitPlanner::bound_lengths(const TargetField& target, int paths, double shar
   return any;
 }
 
-/// Leaves out the paths of points_ that are too long on the skin; where all are, the first becomes
-/// a circle that is not. @return how many are left.
+/// Leaves out the paths of points_ that are too long on the skin; if all are, the first becomes a
+/// circle that is short enough. @return the number of paths left.
 int FitPlanner::leave_out_long(const TargetField& target, int paths, double least_length) {
   const auto is_long = [&](std::span<const Vec2> loop) {
     return loop_length(loop) * skin_factor(target, loop) > kMmPerMetre * settings_.max_length();
@@ -189,8 +191,8 @@ int FitPlanner::leave_out_long(const TargetField& target, int paths, double leas
   return 1;
 }
 
-/// What valid paths keep. @param between from a sample to the one that will be half way to the next
-/// [mm].
+/// The rule that valid paths keep. @param between distance from a sample to the one that will lie
+/// half way to the next [mm].
 SpacingRule FitPlanner::spacing_rule(double between) const {
   const double sigma = kMmPerMetre * settings_.sigma;
   SpacingRule rule;
@@ -200,10 +202,10 @@ SpacingRule FitPlanner::spacing_rule(double between) const {
   return rule;
 }
 
-/// Makes the paths of points_ keep their length on the skin and the rule. @return how many are
-/// kept.
+/// Makes the paths of points_ keep the rule and their longest length on the skin. @return the
+/// number of paths kept.
 int FitPlanner::space_out(const TargetField& target, int paths, SpacingRule rule) {
-  // a path that is mended lies on other slopes than before, so its bound is another
+  // a mended path lies on other slopes than before, so its bound changes
   bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
   for (int round = 1; round == 1 || (any_long && round <= kMendRounds); ++round) {
     paths = make_spaced(points_of(paths), samples_, rule, spacing_);
@@ -222,9 +224,9 @@ void FitPlanner::take_points(int paths) {
   }
 }
 
-/// Mends length on the skin, spacing and crossings; then pressures are solved as they are played.
+/// Mends length on the skin, spacing and crossings; then solves the pressures as they are played.
 void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
-  // first the samples that were searched for, which are fewer and so more easily moved
+  // first the samples of the search, which are fewer and so easier to move
   int paths = 0;
   samples_ = fit_.loops.samples;
   for (const int k : by_pressure()) copy_path(k, paths++);
@@ -236,7 +238,7 @@ void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
   make_playable(plan_.loops, bounds_, plan_.reconstruction.pressure);
 }
 
-/// Mends the samples of the plan, most of which are where they may be. @return how many paths are
+/// Mends the samples of the plan, most of which are already valid. @return the number of paths
 /// kept.
 int FitPlanner::mend_between(const TargetField& target, int paths) {
   samples_ *= pieces_;
@@ -248,7 +250,7 @@ int FitPlanner::mend_between(const TargetField& target, int paths) {
   return paths;
 }
 
-/// Copies the paths of points_ to plan_, with what the emission can play on them.
+/// Copies the paths of points_ to plan_, and sets bounds_ to what the emission can play on them.
 void FitPlanner::take_plan(const TargetField& target, int paths) {
   plan_.loops.reset(samples_, paths);
   bounds_ = play_bounds(settings_.gain);
@@ -258,7 +260,7 @@ void FitPlanner::take_plan(const TargetField& target, int paths) {
     for (int i = 0; i < samples_; ++i) {
       Vec2& x = loop[static_cast<std::size_t>(i)];
       plan_.loops.set_point(i, k, x);
-      x = plan_.loops.point(i, k);  // as the plan has it
+      x = plan_.loops.point(i, k);  // rounded as in the plan
     }
     factor_[place] = skin_factor(target, loop);
     period_[place] = loop_length(loop) / kMmPerMetre * factor_[place] / settings_.speed;
@@ -269,8 +271,8 @@ void FitPlanner::take_plan(const TargetField& target, int paths) {
   }
 }
 
-/// The pressures of the paths of points_, nearly as they can be played, without paths that are
-/// silent.
+/// Solves the pressures of the paths of points_, nearly as they can be played, and leaves out
+/// silent paths.
 void FitPlanner::solve(const TargetField& target, int& paths, PlanStats& stats) {
   for (;;) {
     take_plan(target, paths);
@@ -281,8 +283,8 @@ void FitPlanner::solve(const TargetField& target, int& paths, PlanStats& stats) 
   }
 }
 
-/// Leaves out the path of points_ that is most silent, of several: of which nothing is worth a
-/// path, or nothing sounds while another does. @return whether there was one.
+/// Leaves out the most silent of several paths of points_ if its pressure is nowhere worth a path,
+/// or if it is silent while another sounds. @return whether a path was left out.
 bool FitPlanner::leave_out_silent(int& paths) {
   std::array<float, kMaxPaths> highest{};
   for (int k = 0; k < paths; ++k) {

@@ -13,12 +13,12 @@
 
 namespace prostm::planning {
 
-/// What the presets `fast` and `best` minimise.
+/// Settings of the cost that the presets `fast` and `best` minimise.
 FitSettings fit_settings(const PlanSettings& settings);
 
 /// Finds the paths whose field (Eq. 1) is nearest to the target, (P11)–(P15), and where their focal
 /// points start, (P16). Remembers the last plan, so that the next can start from it. Sized once;
-/// plan() allocates and throws nothing.
+/// plan_patch() allocates and throws nothing.
 class FitPlanner {
  public:
   FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells);
@@ -27,7 +27,7 @@ class FitPlanner {
   void reset() { has_previous_ = false; }
   /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
   /// @param full_scale rendered pressure at full output [unit of the target].
-  /// @param budget time that it may take [s]; 0: the counts of the settings bind.
+  /// @param budget time limit [s]; 0: only the counts of the settings apply.
   /// @pre maximum > 0, full_scale > 0.
   void plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
                   int paths, double budget, Plan& plan, PlanStats& stats);
@@ -60,17 +60,17 @@ class FitPlanner {
   PlanSettings settings_;
   Search search_;
   Phases phases_;
-  const int pieces_;            // of a segment that is searched for, in a plan
-  Fit fit_;                     // of the last plan until the next
-  Vec2 origin_ = Vec2::Zero();  // of the target that fit_ is for [m]
+  const int pieces_;            // pieces per segment of the search, in a plan
+  Fit fit_;                     // the last plan until the next
+  Vec2 origin_ = Vec2::Zero();  // origin of the target that fit_ is for [m]
   bool has_previous_ = false, is_flat_ = false;
-  double rendered_ = 0.0;    // felt pressure that 1 of fit_ stands for
+  double rendered_ = 0.0;    // effective pressure that 1 of fit_ stands for
   double full_scale_ = 0.0;  // rendered pressure at full output
   // scratch
-  int samples_ = 0;                                       // of a path of points_
+  int samples_ = 0;                                       // samples of a path of points_
   Fit plan_;                                              // fit_ with the samples of the plan
-  PlayBounds bounds_ = PlayBounds::all(1.0F, kAnySlope);  // of plan_
-  std::array<double, kMaxPaths> factor_{}, period_{};     // of each path of plan_
+  PlayBounds bounds_ = PlayBounds::all(1.0F, kAnySlope);  // bounds of plan_
+  std::array<double, kMaxPaths> factor_{}, period_{};     // for each path of plan_
   FocalPath flat_;
   std::array<Vec2, kMaxLoopNodes> points_;  // one path after the other [mm]
   SpacingScratch spacing_;

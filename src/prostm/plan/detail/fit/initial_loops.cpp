@@ -9,7 +9,7 @@
 namespace prostm::planning {
 namespace {
 
-constexpr float kRelaxation = 1.5F;  // centres overshoot their mean: fewer passes do the same
+constexpr float kRelaxation = 1.5F;  // centres overshoot their means, which saves passes
 
 }  // namespace
 
@@ -42,13 +42,14 @@ void InitialLoops::set(const CellTiles& cells, float weak,
   }
 }
 
-/// With the root, stops are spread farther over what is weak than with the pressure itself, which
-/// renders better (RMSE 3 % lower on the gallery after the same descent).
+/// Weighs cells by the root of their pressure. Stops are then spread farther over weak areas than
+/// with the pressure itself, which renders better (RMSE 3 % lower on the gallery after the same
+/// descent).
 void InitialLoops::weigh() {
   for (std::size_t i = 0; i < size_; ++i) weight_[i] = std::sqrt(pressure_[i]);
 }
 
-/// The first `count` centres: cells at equal steps of the cumulative weight.
+/// Chooses the first `count` centres: cells at equal steps of the cumulative weight.
 void InitialLoops::seed(Group group, std::size_t count, Random& random, Centres& cx,
                         Centres& cy) const {
   float total = 0.0F;
@@ -58,7 +59,7 @@ void InitialLoops::seed(Group group, std::size_t count, Random& random, Centres&
   std::size_t seeds = 0;
   for (std::size_t i = group.begin; i < group.end && seeds < count; ++i) {
     passed += weight_[i];
-    // of a run of heavy cells each is taken once
+    // in a run of heavy cells each is taken once
     if (passed < next && group.end - i > count - seeds) continue;
     cx[seeds] = x_[i];
     cy[seeds] = y_[i];
@@ -67,7 +68,7 @@ void InitialLoops::seed(Group group, std::size_t count, Random& random, Centres&
   }
 }
 
-/// Lloyd's iteration from seed(): fills centres_ and label_.
+/// Runs Lloyd's iteration from seed(): fills centres_ and label_.
 void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
   const std::size_t count = static_cast<std::size_t>(k), cells = group.end - group.begin;
   moments_.clear();
@@ -82,8 +83,8 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
     for (auto& half : sums) std::fill_n(half.begin(), count, Moments::Zero());
     nearest_centres({x_.data() + group.begin, cells}, {y_.data() + group.begin, cells},
                     {cx.data(), count}, {cy.data(), count}, {label_.data() + group.begin, cells});
-    // every other cell to sums of its own: neighbours have the same centre, and would wait for each
-    // other
+    // two sets of sums, for alternate cells: neighbours have the same centre, so their additions
+    // would wait for each other
     for (std::size_t i = 0; i < cells; ++i) {
       sums[i % 2][static_cast<std::size_t>(label_[group.begin + i])] += moments_[i];
     }
@@ -104,7 +105,7 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
   }
 }
 
-/// Puts the cells in the order of their labels. @return one group for each label.
+/// Sorts the cells by their labels. @param groups one group for each label.
 void InitialLoops::sort_by_label(int k, std::array<Group, kMaxPaths>& groups) {
   std::array<std::size_t, kMaxPaths + 1> start{};
   for (std::size_t i = 0; i < size_; ++i) ++start[static_cast<std::size_t>(label_[i]) + 1];
@@ -124,14 +125,14 @@ void InitialLoops::sort_by_label(int k, std::array<Group, kMaxPaths>& groups) {
   std::copy_n(sorted_[2].begin(), n, pressure_.begin());
 }
 
-/// The shortest tour of centres_ found, without the stops that do not pay, as samples.
+/// Writes the shortest tour found of centres_ as samples, without the stops that do not pay.
 void InitialLoops::tour(const StartSettings& settings, std::span<Vec2> samples) {
   distance_.set(std::span<const Vec2>(centres_.centre.data(), centres_.centre.size()));
   Tour order;
   for (std::size_t c = 0; c < centres_.centre.size(); ++c) {
     if (centres_.mass[c] > 0.0) order.push_back(static_cast<std::uint8_t>(c));
   }
-  // from the nearest neighbour on
+  // begin with the order of nearest neighbours
   for (std::size_t i = 0; i + 2 < order.size(); ++i) {
     std::size_t nearest = i + 1;
     for (std::size_t j = i + 2; j < order.size(); ++j) {

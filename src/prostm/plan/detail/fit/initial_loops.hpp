@@ -1,5 +1,5 @@
 #pragma once
-/// Paths to start from: the plane is shared out among them jointly, and each tours its own region.
+/// Initial paths: the plane is shared out among them jointly, and each tours its own region.
 
 #include <array>
 #include <cstddef>
@@ -14,32 +14,32 @@
 
 namespace prostm::planning {
 
-/// How one start differs from another.
+/// Settings of one start.
 struct StartSettings {
   int paths = 4;
-  int stops = 16;                          ///< clusters that each path tours, at most
-  double most_length = 140;                ///< of a tour [mm]
-  int region_passes = 6, stop_passes = 4;  ///< of Lloyd's iteration
+  int stops = 16;                          ///< most clusters that a path tours
+  double most_length = 140;                ///< longest tour [mm]
+  int region_passes = 6, stop_passes = 4;  ///< passes of Lloyd's iteration
 };
 
-/// Weighted k-means twice: the cells with pressure into one region for each path, each region into
-/// stops. A tour of the stops (2-opt) that is too long leaves out those that cost most length for
-/// their mass. Sized once; make() allocates nothing.
+/// Runs weighted k-means twice: on the cells with pressure for one region per path, then on each
+/// region for its stops. A tour of the stops (2-opt) that is too long leaves out those that cost
+/// most length for their mass. Sized once; make() allocates nothing.
 class InitialLoops {
  public:
   explicit InitialLoops(std::size_t max_cells);
 
-  /// Takes over the cells with at least `weak` of the highest weighted pressure of any, > 0. @pre
+  /// Takes over the cells whose weighted pressure is at least `weak`, > 0, times the highest. @pre
   /// some cell that counts has pressure.
   void set(const CellTiles& cells, float weak);
-  /// Of those only the cells whose closest path is in the set `owners` (a bit each).
+  /// The same, but only the cells whose closest path is in the set `owners` (a bit each).
   void set(const CellTiles& cells, float weak,
            const std::vector<ReconstructionScratch::TileFit>& fits, int lanes,
            std::uint32_t owners);
-  /// Cells with pressure.
+  /// Number of cells taken over.
   std::size_t size() const { return size_; }
 
-  /// Fills `loops`: as many paths as asked, or one for each cell if there are fewer.
+  /// Fills `loops` with as many paths as asked for, or one for each cell if there are fewer cells.
   /// @pre size() > 0.
   void make(const StartSettings& settings, int samples, Random& random, Loops& loops);
 
@@ -56,9 +56,9 @@ class InitialLoops {
   void tour(const StartSettings& settings, std::span<Vec2> samples);
 
   std::size_t size_ = 0;
-  std::vector<float> x_, y_, pressure_, weight_, sorted_[3];  // pressure_: times the cell's weight
+  std::vector<float> x_, y_, pressure_, weight_, sorted_[3];  // pressure_ is weighted
   std::vector<std::int32_t> label_;
-  std::vector<Moments> moments_;  // of the cells of the group that is clustered
+  std::vector<Moments> moments_;  // for the cells of the group that is clustered
   Clusters centres_;
   DistanceTable distance_;
 };

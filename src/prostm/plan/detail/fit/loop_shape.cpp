@@ -9,8 +9,8 @@ namespace {
 constexpr float kPairMargin = 4.0F;  // a pair is listed this much before it is too near [mm]
 constexpr float kTiny = 1e-6F;       // [mm]
 
-/// Edges of the loops, with one more sample of each path on either side, so that the neighbours of
-/// every edge are there.
+/// Edges of the loops, with one more sample of each path at either end, so that every edge has both
+/// neighbours.
 struct Edges {
   static constexpr std::size_t kCapacity = kMaxLoopNodes + 2 * kMaxPaths;
   alignas(64) std::array<float, kCapacity> ux, uy, length;  // unit vectors
@@ -36,7 +36,7 @@ struct Edges {
   }
 };
 
-/// Sum over the samples of each path.
+/// Returns the sum over the samples of each path.
 std::array<float, kMaxPaths> sum_by_path(const Loops& loops, const float* values) {
   std::array<float, kMaxPaths> sum{};
   const std::size_t n = loops.nodes(), lanes = static_cast<std::size_t>(loops.lanes);
@@ -46,14 +46,14 @@ std::array<float, kMaxPaths> sum_by_path(const Loops& loops, const float* values
   return sum;
 }
 
-/// Length and bending; the gradient with respect to an edge acts on both of its ends.
+/// Cost of length and bending. The gradient with respect to an edge acts on both of its ends.
 float edge_cost(const Loops& loops, const ShapeSettings& settings, NodeArray& gradient_x,
                 NodeArray& gradient_y) {
   const std::size_t n = loops.nodes(), lanes = static_cast<std::size_t>(loops.lanes);
   const Edges edge(loops);
   const std::array<float, kMaxPaths> total = sum_by_path(loops, edge.length.data() + lanes);
 
-  // of each path: the mean segment, and how much it is too long or too short
+  // for each path: its mean segment, and how much that is too long or too short
   std::array<float, kMaxPaths> mean{}, excess{}, weight{};
   const auto samples = static_cast<float>(loops.samples);
   float cost = 0.0F;
@@ -118,7 +118,7 @@ void SpacedPairs::update(const Loops& loops, const ShapeSettings& settings) {
   listed_y_ = loops.y;
   pairs_.clear();
 
-  // what samples of one path should keep, by how far apart they are along it
+  // chord that samples of one path should keep per step along it
   const Edges edge(loops);
   const auto lanes = static_cast<std::size_t>(loops.lanes);
   const std::array<float, kMaxPaths> total = sum_by_path(loops, edge.length.data() + lanes);

@@ -1,5 +1,5 @@
 #pragma once
-/// What the optimiser asks of the shape of closed paths: length, even samples, spacing and bending.
+/// Costs of the shape of closed paths: length, even samples, spacing and bending.
 
 #include <array>
 #include <cstdint>
@@ -13,19 +13,19 @@ namespace prostm::planning {
 /// Weights and bounds of (P13)–(P15); lengths in mm.
 struct ShapeSettings {
   float weight_length = 3.0F, weight_spacing = 1.0F, weight_bending = 0.3F;
-  float spacing = 8.6F;                        ///< nearer samples are pushed apart
-  float least_length = 35.0F;                  ///< of a path
-  std::array<float, kMaxPaths> most_length{};  ///< of each path
+  float spacing = 8.6F;                        ///< samples nearer than this are pushed apart
+  float least_length = 35.0F;                  ///< least length of a path
+  std::array<float, kMaxPaths> most_length{};  ///< greatest length of each path
 };
 
-/// Distance that two samples of one path should keep, over their distance along it: a smaller chord
-/// is a fold. A circle's is 2/π at least.
+/// Distance that two samples of one path should keep, over their distance along it; a smaller ratio
+/// is a fold. In a circle the ratio is at least 2/π.
 inline constexpr float kLeastChord = 0.6F;
 
 /// Two samples to be kept apart; first < second.
 struct SpacedPair {
   std::uint16_t first, second;
-  float distance;  ///< [mm] that they should keep
+  float distance;  ///< distance that they should keep [mm]
 };
 
 /// The pairs of non-consecutive samples that are or may soon be too near.
@@ -33,8 +33,8 @@ class SpacedPairs {
  public:
   SpacedPairs();
 
-  /// Makes the list valid for `loops`: looks for the pairs again when a sample has moved so far
-  /// that one may be missing. Allocates nothing.
+  /// Makes the list valid for `loops`: searches the pairs again when a sample has moved so far that
+  /// a pair may be missing. Allocates nothing.
   void update(const Loops& loops, const ShapeSettings& settings);
   /// Forgets the list: the next update() makes it anew.
   void clear() { listed_ = false; }

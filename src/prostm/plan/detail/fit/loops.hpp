@@ -1,5 +1,6 @@
 #pragma once
-/// Closed paths as the optimiser of the presets `fast` and `best` keeps them: interleaved floats.
+/// Closed paths in the layout of the optimiser of the presets `fast` and `best`: interleaved
+/// floats.
 
 #include <array>
 #include <cstddef>
@@ -28,7 +29,7 @@ struct Loops {
     x.fill(0.0F);
     y.fill(0.0F);
   }
-  /// Sets the shape: all samples at the origin.
+  /// Sets the shape and puts all samples at the origin.
   void reset(int new_samples, int new_paths) {
     samples = new_samples;
     paths = new_paths;

@@ -7,14 +7,14 @@
 namespace prostm::planning {
 namespace {
 
-constexpr double kAhead = 0.040;       // that starts are chosen for: until the next plan [s]
-constexpr float kLeastSquare = 1e-3F;  // added to a distance's, so that costs are finite [mm²]
+constexpr double kAhead = 0.040;       // time for which starts are chosen: until the next plan [s]
+constexpr float kLeastSquare = 1e-3F;  // added to squared distances so that costs are finite [mm²]
 constexpr int kSearches = 4, kMostSweeps = 20;
-constexpr float kRounding = 1e-5F;  // share of a cost that is none
-constexpr double kReach = 6.0;      // of a start from its loop in the plan before [mm]
-constexpr float kGain = 1.1F;       // in distance that new starts are worth
+constexpr float kRounding = 1e-5F;  // relative difference of costs that counts as equal
+constexpr double kReach = 6.0;  // largest distance of a start from its loop in the plan before [mm]
+constexpr float kGain = 1.1F;   // gain in distance that justifies new starts
 
-/// d^−8 for d².
+/// Returns d^−8 for d².
 float nearness(float square) {
   const float inverse = 1.0F / (square + kLeastSquare);
   const float fourth = inverse * inverse;
@@ -29,14 +29,14 @@ void EvenLap::set(const Loops& loops, int path) {
   double area = 0.0, length = 0.0;
   for (int i = 0; i < samples; ++i) {
     const Vec2 a = loops.point(i, path), b = loops.point((i + 1) % samples, path);
-    // about the first sample, so that a loop far away has the same area
+    // relative to the first sample, so that the area does not depend on the position
     const Vec2 u = a - loops.point(0, path), v = b - a;
     area += u.x() * v.y() - u.y() * v.x();
     length += v.norm();
   }
   reversed = area < 0.0;
 
-  // samples in the order in which they are passed
+  // go through the samples in the order in which they are passed
   const LapStart order{0, reversed};
   const double per_length = length > 0.0 ? arcs / length : 0.0;
   double at = 0.0;
@@ -76,12 +76,12 @@ int EvenLap::nearest_sample(int arc) const {
   return nearest;
 }
 
-/// The costs of focal point a, by how many arcs it is ahead of b at the start.
+/// Computes the costs of focal point a by how many arcs it is ahead of b at the start.
 /// @param gained laps that a gains on b.
 void PhaseCosts::add_pair(const EvenLap& a, const EvenLap& b, double gained, Row& ahead,
                           Row& behind) const {
   const auto n = static_cast<std::size_t>(arcs_);
-  // over a lap of both together
+  // over one lap of both together
   Row lap{};
   for (std::size_t i = 0; i < n; ++i) {
     const float* const ax = &a.x[i];
@@ -141,7 +141,8 @@ void PhaseCosts::descend(std::span<int> arc, std::span<const bool> free) const {
         const float* const from = &row(k, j)[static_cast<std::size_t>(arcs_ - arc[j])];
         for (std::size_t a = 0; a < n; ++a) cost[a] += from[a];
       }
-      // the place of the least only where it is wanted: a search for it is hard to foretell
+      // find the index of the minimum only where it is needed: the branches of that search are hard
+      // to predict
       float least = cost[0];
       for (std::size_t a = 1; a < n; ++a) least = std::min(least, cost[a]);
       if (least >= (1.0F - kRounding) * cost[static_cast<std::size_t>(arc[k])]) continue;
@@ -169,8 +170,8 @@ void PhaseCosts::search(std::span<int> arc) const {
   }
 }
 
-/// Where the loops near a start of the last plan begin if they go on beginning there.
-/// @return whether there is one; the others are new.
+/// Finds the start arcs of loops near a start of the last plan, if they keep it; all other loops
+/// are new. @return whether any loop keeps its start.
 bool Phases::find_kept(const Loops& loops, std::span<int> arc, std::span<bool> is_new) const {
   bool any = false;
   for (int k = 0; k < loops.paths; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Where focal points begin their loops, and which way round they go, so that they stay apart while
+/// Starts and directions of the focal points' laps, chosen so that focal points stay apart while
 /// they run. All lengths in mm.
 
 #include <array>
@@ -10,36 +10,37 @@
 
 namespace prostm::planning {
 
-/// A loop run counterclockwise from its sample 0, at equal arcs: where a focal point is at equal
-/// times.
+/// A loop run counterclockwise from its sample 0, at equal arcs: the positions of a focal point at
+/// equal times.
 struct EvenLap {
   static constexpr int kMostArcs = 32;
 
-  /// Loop `path` of `loops`, at min(samples, kMostArcs) arcs.
+  /// Takes loop `path` of `loops`, at min(samples, kMostArcs) arcs.
   void set(const Loops& loops, int path);
-  /// The arc that is nearest to a sample, along the loop.
+  /// Returns the arc that is nearest to a sample, along the loop.
   int nearest_arc(int sample) const;
-  /// The sample that is nearest to an arc, along the loop.
+  /// Returns the sample that is nearest to an arc, along the loop.
   int nearest_sample(int arc) const;
 
   int samples = 0, arcs = 0;
-  bool reversed = false;  ///< against the order of the samples
-  std::array<float, static_cast<std::size_t>(2 * kMostArcs)> x, y;  ///< of each arc, twice round
-  std::array<double, kMaxPathPoints> passed;                        ///< at each sample, in arcs
+  bool reversed = false;  ///< whether it runs against the order of the samples
+  /// Position of each arc, twice round.
+  std::array<float, static_cast<std::size_t>(2 * kMostArcs)> x, y;
+  std::array<double, kMaxPathPoints> passed;  ///< arcs passed at each sample
 };
 
-/// What (P16) sums over the pairs of up to kMaxPaths focal points.
+/// The terms of (P16) for the pairs of up to kMaxPaths focal points.
 class PhaseCosts {
  public:
-  /// Takes the loops. @param periods of a lap on each [s], > 0.
+  /// Takes the loops. @param periods of the laps [s], > 0.
   void set(std::span<const EvenLap> laps, std::span<const double> periods);
 
-  /// The sum of (P16). @param arc that each focal point starts from, 0..arcs − 1.
+  /// Returns the sum of (P16). @param arc start arc of each focal point, 0..arcs − 1.
   float total(std::span<const int> arc) const;
-  /// Lowers the total, one focal point at a time, until that lowers it no more.
+  /// Moves one focal point at a time as long as that lowers the total.
   /// @param free whether a focal point may be moved.
   void descend(std::span<int> arc, std::span<const bool> free) const;
-  /// The arcs of the least total that descents from several places find.
+  /// Finds the arcs of the least total by descents from several starts.
   void search(std::span<int> arc) const;
 
  private:
@@ -52,32 +53,35 @@ class PhaseCosts {
 
   std::size_t paths_ = 0;
   int arcs_ = 0;
-  /// Cost of focal point k when it starts from arc a and j from arc b, at [k, j][arcs + a − b].
+  /// Cost of focal points k, starting from arc a, and j, starting from arc b: at [k, j][arcs + a −
+  /// b].
   std::array<Row, static_cast<std::size_t>(kMaxPaths* kMaxPaths)> rows_;
 };
 
-/// How a focal point runs a loop: from sample `first` on, against their order if `reversed`.
+/// Start and direction of a lap: from sample `first` on, against the order of samples if
+/// `reversed`.
 struct LapStart {
   int first = 0;
   bool reversed = false;
 
-  /// The i-th sample on its way. @pre 0 <= i < samples.
+  /// Index of the i-th sample on the way. @pre 0 <= i < samples.
   int sample(int i, int samples) const { return (first + (reversed ? samples - i : i)) % samples; }
 };
 using LapStarts = boost::container::static_vector<LapStart, kMaxPaths>;
 
-/// Chooses how the loops of one plan after the other are run. Allocates and throws nothing.
+/// Chooses the starts and directions of laps for one plan after another. Allocates and throws
+/// nothing.
 class Phases {
  public:
-  /// Forgets where the last plan's loops began.
+  /// Forgets the starts of the last plan.
   void forget() { before_.clear(); }
-  /// Brings where they began to other coordinates.
+  /// Brings these starts to other coordinates.
   void move(const Vec2& shift) {
     for (Vec2& x : before_) x += shift;
   }
-  /// All loops counterclockwise, begun at samples that make the distance of (P16) large. Loops near
-  /// which one of the last plan's began go on beginning there, unless others gain 10 %.
-  /// @param periods of a lap on each [s], > 0.
+  /// Runs all loops counterclockwise, from samples that make the distance of (P16) large. Loops
+  /// near a start of the last plan keep it, unless others gain 10 %.
+  /// @param periods of the laps [s], > 0.
   LapStarts choose(const Loops& loops, std::span<const double> periods);
 
  private:
@@ -88,7 +92,7 @@ class Phases {
 
   std::array<EvenLap, kMaxPaths> laps_;
   PhaseCosts costs_;
-  boost::container::static_vector<Vec2, kMaxPaths> before_;  // where the last plan's loops began
+  boost::container::static_vector<Vec2, kMaxPaths> before_;  // starts of the last plan
 };
 
 }  // namespace prostm::planning

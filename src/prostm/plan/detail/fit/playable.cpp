@@ -8,14 +8,14 @@ namespace prostm::planning {
 namespace {
 
 constexpr float kStiffness = 300.0F;  // μ: a pull of 1 leaves a step too large by 1/600
-constexpr float kInner = 0.98F;       // of a bound: where the cost begins, so that the bound holds
-constexpr float kDamping = 1e-3F;     // of a system, of its diagonal and in all
-constexpr float kSounds = 1.001F;     // times the least that sounds, to be above it when rounded
+constexpr float kInner = 0.98F;  // share of a bound where the cost begins, so that the bound holds
+constexpr float kDamping = 1e-3F;  // damping of a system, relative to its diagonal and absolute
+constexpr float kSounds = 1.001F;  // factor on the least √p that sounds, to be above it if rounded
 constexpr int kNewtonSteps = 5;
-// Where (P18) holds: at the samples, which Newton's method needs since it is linear in √p, or half
-// way between them as well, where p is linear.
+// (P18) is enforced at the samples, where it is linear in √p as Newton's method needs, or also half
+// way between, since p and not √p is linear along a segment.
 constexpr float kAtSamples = 0.0F, kHalfWay = 0.5F;
-constexpr float kSettled = 5e-3F;  // change of √p that ends the steps
+constexpr float kSettled = 5e-3F;  // change of √p below which the steps end
 
 /// One sample of every path: the lanes of a vector.
 template <int kLanes>
@@ -34,7 +34,8 @@ auto lanes_of(const std::array<float, kMaxPaths>& values) {
   return Eigen::Map<const Lanes<kLanes>, Eigen::Aligned16>(values.data());
 }
 
-/// Eigen's own root of vectors is an estimate that differs between processors, and traps at 0.
+/// Root of each value. Eigen's own root of vectors is an estimate that differs between processors,
+/// and traps at 0.
 template <typename Values>
 auto root_of(const Values& values) {
   return values.unaryExpr([](float value) { return std::sqrt(value); });
@@ -67,7 +68,7 @@ class Loop {
   /// Largest |√p_b − √p_a| of the segment that begins at a.
   auto step(std::size_t a) const { return at<kLanes>(step_, a); }
 
-  /// √p.
+  /// Computes √p.
   void take_roots(const NodeArray& pressure, NodeArray& root) const {
     for (std::size_t a = 0; a < n_; a += kLanes)
       at<kLanes>(root, a) = root_of(at<kLanes>(pressure, a));
@@ -82,22 +83,22 @@ class Loop {
     return (worst > 0.0F).any();
   }
 
-  /// The largest values that are nowhere above `root` and nowhere too steep.
+  /// Lowers `root` to the largest values that are nowhere above it and nowhere too steep.
   void lower(NodeArray& root) const {
     spread(root, [&](const Lanes<kLanes>& value, const Lanes<kLanes>& beside, std::size_t segment) {
       return value.min(above(beside, step(segment))).eval();
     });
   }
 
-  /// The smallest values that are nowhere below `root` and nowhere too steep.
+  /// Raises `root` to the smallest values that are nowhere below it and nowhere too steep.
   void raise(NodeArray& root) const {
     spread(root, [&](const Lanes<kLanes>& value, const Lanes<kLanes>& beside, std::size_t segment) {
       return value.max(below(beside, step(segment))).eval();
     });
   }
 
-  /// Half way between the largest values below `root` and the smallest above that are not too
-  /// steep: the nearest ones in the largest difference.
+  /// Sets `root` half way between lower() and raise(): of all values that are not too steep, those
+  /// whose largest difference from `root` is least.
   void flatten(NodeArray& root) const {
     alignas(64) NodeArray raised;
     std::copy_n(root.begin(), n_, raised.begin());
@@ -108,7 +109,7 @@ class Loop {
     }
   }
 
-  /// Raises samples within two of one that sounds to `least`, and what is too steep then.
+  /// Raises samples within two of a sounding one to `least`, then others where that is too steep.
   void sound(const Lanes<kLanes>& least, NodeArray& root) const {
     alignas(64) NodeArray before;
     std::copy_n(root.begin(), n_, before.begin());
@@ -125,8 +126,8 @@ class Loop {
   }
 
  private:
-  /// The highest √p that may lie beside `low`. Between the two the root of a linear p rises fastest
-  /// beside the lower one: by half way it may have risen by half a step.
+  /// The highest √p that may lie beside `low`. Between the two, the root of a linear p rises
+  /// fastest beside the lower one: by half way it may rise by half a step.
   Lanes<kLanes> above(const Lanes<kLanes>& low, const Lanes<kLanes>& step) const {
     return root_of((low + step).square() - where_ * step.square());
   }
@@ -134,8 +135,8 @@ class Loop {
   Lanes<kLanes> below(const Lanes<kLanes>& high, const Lanes<kLanes>& step) const {
     return (root_of(high.square() + where_ * step.square()) - step).max(0.0F);
   }
-  /// Sets each value to bound(value, the one beside it, the segment between). Twice each way round,
-  /// since a loop has no end to begin at.
+  /// Sets each value to bound(value, its neighbour, the segment between). Goes twice each way
+  /// round, since a loop has no end to start from.
   template <typename Bound>
   void spread(NodeArray& root, const Bound& bound) const {
     for (std::size_t k = 0, a = 0; k < 2 * n_; k += kLanes, a = after(a))
@@ -152,18 +153,18 @@ class Loop {
 /// A cyclic tridiagonal system for each lane, positive definite.
 template <int kLanes>
 struct CyclicSystem {
-  alignas(64) NodeArray diagonal, off, right;  // off: with the node after
-  alignas(64) NodeArray last;                  // with the last node, while it is eliminated
+  alignas(64) NodeArray diagonal, off, right;  // off: coupling to the node after
+  alignas(64) NodeArray last;                  // coupling to the last node during elimination
 
-  /// Keeps a system that is only just definite so when it is rounded, and what nothing depends on
-  /// where it is.
+  /// Keeps a barely definite system definite when it is rounded, and leaves values in place that
+  /// nothing depends on.
   void dampen(std::size_t n) {
     for (std::size_t a = 0; a < n; a += kLanes)
       at<kLanes>(diagonal, a) = (1.0F + kDamping) * at<kLanes>(diagonal, a) + kDamping;
   }
 
-  /// Leaves the solution in `right`. The nodes are eliminated in their order; each is coupled to
-  /// the one after it and, round the loop, to the last.
+  /// Leaves the solution in `right`. The nodes are eliminated in order; each is coupled to the one
+  /// after it and, round the loop, to the last.
   void solve(std::size_t n) {
     const std::size_t end = n - kLanes, before_end = end - kLanes;
     Lanes<kLanes> coupling = at<kLanes>(off, end), end_diagonal = at<kLanes>(diagonal, end),
@@ -197,8 +198,8 @@ struct CyclicSystem {
   }
 };
 
-/// The gradient and the curvature, as a system for the step, of a quarter of the cost by √p. Of the
-/// curvature the parts that may be negative are left out.
+/// Sets up the system for a step: gradient and curvature of a quarter of the cost with respect to
+/// √p. Parts of the curvature that may be negative are left out.
 template <int kLanes>
 void linearise(const Loop<kLanes>& loop, const PressureEquations& equations, const NodeArray& root,
                CyclicSystem<kLanes>& system) {
@@ -230,7 +231,7 @@ void linearise(const Loop<kLanes>& loop, const PressureEquations& equations, con
   }
 }
 
-/// Takes the nodes that stand at a bound and are pulled beyond it out of the system.
+/// Takes nodes out of the system that are at a bound and pulled beyond it.
 template <int kLanes>
 void hold_at_bounds(const Loop<kLanes>& loop, const Lanes<kLanes>& most, const NodeArray& root,
                     CyclicSystem<kLanes>& system) {

@@ -11,10 +11,11 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-// A vector holds the eight cells of a tile (or half of them). The closest segment of each is looked
-// for among the few segments that can be closest to any cell of the tile: with m the segment's
-// midpoint, h half its length and r the tile's radius, some segment is no farther from every cell
-// than min |c − m| + r, and one with |c − m| − h − r beyond that is never closest.
+// A vector holds the eight cells of a tile (or half of them). The closest segment of each is
+// searched among the few segments that can be closest to any cell of the tile. With m a segment's
+// midpoint, h half its length, and c and r the tile's centre and radius, some segment is no farther
+// from every cell than min |c − m| + r, so a segment with |c − m| − h − r beyond that is never
+// closest.
 HWY_BEFORE_NAMESPACE();
 namespace prostm::planning {
 namespace HWY_NAMESPACE {
@@ -167,7 +168,7 @@ HWY_INLINE void fit_tile(const CellTile& tile, float sigma, Segments& s,
       best = hn::Min(distance2, best);
       chosen = hn::IfThenElse(closer, hn::Set(di, s.candidate[j]), chosen);
     }
-    // once more for the one chosen: cheaper than to carry all of it along
+    // recompute for the chosen segment: cheaper than carrying all of it along
     hn::Store(chosen, di, segment + c);
     const Quartets edge = gather(s.edge, segment + c);
     const V ex = edge.value[2], ey = edge.value[3];
@@ -219,7 +220,7 @@ HWY_INLINE V pull_tile(const CellTile& tile, const ReconstructionScratch::TileFi
     const V w = hn::Load(d, tile.weight + c), wr = hn::Mul(w, residual);
     error = hn::MulAdd(wr, residual, error);
 
-    // what is not within reach of a path
+    // (P12): pressure that is not within reach of a path
     const V target = hn::Load(d, tile.pressure + c);
     const V lack = hn::Max(hn::NegMulAdd(phi, per_reach, one), zero);
     const V wl = hn::Mul(hn::Set(d, settings.weight_coverage), hn::Mul(w, target));

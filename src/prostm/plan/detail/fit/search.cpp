@@ -7,20 +7,19 @@
 namespace prostm::planning {
 namespace {
 
-constexpr float kFelt = 0.2F;   // share of the maximum from which a cell asks for paths
-constexpr double kWidth = 1.5;  // of a path in σ: how much area a path of full length serves
-constexpr float kLost = 1.4F;   // rise of the cost, relative to the target's, that calls for starts
-constexpr float kPoor =
-    0.1F;  // cost, relative to the target's, of paths that are not worth keeping
+constexpr float kFelt = 0.2F;   // cells with at least this share of the maximum ask for paths
+constexpr double kWidth = 1.5;  // width in σ of the area that a path of full length serves
+constexpr float kLost = 1.4F;   // rise of the cost, over the target's norm, that calls for starts
+constexpr float kPoor = 0.1F;   // cost, over the same norm, above which paths are not worth keeping
 constexpr int kFewestEvaluations = 8;  // fewer are not worth a start, a kick or the fine cells
-// of a budget, so that it is not overrun by a little: a share of it, but no more than [s]
+// part of a budget that is held back, so that it is not slightly overrun: a share, and at most [s]
 constexpr double kSpareShare = 0.045, kSpareTime = 2e-4;
-constexpr int kSpare = 2;             // evaluations, since their time varies
-constexpr int kLeastEvaluations = 4;  // of a start where there must be one
-// of a budget, at most: for the finish on finer cells, or on those of the search
+constexpr int kSpare = 2;             // evaluations held back, since their time varies
+constexpr int kLeastEvaluations = 4;  // least evaluations of a start that must be made
+// largest share of a budget for the finish, on finer cells or on those of the search
 constexpr double kFinishShare = 0.35, kSameShare = 0.15;
 constexpr double kLearning = 0.2;
-constexpr double kWarmShare = 0.5;  // of a budget: for the paths before, at most
+constexpr double kWarmShare = 0.5;  // largest share of a budget for the paths before
 constexpr int kFewestStops = 14, kMoreStops = 7;
 
 Vec2 centroid(const Loops& loops, int path) {
@@ -29,13 +28,13 @@ Vec2 centroid(const Loops& loops, int path) {
   return sum / loops.samples;
 }
 
-/// A running mean of times. A single one may have been interrupted, so none counts for more than
-/// twice the mean.
+/// Updates a running mean of times. A single time may include an interruption, so none counts for
+/// more than twice the mean.
 double learnt(double mean, double time) {
   return mean + kLearning * (std::clamp(time, 0.5 * mean, 2.0 * mean) - mean);
 }
 
-/// A path other than `first`, more likely a near one; `first` itself where it is alone.
+/// Draws another path, nearer ones more often; returns `first` if it is the only path.
 int draw_neighbour(const Loops& loops, int first, Random& random) {
   const Vec2 from = centroid(loops, first);
   int chosen = first;
@@ -49,7 +48,7 @@ int draw_neighbour(const Loops& loops, int first, Random& random) {
   return chosen;
 }
 
-/// The paths of `from` but one.
+/// Copies the paths of `from` except one.
 void copy_without(const Loops& from, int missing, Loops& out) {
   out.reset(from.samples, from.paths - 1);
   for (int k = 0; k < out.paths; ++k) {
@@ -94,7 +93,7 @@ double Search::evaluation_time(const CellTiles& cells) const {
   return tile_time_ * static_cast<double>(cells.tiles().size());
 }
 
-/// Sets apart what the finish takes.
+/// Reserves time for the finish.
 void Search::share_budget() {
   if (budget_ <= 0.0) return;
   const bool finer = fine().tiles().size() > coarse_.tiles().size();
@@ -104,7 +103,8 @@ void Search::share_budget() {
   search_end_ = finish_end() - std::min(finish, finish_fine_ ? most : 0.5 * most);
 }
 
-/// How many evaluations of a start or a kick there is time for; 0 for too few to be worth it.
+/// Returns the evaluations of a start or a kick that there is time for; 0 if too few to be worth
+/// it.
 int Search::affordable(int evaluations) const {
   if (budget_ <= 0.0) return evaluations;
   const double left = (search_end_ - timer_.seconds()) / evaluation_time(coarse_);
@@ -113,7 +113,7 @@ int Search::affordable(int evaluations) const {
              : static_cast<int>(std::min(left, static_cast<double>(evaluations)));
 }
 
-/// Descent::run, timed. @param end when it must, where there is a budget.
+/// Runs the descent and times it. @param end time at which it must end, if there is a budget [s].
 int Search::descend(const CellTiles& cells, int evaluations, double end, Fit& fit) {
   const double start = timer_.seconds();
   const Deadline deadline{budget_ > 0.0 ? &timer_ : nullptr, end - evaluation_time(cells)};
@@ -134,7 +134,8 @@ StartSettings Search::draw_start(int paths) {
   return start;
 }
 
-/// Paths that the area with pressure that counts asks for; more would chase the same small contact.
+/// Returns the number of paths for the area with pressure that counts; more would chase the same
+/// small contact.
 int Search::needed_paths() const {
   double area = 0.0;
   for (std::size_t t = 0; t < coarse_.tiles().size(); ++t) {
@@ -160,7 +161,7 @@ int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& b
   for (int start = 0; start < starts; ++start) {
     int evaluations = affordable(most);
     double end = search_end_;
-    // without paths that are worth keeping, one start there must be
+    // without paths that are worth keeping, one start must be made
     const bool is_poor =
         start == 0 && best.cost > kPoor * static_cast<float>(coarse_.square_norm());
     if (is_poor && evaluations < kLeastEvaluations) {
@@ -168,7 +169,7 @@ int Search::try_starts(int paths, int starts, int most, float hysteresis, Fit& b
       end = std::numeric_limits<double>::infinity();
     }
     if (evaluations == 0) break;
-    // all that may be, then each number that may do
+    // first with all paths allowed, then with each number that may do
     const int count = start == 0 ? paths : needed + (start - 1) % (paths - needed + 1);
     initial_.make(draw_start(count), settings_.samples, random_, trial_.loops);
     used += descend(coarse_, evaluations, end, trial_);
@@ -210,7 +211,8 @@ int Search::try_kicks(Fit& best) {
   return used;
 }
 
-/// The paths of `from` without the one that is missed least. @return evaluations used.
+/// Sets `out` to the paths of `from` without the one that is missed least. @return evaluations
+/// used.
 int Search::take_away(const Fit& from, Fit& out) {
   float least = std::numeric_limits<float>::max();
   for (int missing = 0; missing < from.loops.paths; ++missing) {
@@ -223,7 +225,7 @@ int Search::take_away(const Fit& from, Fit& out) {
   return from.loops.paths;
 }
 
-/// Where the field asks for fewer paths: takes them away while that lowers the cost.
+/// If the field asks for fewer paths, takes paths away while that lowers the cost.
 int Search::try_fewer(Fit& best) {
   int used = 0;
   if (settings_.fewer_evaluations == 0) return used;
@@ -246,20 +248,21 @@ int Search::run(int paths, bool continues, Fit& best) {
     best.cost = reached_ = std::numeric_limits<float>::max();
     used += try_starts(paths, settings_.starts, settings_.start_evaluations, 0.0F, best);
   } else {
-    // something new is to be tried in every plan
+    // leave time to try something new in every plan
     const int all = affordable(std::numeric_limits<int>::max());
     const int few = std::min(static_cast<int>(kWarmShare * all), all - kFewestEvaluations - kSpare);
     used += descend(coarse_, std::clamp(few, 2, settings_.warm_evaluations), search_end_, best);
-    // where the target has changed more than the paths can follow, start as if there were none; not
-    // only against the plan before, or paths could be left behind little by little
+    // if the target has changed more than the paths can follow, start as if there were none. The
+    // cost is not only compared with that of the plan before, or paths could fall behind little by
+    // little
     const bool lost = best.cost > std::min(kLost * reached_, kPoor) * norm;
     if (lost) reached_ = std::numeric_limits<float>::max();
-    // as far down as the paths that they are compared with
+    // descend as far as the paths that the starts are compared with
     const int most = std::max(settings_.start_evaluations, settings_.warm_evaluations);
     const float margin = static_cast<float>(settings_.hysteresis) * best.cost;
     used += try_starts(paths, lost ? settings_.starts : settings_.warm_starts, most, margin, best);
   }
-  // before the kicks, which take what is left of a budget
+  // before the kicks, which take the rest of a budget
   used += try_fewer(best);
   const float before = best.cost;
   used += try_kicks(best);
@@ -272,7 +275,7 @@ void Search::solve(const PlayBounds& bounds, Fit& fit) {
   ReconstructionSettings& settings = descent_.settings().reconstruction;
   const ReconstructionSettings searched = settings;
   settings.bounds = bounds;
-  // as much for as long a piece of path
+  // the same smoothing for the same length of path
   settings.smoothing *=
       static_cast<float>(fit.loops.samples) / static_cast<float>(settings_.samples);
   descent_.solve(fine(), fit);

@@ -10,9 +10,9 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kRounds = 60;         // of pushing apart
-constexpr double kPushGoal = 1.02;  // pushed samples get this times the spacing
-constexpr double kSlack = 0.7;      // how far samples move before near pairs are listed anew [mm]
+constexpr int kRounds = 60;         // rounds of pushing apart
+constexpr double kPushGoal = 1.02;  // samples are pushed to this times the spacing
+constexpr double kSlack = 0.7;  // distance that samples move before near pairs are listed anew [mm]
 constexpr double kRounding = 1e-4;  // share of a distance, far more than single precision costs
 
 using Loop = std::span<Vec2>;
@@ -34,15 +34,15 @@ struct Measures {
       }
     }
   }
-  /// Along the path that both are on, the shorter way.
+  /// Distance along the path of both samples, the shorter way.
   double between(const NodePair& pair) const {
     const double apart = at[pair.second] - at[pair.first];
     return std::min(apart, length[path[pair.first]] - apart);
   }
 };
 
-/// Calls visit(a, b, distance) for the pairs of samples that are nearer than `reach` and count. It
-/// may move the samples: those that this brings near enough are for the next time.
+/// Calls visit(a, b, distance) for the pairs of samples that count and are nearer than `reach`.
+/// visit may move the samples; pairs that this brings near enough are for the next time.
 template <typename Visit>
 void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, NearSamples& near,
                     const Visit& visit) {
@@ -60,8 +60,8 @@ void for_near_pairs(ConstLoop x, std::size_t n, double reach, double along, Near
   for (std::size_t i = 0; i < near.across().size(); ++i) visit_if_near(near.across()[i]);
 }
 
-/// Whether any segments that are not neighbours cross. Two that cross have middles that are no
-/// farther apart than half of each.
+/// Whether any segments that are not neighbours cross. The middles of two crossing segments are at
+/// most half the sum of their lengths apart.
 bool has_crossings(ConstLoop x, std::size_t n, NodePairs& near) {
   alignas(64) NodeArray middle_x{}, middle_y{};
   std::array<std::uint16_t, kMaxLoopNodes> next;
@@ -96,7 +96,8 @@ bool is_valid(ConstLoop x, std::size_t n, const SpacingRule& rule, SpacingScratc
   return are_apart(x, static_cast<int>(n), rule, scratch) && !has_crossings(x, n, scratch.segments);
 }
 
-/// Moves samples that are too near away from each other until none is, or the rounds end.
+/// Moves samples that are too near away from each other, until no pair is too near or the rounds
+/// end.
 void push_apart(Loop x, std::size_t n, const SpacingRule& rule, SpacingScratch& scratch) {
   const double goal = kPushGoal * rule.spacing;
   for (int round = 0; round < kRounds; ++round) {
@@ -118,7 +119,7 @@ void push_apart(Loop x, std::size_t n, const SpacingRule& rule, SpacingScratch& 
   }
 }
 
-/// Keeps the paths that are valid beside those before, as they are or as circles.
+/// Keeps the paths that are valid together with those before, as they are or as circles.
 std::size_t keep_valid(Loop x, std::size_t n, SpacingRule rule, SpacingScratch& scratch) {
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < x.size(); begin += n) {

@@ -1,6 +1,5 @@
 #pragma once
-/// How far apart the samples of a plan's paths are, and how paths are made to keep their distance.
-/// All lengths in mm.
+/// Distances between the samples of a plan's paths, and paths made to keep them. All lengths in mm.
 
 #include <array>
 #include <span>
@@ -12,14 +11,15 @@
 
 namespace prostm::planning {
 
-/// What a valid set of paths keeps.
+/// Bounds that a valid set of paths keeps.
 struct SpacingRule {
-  double spacing = 0.0;  ///< least distance of two samples on different paths, or of two on one
-                         ///< path that are
-  double along = 0.0;    ///< farther than this apart along it
-  std::array<double, kMaxPaths> most_length{};  ///< of each path
-  double least_length = 0.0;  ///< of the circle that replaces a path which cannot be mended; less
-                              ///< where the path's most_length is
+  /// Least distance of two samples on different paths, or of two on one path that are farther than
+  /// `along` apart along it.
+  double spacing = 0.0;
+  double along = 0.0;
+  std::array<double, kMaxPaths> most_length{};  ///< greatest length of each path
+  /// Length of the circle that replaces a path which cannot be mended, but at most most_length.
+  double least_length = 0.0;
 };
 
 /// The pairs of samples that are near each other, listed with a margin so that the list serves
@@ -28,12 +28,12 @@ class NearSamples {
  public:
   NearSamples() { listed_at_.reserve(kMaxLoopNodes); }
 
-  /// Lists the pairs of samples nearer than `reach`, and some that are not. @param x paths of n
+  /// Lists the pairs of samples nearer than `reach`, and some that are farther. @param x paths of n
   /// samples each. @pre at most kMaxLoopNodes samples.
   void list(std::span<const Vec2> x, std::size_t n, double reach, double along);
-  /// Those on different paths.
+  /// Pairs on different paths.
   const NodePairs& across() const { return across_; }
-  /// Those on one path that are farther than `along` apart on it, and some that are not.
+  /// Pairs on one path that are farther than `along` apart on it, and some that are nearer.
   const NodePairs& own() const { return own_; }
 
  private:
@@ -51,17 +51,18 @@ struct SpacingScratch {
   NodePairs segments;
 };
 
-/// Pairs of samples that are nearer than the rule allows. @param x paths of `samples` points each.
+/// Counts the pairs of samples that are nearer than the rule allows. @param x paths of `samples`
+/// points each.
 int count_near_pairs(std::span<const Vec2> x, int samples, const SpacingRule& rule);
 
-/// Whether no pair is. @param scratch of make_spaced().
+/// Whether no pair is nearer than the rule allows. @param scratch of make_spaced().
 bool are_apart(std::span<const Vec2> x, int samples, const SpacingRule& rule,
                SpacingScratch& scratch);
 
 /// Makes paths keep the rule, simple and free of crossings. Samples that are too near push each
-/// other apart; where that does not end well, a path is replaced by a circle about its centroid or
-/// left out, the first ones of `x` staying as they are if they can. The kept ones are moved to the
-/// front. @return how many are kept, at least one.
+/// other apart. If that fails, a path is replaced by a circle about its centroid or left out; the
+/// first paths of `x` stay as they are if they can. The kept paths are moved to the front. @return
+/// the number of paths kept, at least one.
 int make_spaced(std::span<Vec2> x, int samples, const SpacingRule& rule, SpacingScratch& scratch);
 
 }  // namespace prostm::planning

@@ -10,7 +10,7 @@
 // after the line above, which includes this file once for each target
 #include <hwy/highway.h>
 
-// Which cells count is hard to foretell, so there are no branches on it.
+// The code does not branch on which cells count, since that is hard to predict.
 HWY_BEFORE_NAMESPACE();
 namespace prostm::planning {
 namespace HWY_NAMESPACE {
@@ -21,7 +21,7 @@ using D = hn::CappedTag<float, 8>;
 using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 
-/// The four blocks of half a tile: sums over their columns, divided by what they count.
+/// Fills the four blocks of half a tile: sums over their columns, divided by their weights.
 void FillTiles(const BlockRow& blocks, std::size_t half, std::span<CellTile> tiles,
                std::span<std::array<float, 8>> mean_weight) {
   const hn::CappedTag<double, 4> d;
@@ -61,7 +61,7 @@ void FillTiles(const BlockRow& blocks, std::size_t half, std::span<CellTile> til
   }
 }
 
-/// @return whether any cell counts.
+/// Returns whether any cell counts.
 HWY_INLINE bool any_counts(const CellTile& tile) {
   const D d;
   V most = hn::Zero(d);

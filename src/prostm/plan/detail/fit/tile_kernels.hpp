@@ -11,12 +11,12 @@
 
 namespace prostm::planning {
 
-/// Sums over the rows of one row of blocks, column by column, with zeros behind the last column up
-/// to the end of the last tile.
+/// Sums over the rows of one row of blocks, column by column, padded with zeros to the end of the
+/// last tile.
 struct BlockRow {
-  const double *pressure, *weight, *row;  ///< by the cells' weights: p*, weights, rows' indices
-  const double* count;                    ///< of cells; null where the target has no weights
-  std::size_t factor;                     ///< columns of a block
+  const double *pressure, *weight, *row;  ///< weighted sums: p*, weights, row indices
+  const double* count;                    ///< number of cells; null if the target has no weights
+  std::size_t factor;                     ///< columns per block
   double cell;                            ///< edge of a column [mm]
   double maximum;                         ///< p* that becomes 1
 };
@@ -30,18 +30,18 @@ struct TileSums {
   double square_norm = 0.0;  ///< Σ weight · pressure²
 };
 
-/// Takes out the tiles without skin that counts. Sets the others' circles about their cells that
-/// count, and moves the cells that do not to its centre.
+/// Takes out the tiles without skin that counts. Sets each other tile's circle about its cells that
+/// count, and moves its other cells to the centre.
 TileSums complete_tiles(std::vector<CellTile>& tiles, MeanWeights& mean_weight);
 
-/// Places and weighted pressures of cells, with room for eight more behind the last.
+/// Positions and weighted pressures of cells, with room for eight more behind the last.
 struct CellList {
   float *x, *y, *pressure;
 };
 
 /// Writes the cells of a tile that count and whose weighted pressure is at least `threshold`, in
-/// order. @param mean_weight of the cells, or null: 1. @param allowed cells that may be written, a
-/// bit each. @return how many.
+/// order. @param mean_weight of the cells; null: all 1. @param allowed cells that may be written, a
+/// bit each. @return the number of cells written.
 std::size_t list_strong_cells(const CellTile& tile, const float* mean_weight, float threshold,
                               unsigned allowed, const CellList& list);
 

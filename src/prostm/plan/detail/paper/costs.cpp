@@ -73,7 +73,7 @@ double intersection_cost(const PathSamples& paths, std::span<const SamplePair> p
   return weight * sum;
 }
 
-// With a = x_i − x_{i−1} and b = x_{i+1} − x_i, θ = atan2(b × a, b · a) is the direction of a less
+// With a = x_i − x_{i−1} and b = x_{i+1} − x_i, θ = atan2(b × a, b · a) is the direction of a minus
 // that of b. The direction of a turns by (−a_y, a_x)/‖a‖² per unit of a, so no inverse trigonometry
 // is needed for the gradient.
 double bending_cost(const PathSamples& paths, double weight, std::span<Vec2> gradient) {

@@ -25,8 +25,8 @@ struct SamplePair {
 };
 
 /// Writes the pairs of non-consecutive samples nearer than `radius` [mm], in lexicographic order,
-/// each unordered pair once over all paths. Pairs are consecutive cyclically. @pre `pairs` has the
-/// capacity if nothing may be allocated.
+/// each unordered pair once over all paths. The first and last samples of a path are consecutive.
+/// @pre `pairs` has enough capacity if nothing may be allocated.
 void near_pairs(const PathSamples& paths, double radius, std::vector<SamplePair>& pairs);
 
 /// (P2), Eq. (2): c_p = −Σ p*(x_i).
