@@ -10,7 +10,7 @@ namespace prostm {
 
 struct ClosestPoint {
   double distance2 = 0.0;   ///< squared [m²]
-  std::size_t segment = 0;  ///< in the order of paths and points, or of foci
+  std::size_t segment = 0;  ///< index, in the order of paths and points, or of foci
   double along = 0.0;       ///< 0 at the segment's first point, 1 at its second
   double pressure = 0.0;    ///< rendered p_i there, linear between the samples
 };
@@ -26,13 +26,13 @@ class PathSegments {
   bool empty() const { return count_ == 0; }
   std::size_t count() const { return count_; }
 
-  /// The closest point to x over all segments; of equals that of the lowest segment. Searching near
-  /// points one after the other is fastest, because the last closest segment bounds the search.
+  /// Returns the point closest to x over all segments; ties go to the lowest segment. Fastest if
+  /// successive x are near each other, because the last closest segment bounds the search.
   /// @pre !empty().
   ClosestPoint closest(const Vec2& x);
 
  private:
-  static constexpr std::size_t kRun = 4;  // segments under one box
+  static constexpr std::size_t kRun = 4;  // segments per box
 
   struct Segment {
     Vec2 start, edge;

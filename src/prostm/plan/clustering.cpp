@@ -51,7 +51,7 @@ int WeightedKMeans::iterate(int max_iterations, Clusters& clusters) {
   } while (assign() && iterations < max_iterations);
   move_centres();
 
-  // a centre may have lost all its points on the way: it is left out
+  // leave out centres that have lost all their points on the way
   clusters.centre.clear();
   clusters.mass.clear();
   for (std::size_t c = 0; c < k; ++c) {
@@ -63,7 +63,7 @@ int WeightedKMeans::iterate(int max_iterations, Clusters& clusters) {
 }
 
 /// k-means++ [Arthur and Vassilvitskii 2007]: each further seed is a point drawn with probability
-/// w·d², d its distance to the nearest seed so far. Labels and distances are left at the nearest
+/// w·d², d its distance to the nearest seed so far. Leaves labels and distances at the nearest
 /// seed.
 void WeightedKMeans::seed_centres(std::uint64_t seed) {
   const std::size_t n = size();
@@ -71,7 +71,7 @@ void WeightedKMeans::seed_centres(std::uint64_t seed) {
   distance2_.assign(n, 1.0);
   label_.assign(n, 0);
   for (std::size_t c = 0; c < static_cast<std::size_t>(k_); ++c) {
-    // draw a point; rounding may carry the search past the last one that has a chance
+    // draw a point; rounding may carry the search past the last one with a chance
     double total = 0.0;
     for (std::size_t i = 0; i < n; ++i) total += weight_[i] * distance2_[i];
     double remaining = random.uniform() * total;
@@ -86,7 +86,7 @@ void WeightedKMeans::seed_centres(std::uint64_t seed) {
   }
 }
 
-/// Makes (x, y) seed c of the points that are nearer to it than to any before.
+/// Makes (x, y) seed c, and assigns it the points that are nearer to it than to any seed before.
 void WeightedKMeans::place_seed(std::size_t c, double x, double y) {
   cx_[c] = x;
   cy_[c] = y;
@@ -114,7 +114,7 @@ void WeightedKMeans::move_centres() {
   }
 }
 
-/// Insertion sort from the order of the iteration before, which is nearly right.
+/// Insertion sort from the order of the previous iteration, which is nearly right.
 void WeightedKMeans::sort_neighbours() {
   const auto k = static_cast<std::size_t>(k_);
   for (std::size_t c = 0; c < k; ++c) {
@@ -137,7 +137,7 @@ void WeightedKMeans::sort_neighbours() {
 
 /// Moves every point to its nearest centre. A centre farther from the present one than twice the
 /// point's distance to that cannot be nearer to the point (triangle inequality), so only a few
-/// neighbours are looked at. @return whether any moved.
+/// neighbours are tested. @return whether any point moved.
 bool WeightedKMeans::assign() {
   bool changed = false;
   const auto k = static_cast<std::size_t>(k_);

@@ -14,8 +14,8 @@ namespace prostm::planning {
 inline constexpr int kMaxClusters = 50;  ///< the paper's bound, set by the cost of 2-opt
 
 struct Clusters {
-  boost::container::static_vector<Vec2, kMaxClusters>
-      centre;  ///< weighted means, unit of the points
+  /// Weighted means, unit of the points.
+  boost::container::static_vector<Vec2, kMaxClusters> centre;
   boost::container::static_vector<double, kMaxClusters> mass;  ///< Σ weight, > 0
 };
 
@@ -34,7 +34,7 @@ class WeightedKMeans {
   /// Clusters the points into min(k, size()). @return Lloyd iterations done, at most
   /// `max_iterations`.
   int run(int k, int max_iterations, std::uint64_t seed, Clusters& clusters);
-  /// The same from seeds of one's own: every point starts at the nearest, of equals the first.
+  /// The same from given seeds: every point starts at the nearest one; ties go to the first.
   /// @pre 1 <= seeds.size() <= kMaxClusters.
   int run_from(std::span<const Vec2> seeds, int max_iterations, Clusters& clusters);
 
@@ -50,7 +50,7 @@ class WeightedKMeans {
   std::vector<double> x_, y_, weight_, distance2_;
   std::vector<std::uint8_t> label_;
   std::array<double, kMaxClusters> cx_{}, cy_{}, mass_{};
-  /// For each centre the others by distance: neighbour_[c][0] is c itself.
+  /// For each centre, all centres by distance: neighbour_[c][0] is c itself.
   std::array<std::array<std::uint8_t, kMaxClusters>, kMaxClusters> neighbour_{};
   std::array<std::array<double, kMaxClusters>, kMaxClusters> separation2_{};
 };

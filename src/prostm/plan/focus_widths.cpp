@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-/// Between entries `low` and `low + 1`, `share` of the way.
+/// A point between entries `low` and `low + 1`, `share` of the way.
 struct Between {
   std::size_t low = 0;
   double share = 0.0;

@@ -17,8 +17,8 @@ double edge(const LiftedPath& path, std::size_t i) {
 
 using Lengths = boost::container::static_vector<double, kMaxLiftedPoints>;
 
-/// What (E1) needs of the path in the plane: the edge after each point, and how much of the path
-/// each point stands for, half of each edge beside it.
+/// The path in the plane, for (E1): the edge after each point, and how much of the path each point
+/// stands for, half of each edge beside it.
 struct FlatPath {
   Lengths edge, weight;
   double length = 0.0;
@@ -34,14 +34,14 @@ struct FlatPath {
   }
 };
 
-/// Height along the path at point i under the triangular kernel of (E1).
+/// Returns the height at point i under the triangular kernel of (E1) along the path.
 double smooth_height(const FlatPath& flat, const Lengths& height, std::size_t i,
                      double half_width) {
   const std::size_t n = height.size();
   double weights = flat.weight[i];
   if (weights <= 0.0) return height[i];
   double sum = weights * height[i];
-  // no wider than the path, so that the point opposite to this one has no weight from either side
+  // no wider than the path, so that the opposite point has no weight from either side
   const double reach = std::min(half_width, 0.5 * flat.length), falloff = 1.0 / reach;
   const auto add = [&](std::size_t j, double distance) {
     const double weight = (1.0 - distance * falloff) * flat.weight[j];
@@ -61,7 +61,7 @@ double smooth_height(const FlatPath& flat, const Lengths& height, std::size_t i,
   return sum / weights;
 }
 
-/// Cuts the segments; the points are in the plane P (z = 0).
+/// Cuts the segments into pieces; the points are in the plane P (z = 0).
 void subdivide(const FocalPath& path, LiftedPath& out) {
   const std::size_t n = path.points.size();
   const bool rests = std::all_of(path.points.begin(), path.points.end(),

@@ -17,8 +17,8 @@ inline constexpr int kMaxLiftedPoints = kMaxPathPoints * kLiftedPointsPerSegment
 /// `length`.
 struct LiftedPath {
   boost::container::static_vector<Vec3, kMaxLiftedPoints> p_D;  ///< [m]
-  boost::container::static_vector<double, kMaxLiftedPoints>
-      pressure;                                                 ///< rendered, unit of the target
+  /// Rendered, unit of the target.
+  boost::container::static_vector<double, kMaxLiftedPoints> pressure;
   boost::container::static_vector<double, kMaxLiftedPoints> s;  ///< [m], s[0] = 0
   double length = 0.0;                                          ///< on the skin [m]
   double speed = 0.0;                                           ///< [m/s]
@@ -32,23 +32,23 @@ struct LiftedFocus {
   int patch = 0;            ///< index of the target patch that it lies on
 };
 
-/// Paths, or foci: one of the two is empty.
+/// Either paths or foci; the other list is empty.
 struct LiftedPlan {
   boost::container::static_vector<LiftedPath, kMaxPaths> paths;
   boost::container::static_vector<LiftedFocus, kMaxPaths> foci;
-  std::int64_t id = 0;  ///< counts plans from 1
+  std::int64_t id = 0;  ///< number of the plan, from 1
 };
 
-/// Undoes the projection of section IV-A: each segment is cut in kLiftedPointsPerSegment, each
-/// point gets the height of the skin there (height_at), and the focal point is to move at the
+/// Undoes the projection of section IV-A: cuts each segment into kLiftedPointsPerSegment pieces and
+/// gives each point the height of the skin there (height_at). The focal point is to move at the
 /// path's speed along the 3-D curve. The heights are smoothed along the path over two cells, (E1),
 /// since the stairs of a raster would make the curve longer than the skin is. A path of fewer than
 /// two distinct points is a point at rest; a path without points is left out. A focus gets the
-/// height of the skin there. Sets `paths` and `foci`, leaves `id`. @pre every `patch`
-/// is an index into frame.patches.
+/// height of the skin there. Sets `paths` and `foci`, leaves `id`. @pre every `patch` is an index
+/// into frame.patches.
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
 
-/// Length on the skin of one path over `field`, as lift() makes it [m].
+/// Returns the length on the skin of one path over `field`, as lift() makes it [m].
 double skin_length(const FocalPath& path, const TargetField& field) noexcept;
 
 /// Computes `s` and `length` from the points. @pre p_D.size() == pressure.size(), coordinates
@@ -61,7 +61,7 @@ struct PathPoint {
   Vec3 p_D;
   double pressure;
 };
-/// @pre the path has a point and is measured; s is finite.
+/// Returns the place at s. @pre the path has a point and is measured; s is finite.
 PathPoint point_at(const LiftedPath& path, double s);
 
 /// The place on a path that is nearest to a point.
@@ -71,7 +71,8 @@ struct PathPlace {
   Vec3 p_D = Vec3::Zero();      ///< [m]
   Vec3 tangent = Vec3::Zero();  ///< unit vector of growing s; zero for a point at rest
 };
-/// Exact up to the two edges at the nearest vertex. @pre the path has a point and is measured.
+/// Finds the nearest place on the two edges at the nearest vertex. @pre the path has a point and is
+/// measured.
 PathPlace nearest_place(const LiftedPath& path, const Vec3& p_D);
 
 }  // namespace prostm

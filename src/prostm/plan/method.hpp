@@ -1,5 +1,5 @@
 #pragma once
-/// How a field is rendered.
+/// Methods of rendering a field.
 
 #include <array>
 #include <cstdint>

@@ -12,9 +12,9 @@ namespace prostm::planning {
 namespace {
 
 constexpr double kSmallestCell = 1e-6, kLargestCell = 1.0;  // [m]
-constexpr double kLargestPressure = 1e300;                  // sums and γ p* stay finite
+constexpr double kLargestPressure = 1e300;                  // keeps sums and γ p* finite
 
-/// Whether the weights, if there are any, are as validate() asks.
+/// Whether the weights, if any, meet the conditions of validate().
 bool has_good_weights(const TargetField& target) {
   if (target.weight.empty()) return true;
   if (target.weight.size() != target.size()) return false;

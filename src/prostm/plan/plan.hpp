@@ -1,5 +1,5 @@
 #pragma once
-/// A plan: what the focal points are to do until the next plan comes.
+/// A plan: paths or positions of focal points until the next plan comes.
 
 #include <boost/container/static_vector.hpp>
 
@@ -15,14 +15,13 @@ inline constexpr int kMaxPathPoints = 64;  ///< samples of one path
 struct FocalPath {
   int patch = 0;  ///< index of the target patch (hand)
   boost::container::static_vector<Vec2, kMaxPathPoints> points;  ///< in P [m]
-  boost::container::static_vector<double, kMaxPathPoints>
-      pressure;  ///< rendered p_i = γ p*, unit of the target; linear between points
-  double length =
-      0.0;  ///< of the closed polygon in the plane, so that it follows from the points [m]
-  double speed = 0.0;  ///< of the focal point [m/s]
-  /// Of a lap [s]: the length over the speed. Presets `best` and `fast`, which know the skin's
-  /// heights, state the length on the skin over the speed, which is what is played; it is longer
-  /// than length / speed where the skin is uneven.
+  /// Rendered p_i = γ p*, unit of the target; linear between points.
+  boost::container::static_vector<double, kMaxPathPoints> pressure;
+  double length = 0.0;  ///< length of the closed polygon of the points, in the plane [m]
+  double speed = 0.0;   ///< speed of the focal point [m/s]
+  /// Duration of a lap [s]: length / speed. Presets `best` and `fast`, which know the skin's
+  /// heights, take the length on the skin instead, since that is what is played; it is longer where
+  /// the skin is uneven.
   double period = 0.0;
 };
 
@@ -35,7 +34,7 @@ struct FocalPoint {
 
 using FocalPoints = boost::container::static_vector<FocalPoint, kMaxPaths>;
 
-/// Closed paths, or foci: one of the two is empty.
+/// Either closed paths or foci; the other list is empty.
 struct Plan {
   boost::container::static_vector<FocalPath, kMaxPaths> paths;
   FocalPoints foci;

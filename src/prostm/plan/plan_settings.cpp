@@ -17,30 +17,35 @@ void list(Settings& s, Visitor& v) {
   constexpr int kSeeds = std::numeric_limits<int>::max();
   constexpr double kMostClusters = planning::kMaxClusters, kPoints = kMaxPathPoints;
   v.field({.name = "preset", .help = "how paths are planned"}, s.preset);
-  v.field({"paths", "", 1, kMaxPaths, "paths at most"}, s.paths);
+  v.field({"paths", "", 1, kMaxPaths, "maximum number of paths"}, s.paths);
   v.field({"clusters", "", 1, kMostClusters, "k of the weighted k-means"}, s.clusters);
   v.field({"samples", "", 8, kPoints, "N, points of a path; best has fit_samples"}, s.samples);
   v.field({"speed", "m/s", 0.1, 100, "v of the focal points"}, s.speed);
-  v.field({"draw_rate", "Hz", 0.1, 1e4, "laps a second of the longest path"}, s.draw_rate);
+  v.field({"draw_rate", "Hz", 0.1, 1e4, "laps per second of the longest path"}, s.draw_rate);
   v.field({"sigma", "m", 1e-4, 0.1, "fall-off of a focal point in Eqs. (1) and (4)"}, s.sigma);
   v.field({"gain", "", 0.01, 100, "gamma of the longest path: rendered over effective pressure"},
           s.gain);
-  v.field({"gain_exponent", "", -2, 2, "of a path's period in its gamma; 0: one for all"},
+  v.field({"gain_exponent", "", -2, 2,
+           "exponent of a path's period in its gamma; 0: one gamma for all"},
           s.gain_exponent);
-  v.field({"weight_pressure", "", 0, 1000, "of Eq. (2), the pressure on a path"},
+  v.field({"weight_pressure", "", 0, 1000, "weight of Eq. (2), the pressure on a path"},
           s.weight_pressure);
-  v.field({"weight_length", "", 0, 1000, "of Eq. (3), the length of a path"}, s.weight_length);
-  v.field({"weight_intersection", "", 0, 1000, "of Eq. (4), paths near each other"},
+  v.field({"weight_length", "", 0, 1000, "weight of Eq. (3), the length of a path"},
+          s.weight_length);
+  v.field({"weight_intersection", "", 0, 1000, "weight of Eq. (4), paths near each other"},
           s.weight_intersection);
-  v.field({"weight_bending", "", 0, 1000, "of Eq. (5), bends"}, s.weight_bending);
+  v.field({"weight_bending", "", 0, 1000, "weight of Eq. (5), bends"}, s.weight_bending);
   v.field({"weak_pressure", "", 1e-4, 1,
            "share of the largest pressure below which no point is "
            "clustered"},
           s.weak_pressure);
-  v.field({"lloyd_iterations", "", 1, 10'000, "of the k-means, at most"}, s.lloyd_iterations);
-  v.field({"refine_iterations", "", 0, 100'000, "gradient steps at most"}, s.refine_iterations);
-  v.field({"seed", "", 0, kSeeds, "of the clustering"}, s.seed);
-  v.field({"least_length", "m", 0.005, 1, "of a path of presets best and fast"}, s.least_length);
+  v.field({"lloyd_iterations", "", 1, 10'000, "maximum iterations of the k-means"},
+          s.lloyd_iterations);
+  v.field({"refine_iterations", "", 0, 100'000, "maximum number of gradient steps"},
+          s.refine_iterations);
+  v.field({"seed", "", 0, kSeeds, "seed of the clustering"}, s.seed);
+  v.field({"least_length", "m", 0.005, 1, "least length of a path of presets best and fast"},
+          s.least_length);
   v.field({"fit_coverage", "", 0, 100, "weight of pressure that no path reaches"}, s.fit_coverage);
   v.field({"fit_length", "", 0, 1000, "weight of length and uneven points"}, s.fit_length);
   v.field({"fit_spacing", "", 0, 1000, "weight of points that are too near"}, s.fit_spacing);
@@ -48,10 +53,10 @@ void list(Settings& s, Visitor& v) {
   v.field({"fit_samples", "", 8, kPoints, "points of a path of preset best"}, s.fit_samples);
   v.field({"fit_hysteresis", "", 0, 1, "share of the cost that new paths must save"},
           s.fit_hysteresis);
-  v.field({"fit_starts", "", 1, 10'000, "sets of paths laid anew without a plan before"},
+  v.field({"fit_starts", "", 1, 10'000, "sets of paths laid anew if there is no plan before"},
           s.fit_starts);
   v.field({"fit_kicks", "", 0, 100'000, "tries to lay one or two paths anew"}, s.fit_kicks);
-  v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts bind"},
+  v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts apply"},
           s.budget);
   v.field({"full_scale_pressure", "", 0, 1e300,
            "rendered pressure at full output that best and "

@@ -12,63 +12,66 @@
 
 namespace prostm {
 
-/// `paper`: the paper, exact; its violations of length and crossing are reported. `paper-valid`:
-/// the same, then made valid. `best`: the paths whose field is nearest to the target, always valid.
-/// `fast`: one short search of the same kind.
+/// `paper`: exactly the paper's method; its violations of length and crossing are reported.
+/// `paper-valid`: the same, then made valid. `best`: the paths whose field is nearest to the
+/// target, always valid. `fast`: one short search of the same kind.
 enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast };
 
 template <>
 inline constexpr std::array<std::string_view, 4> kNames<Preset> = {"paper", "paper-valid", "best",
                                                                    "fast"};
 
-/// Defaults are the paper's, and docs/design.md section "Planner" where the paper is silent.
+/// Defaults are the paper's, or those of docs/design.md section "Planner" where the paper is
+/// silent.
 struct PlanSettings {
   Preset preset = Preset::Best;
-  int paths = 4;               ///< at most, 1..8
+  int paths = 4;               ///< maximum number of paths, 1..8
   int clusters = 50;           ///< k of the weighted k-means, 1..50
   int samples = 20;            ///< N of a path, 8..64; preset best has fit_samples
   double speed = 7.0;          ///< v of the focal points [m/s]
-  double draw_rate = 50.0;     ///< laps a second of the longest path [Hz], (P9a)
+  double draw_rate = 50.0;     ///< laps per second of the longest path [Hz], (P9a)
   double sigma = 8.6e-3;       ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
   double gain = 1.4;           ///< γ of the longest path: rendered over effective pressure, (P9b)
-  double gain_exponent = 0.0;  ///< of a path's period in its γ, (P9b); 0: one γ for all
-  double weight_pressure = 3.0;      ///< of Eq. (2), p* over the frame's maximum
-  double weight_length = 3.0;        ///< of Eq. (3), lengths in mm
-  double weight_intersection = 1.0;  ///< of Eq. (4), lengths in mm
-  double weight_bending = 0.3;       ///< of Eq. (5), angles in rad
-  double weak_pressure =
-      0.01;                    ///< points below this share of the frame's maximum are not clustered
-  int lloyd_iterations = 100;  ///< at most
-  int refine_iterations = 200;  ///< gradient steps at most
-  int seed = 1;                 ///< of the clustering
+  double gain_exponent = 0.0;  ///< exponent of a path's period in its γ, (P9b); 0: one γ for all
+  double weight_pressure = 3.0;      ///< weight of Eq. (2), p* over the frame's maximum
+  double weight_length = 3.0;        ///< weight of Eq. (3), lengths in mm
+  double weight_intersection = 1.0;  ///< weight of Eq. (4), lengths in mm
+  double weight_bending = 0.3;       ///< weight of Eq. (5), angles in rad
+  /// Points below this share of the frame's maximum are not clustered.
+  double weak_pressure = 0.01;
+  int lloyd_iterations = 100;   ///< maximum iterations of the k-means
+  int refine_iterations = 200;  ///< maximum number of gradient steps
+  int seed = 1;                 ///< seed of the clustering
   // presets best and fast
-  double least_length = 0.035;   ///< of a path [m]; L where that is shorter
+  double least_length = 0.035;   ///< least length of a path [m]; L if that is shorter
   double fit_coverage = 0.12;    ///< weight of pressure that no path reaches, (P12)
   double fit_length = 1.0;       ///< weight of length and uneven samples, (P13)
   double fit_spacing = 0.3;      ///< weight of samples that are too near, (P14)
   double fit_bending = 0.03;     ///< weight of bending, (P15)
   int fit_samples = 28;          ///< N of a path of preset best, 8..64
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
-  int fit_starts = 4;            ///< sets of paths laid anew, of a plan without one before
+  int fit_starts = 4;            ///< sets of paths laid anew if there is no plan before
   int fit_kicks = 8;             ///< tries to lay one or two paths anew
-  double budget = 0.0;  ///< time after which `best` tries nothing more [s]; 0: only the counts
-                        ///< bind, and the same input gives the same plan
-  double full_scale_pressure = 0.0;  ///< rendered pressure at full output, that presets best and
-                                     ///< fast plan for [unit of the target]; 0: γ of the longest
-                                     ///< path times the frame's maximum
-  /// Not fields in files, but what the emission does: the time of an intensity from silence to full
+  /// Time after which `best` tries nothing more [s]; 0: only the counts apply, and the same input
+  /// gives the same plan.
+  double budget = 0.0;
+  /// Rendered pressure at full output that presets best and fast plan for [unit of the target]; 0:
+  /// γ of the longest path times the frame's maximum.
+  double full_scale_pressure = 0.0;
+  /// Properties of the emission, not fields in files: the time of a rise from silence to full
   /// output [s], and the share of full output's pressure below which it is silent.
   double rise_time = 1e-3, silent_below = 0.01;
-  FocusWidths widths;  ///< not a field in files. Of presets best and fast: σ of each target by
-                       ///< where it is and how it lies; without entries, `sigma`
+  /// For presets best and fast: σ of each target by its position and tilt; if empty, `sigma`. Not a
+  /// field in files.
+  FocusWidths widths;
 
-  /// σ that a target is planned with [m]. @pre the target is valid.
+  /// Returns the σ that a target is planned with [m]. @pre the target is valid.
   double sigma_on(const TargetField& target) const;
 
   /// L [m], the length of a path that is drawn draw_rate times a second, (P9a).
   double max_length() const { return speed / draw_rate; }
 
-  /// γ of each path by its period.
+  /// The law that gives γ of each path by its period.
   GainLaw gain_law() const { return {gain, gain_exponent, draw_rate}; }
 
   void visit(SettingsReader& v) const;
@@ -76,7 +79,7 @@ struct PlanSettings {
   bool operator==(const PlanSettings&) const = default;
 };
 
-/// @throws std::invalid_argument with a sentence that names the setting, its value and its bounds.
+/// @throws std::invalid_argument with a message that names the setting, its value and its bounds.
 void validate(const PlanSettings& settings);
 
 }  // namespace prostm

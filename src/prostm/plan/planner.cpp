@@ -20,9 +20,9 @@ using namespace planning;
 
 namespace {
 
-constexpr double kLengthTolerance = 0.5e-3;  // [m], of "longer than L" in the statistics
+constexpr double kLengthTolerance = 0.5e-3;  // tolerance of "longer than L" in the statistics [m]
 
-/// Whether there is pressure that a fit counts. @param maximum of highest_pressure.
+/// Whether there is pressure that a fit counts. @param maximum as highest_pressure() returns it.
 bool has_counted_pressure(const TargetField& target, double maximum) {
   return maximum > 0.0 && (target.weight.empty() || CellWeights(target, maximum).any_pressure());
 }
@@ -70,9 +70,9 @@ struct Planner::Scratch {
   Clusters clusters;
   DistanceTable distance;
   Refiner refiner;
-  std::vector<FitPlanner> fits;  // of each patch, for the presets best and fast
-  std::vector<Vec2>
-      x;  // samples of the paths, one path after the other, heaviest first [mm from the origin]
+  std::vector<FitPlanner> fits;  // one for each patch, for the presets best and fast
+  // samples of the paths, one path after the other, heaviest first [mm from the origin]
+  std::vector<Vec2> x;
 };
 
 void Planner::Scratch::collect_points(const TargetField& target, double maximum) {
@@ -89,7 +89,7 @@ void Planner::Scratch::collect_points(const TargetField& target, double maximum)
   }
 }
 
-/// Tour, split and resampling: fills `x`.
+/// Makes the tour, splits and resamples it: fills `x`.
 void Planner::Scratch::initial_paths(int paths, PlanStats& stats, StageTimer& timer,
                                      const Vec2& origin, PlanTrace* trace) {
   // one tour through all clusters
@@ -147,7 +147,7 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
       path.pressure.push_back(gain * std::max(raster.sample(sample).value, 0.0) * maximum);
     }
 
-    // violations, in themselves and against the paths before
+    // violations, within the path and against the paths before
     if (path.length > settings.max_length() + kLengthTolerance) ++stats.long_paths;
     stats.crossings += count_self_crossings(loop);
     for (std::size_t other = 0; other < begin; other += n) {
@@ -223,14 +223,14 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
   StageTimer timer;
   plan.clear();
   stats = {};
-  // what each patch has to show
+  // the pressure of each patch
   PatchPressures pressure{};
   double highest = 0.0;
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
     const double maximum = highest_pressure(frame.patches[i], scratch_->max_cells);
     if (maximum < 0.0) return PlanStatus::InvalidTarget;
     highest = std::max(highest, maximum);
-    // the weights leave the sum as it is (P17)
+    // the weights do not change the sum (P17)
     if (scratch_->has_pressure(frame.patches[i], maximum))
       pressure[i] = total_pressure(frame.patches[i]);
   }

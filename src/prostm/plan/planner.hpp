@@ -12,12 +12,12 @@
 
 namespace prostm {
 
-/// Plans the paths of targets. Deterministic: the same settings and targets give the same plans to
-/// the bit, unless a budget is set.
+/// Plans the paths of targets. Deterministic: the same settings and targets give bit-identical
+/// plans, unless a budget is set.
 class Planner {
  public:
   /// @param max_cells the largest raster that plan() will be given.
-  /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
+  /// @throws std::invalid_argument with a message that names the setting, its value and its bound.
   Planner(const PlanSettings& settings, std::size_t max_cells);
   ~Planner();
   Planner(Planner&&) noexcept;
@@ -25,16 +25,16 @@ class Planner {
 
   const PlanSettings& settings() const;
 
-  /// Paths for one patch; `plan` is overwritten. Allocates and throws nothing (with a trace it does
-  /// allocate). Leaves `plan` valid in every case. The presets best and fast continue from the plan
-  /// before, where there is one: call reset() first for a plan that depends on nothing else.
+  /// Plans paths for one patch; `plan` is overwritten, and valid in every case. Throws nothing, and
+  /// allocates only with a trace. The presets best and fast continue from the plan before, if there
+  /// is one: call reset() first for a plan that depends on nothing else.
   PlanStatus plan(const TargetField& target, Plan& plan, PlanStats& stats,
                   PlanTrace* trace = nullptr) noexcept;
 
-  /// Paths for every patch of a frame: settings.paths are shared out in proportion to Σ p*
-  /// (d'Hondt), at least one to each patch that has pressure (with one path in all, to the
-  /// strongest), and no path spans two patches. One invalid patch makes the frame invalid. Stage
-  /// times and counts are summed over patches.
+  /// Plans paths for every patch of a frame. settings.paths are shared out in proportion to Σ p*
+  /// (d'Hondt), at least one to each patch that has pressure (a single path goes to the strongest
+  /// patch). No path spans two patches. One invalid patch makes the frame invalid. Stage times and
+  /// counts are summed over patches.
   PlanStatus plan(const TargetFrame& frame, Plan& plan, PlanStats& stats) noexcept;
 
   /// Forgets the plan before.

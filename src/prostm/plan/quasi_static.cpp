@@ -24,7 +24,7 @@ void quasi_static_field(const Plan& plan, int patch, const TargetField& raster, 
     std::fill(out.begin(), out.end(), 0.0);
     return;
   }
-  // of each segment of the patch: its number in the plan, and γ of its path, 1 of a focus
+  // for each segment of the patch: its number in the plan, and γ of its path; 1 for a focus
   struct Origin {
     std::size_t number;
     double gain;
