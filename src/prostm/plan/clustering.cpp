@@ -37,7 +37,7 @@ int WeightedKMeans::run_from(std::span<const Vec2> seeds, int max_iterations, Cl
   return iterate(max_iterations, clusters);
 }
 
-/// Lloyd's iteration from the labels of the seeds.
+/// Runs Lloyd's iteration from the labels of the seeds.
 int WeightedKMeans::iterate(int max_iterations, Clusters& clusters) {
   const auto k = static_cast<std::size_t>(k_);
   for (std::size_t c = 0; c < k; ++c) {

@@ -20,7 +20,7 @@ struct LiftedPath {
   /// Rendered, unit of the target.
   boost::container::static_vector<double, kMaxLiftedPoints> pressure;
   boost::container::static_vector<double, kMaxLiftedPoints> s;  ///< [m], s[0] = 0
-  double length = 0.0;                                          ///< on the skin [m]
+  double length = 0.0;                                          ///< length on the skin [m]
   double speed = 0.0;                                           ///< [m/s]
   int patch = 0;  ///< index of the target patch that it lies on
 };

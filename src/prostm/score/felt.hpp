@@ -48,7 +48,7 @@ class FeelingSkin {
 /// Strong places of the percept where the target has nothing to feel.
 struct Ghosts {
   int count = 0;         ///< local maxima above half of the map's largest value
-  double largest = 0.0;  ///< of all local maxima there, over the map's largest value
+  double largest = 0.0;  ///< largest local maximum there, over the map's largest value
 };
 /// Finds the local maxima of a percept on skin that is farther than 10 mm from every cell with a
 /// target of 0.1 max or more.

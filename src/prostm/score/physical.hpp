@@ -27,7 +27,8 @@ struct FocusAccuracy {
   double mean_offset = 0.0, worst_offset = 0.0;  ///< [m]
   double mean_level = 0.0, least_level = 0.0, most_level = 0.0;
 };
-/// Measures the focal points with an intensity above 0.1, in about 64 samples at equal distances.
+/// Measures the focal points with an intensity above 0.1, in 64 to 127 evenly spaced samples, or in
+/// all if there are fewer.
 /// @param X_DP the plane along which a focus may be off.
 FocusAccuracy focus_accuracy(const PackedArray& packed, const LoopSamples& loop,
                              const LoopDriveResult& drives, const Pose& X_DP);
@@ -41,8 +42,8 @@ inline constexpr double kBesidePaths = 20e-3;
 /// do not depend on the cells.
 struct PhysicalField {
   std::vector<double> mean, envelope;
-  double largest = 0.0;       ///< of the envelope
-  double largest_mean = 0.0;  ///< of the mean
+  double largest = 0.0;       ///< largest of the envelope
+  double largest_mean = 0.0;  ///< largest of the mean
   double side_lobe = 0.0;     ///< largest of the envelope beside the paths, over `largest`
 };
 

@@ -222,7 +222,7 @@ std::vector<Tour> split(const Points& points, const Tour& whole, double max_leng
       open.push_back(*part);
     }
   }
-  // of equally heavy tours the one with the lower first cluster comes first
+  // equally heavy tours are ordered by their first cluster
   std::sort(leaves.begin(), leaves.end(), [&](const Tour& a, const Tour& b) {
     return std::pair(-mass(points, a), a.front()) < std::pair(-mass(points, b), b.front());
   });

@@ -13,7 +13,7 @@ namespace prostm::planning {
 namespace {
 
 constexpr std::size_t kTileCols = 4, kTileRows = 2;
-constexpr std::size_t kMaxBlocks = 2 * CellTiles::kMaxTiles;  // a tile spans two rows at least
+constexpr std::size_t kMaxBlocks = 2 * CellTiles::kMaxTiles;  // a tile spans two rows of blocks
 
 template <typename N>
 std::size_t ceil_div(N n, N divisor) {

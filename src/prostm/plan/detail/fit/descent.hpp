@@ -21,7 +21,7 @@ struct FitSettings {
 /// A set of paths with its cost.
 struct Fit {
   Loops loops;
-  Reconstruction reconstruction;  ///< of `loops`
+  Reconstruction reconstruction;  ///< that of `loops`
   float cost = 0.0F;              ///< error and shape together
 };
 

@@ -13,7 +13,7 @@ constexpr float kTiny = 1e-6F;       // [mm]
 /// neighbours.
 struct Edges {
   static constexpr std::size_t kCapacity = kMaxLoopNodes + 2 * kMaxPaths;
-  alignas(64) std::array<float, kCapacity> ux, uy, length;  // unit vectors
+  alignas(64) std::array<float, kCapacity> ux, uy, length;  // unit vectors; lengths [mm]
 
   explicit Edges(const Loops& loops) {
     const std::size_t n = loops.nodes(), lanes = static_cast<std::size_t>(loops.lanes);

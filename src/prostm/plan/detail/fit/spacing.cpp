@@ -160,7 +160,7 @@ void NearSamples::list(std::span<const Vec2> x, std::size_t n, double reach, dou
     rough_x[i] = static_cast<float>(x[i].x() - x[0].x());
     rough_y[i] = static_cast<float>(x[i].y() - x[0].y());
   }
-  // both samples may move by the slack, and the reach may be larger by it the next time
+  // both samples may move by the slack, and the next reach may be larger by it
   across_.set(rough_x, rough_y, x.size(),
               static_cast<float>((reach + 3.0 * kSlack) * (1.0 + kRounding)));
   // neighbours on a path stay neighbours: each segment between may grow by the slack at both ends

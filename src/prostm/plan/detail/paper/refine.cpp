@@ -61,7 +61,7 @@ double Refiner::evaluate(const PressureRaster& raster, std::span<const Vec2> x,
 }
 
 // The paper leaves the first trial of its line search open. Here it is the Barzilai-Borwein step
-// s·s / s·y (s the last change of x, y that of the gradient), the inverse of the curvature just met
+// s·s / s·y (s the last change of x, y that of the gradient), the inverse of the curvature met last
 // [Barzilai and Borwein 1988]: steepest descent with it needs a fraction of the steps that doubling
 // and halving the last one does.
 RefineResult Refiner::run(const PressureRaster& raster, std::span<Vec2> x) {
