@@ -8,11 +8,12 @@ FOLDER is a checkout. Exit status 1 when anything is listed.
 """
 
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 LONGEST = 120
+FOLDERS = ("apps", "bench", "cmake", "data", "docs", "examples", "fuzz", "lab", "python", "src", "tests", "tools", "web/src",
+           "web/tests")
 DOCUMENTS = (".md",)
 SOURCES = (".cpp", ".hpp", ".py", ".pyi", ".sh", ".ts", ".txt", ".cmake", "run")
 # this list, and what tests it, must name what they forbid
@@ -95,15 +96,21 @@ def long_lines_in(text):
             yield number, f"{len(line)} columns, above {LONGEST}"
 
 
-def problems(folder):
-    names = subprocess.run(["git", "-C", folder, "ls-files", "-z"], capture_output=True, text=True, check=True)
-    for name in filter(None, names.stdout.split("\0")):
-        path = Path(folder) / name
-        document, source = name.endswith(DOCUMENTS), name.endswith(SOURCES)
-        if name in LISTS or not (document or source) or not path.is_file():
-            continue
+def texts_in(root):
+    """(name, path) of each file that is written by hand."""
+    files = [path for path in root.iterdir() if path.is_file()]
+    for folder in FOLDERS:
+        files += (path for path in (root / folder).rglob("*") if path.is_file())
+    for path in sorted(files):
+        name = path.relative_to(root).as_posix()
+        if name.endswith(DOCUMENTS + SOURCES) and name not in LISTS:
+            yield name, path
+
+
+def problems(root):
+    for name, path in texts_in(root):
         text = path.read_text(encoding="utf-8")
-        checks = (idiom_in, sentences_in, long_lines_in if document else openings_in)
+        checks = (idiom_in, sentences_in, long_lines_in if name.endswith(DOCUMENTS) else openings_in)
         for number, what in sorted(place for check in checks for place in check(text)):
             yield f"{name}:{number}: {what}"
 
@@ -112,7 +119,7 @@ def main():
     if len(sys.argv) != 2:
         print("check_words: give a checkout; see its first lines", file=sys.stderr)
         return 2
-    found = list(problems(sys.argv[1]))
+    found = list(problems(Path(sys.argv[1])))
     for problem in found:
         print(problem)
     return 1 if found else 0

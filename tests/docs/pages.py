@@ -23,11 +23,11 @@ def name_of(page):
 def blocks_of(page):
     blocks, inside = [], None
     for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
-        if not line.startswith("```"):
+        if not line.lstrip().startswith("```"):
             if inside is not None:
                 inside.append(line)
         elif inside is None:
-            inside, language, begin = [], line[3:].strip(), number + 1
+            inside, language, begin = [], line.strip()[3:], number + 1
         else:
             blocks.append(Block(language, "\n".join(inside) + "\n", begin))
             inside = None
@@ -39,7 +39,7 @@ def text_of(page):
     """The page without its blocks of code."""
     kept, code = [], False
     for line in page.read_text(encoding="utf-8").splitlines():
-        if line.startswith("```"):
+        if line.lstrip().startswith("```"):
             code = not code
         elif not code:
             kept.append(line)
@@ -51,6 +51,6 @@ def links_of(page):
 
 
 def anchors_of(page):
-    """Of the headings, as GitHub makes them."""
+    """The headings' anchors, as GitHub makes them."""
     headings = re.findall(r"^#+ (.*)$", text_of(page), flags=re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
