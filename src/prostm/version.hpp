@@ -1,5 +1,5 @@
 #pragma once
-/// The version, which CMakeLists.txt reads here.
+/// The version; CMakeLists.txt reads it from here.
 
 #define PROSTM_VERSION "0.1.0"
 #define PROSTM_VERSION_MAJOR 0

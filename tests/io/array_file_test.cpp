@@ -106,7 +106,7 @@ TEST(ArrayFile, SaysWhatIsWrong) {
       example(), "a.json",
       {
           {"prostm-array/1", "prostm-plan/1", "must be \"prostm-array/1\""},
-          {"\"name\": \"two\"", "\"name\": 2", "\"name\" is 2; it must be a text"},
+          {"\"name\": \"two\"", "\"name\": 2", "\"name\" is 2; it must be a string"},
           {"40000", "19999", "\"frequency_hz\" is 19999; it must be from 20000 to 100000"},
           {"40000", "100001", "\"frequency_hz\" is 100001; it must be from 20000 to 100000"},
           {"4.5", "0", "\"radius_mm\" is 0; it must be from 0.1 to 50"},

@@ -6,7 +6,8 @@
 
 namespace prostm {
 
-/// The value that `share` of all are not above, by the nearest-rank rule; 0 when there is none.
+/// Returns the least value that `share` of all values do not exceed (nearest-rank rule); 0 if
+/// empty.
 double quantile(std::vector<double> values, double share);
 
 struct Summary {
@@ -15,9 +16,9 @@ struct Summary {
   double p50 = 0.0, p99 = 0.0, max = 0.0;  ///< quantiles by the nearest-rank rule
 };
 
-/// Collects values; add() never allocates. When more values come than there is room for, every
-/// second one kept so far is dropped and from then on every second one is kept (and so on):
-/// quantiles stay those of an even sample in time, n, mean, deviation and max stay exact.
+/// Collects values; add() never allocates. When the storage is full, every second kept value is
+/// dropped, and from then on only every second new value is kept (and so on). Quantiles stay those
+/// of an even sample in time; n, mean, deviation and max stay exact.
 class Distribution {
  public:
   explicit Distribution(std::size_t capacity = 1 << 16);

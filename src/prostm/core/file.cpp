@@ -33,7 +33,7 @@ class Descriptor {
   Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   Descriptor& operator=(Descriptor&&) = delete;
   int get() const { return fd_; }
-  /// 0 or the error: a full disk may show only now.
+  /// Returns 0 or the error; a full disk may show only now.
   int close() {
     const int fd = fd_;
     fd_ = -1;
@@ -44,7 +44,7 @@ class Descriptor {
   int fd_;
 };
 
-/// 0 or the error.
+/// Returns 0 or the error.
 int write_all(int fd, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(fd, bytes.data(), bytes.size());
@@ -61,7 +61,7 @@ int write_all(int fd, std::string_view bytes) {
       path, reason(error)));
 }
 
-/// Devices and pipes have no temporary name beside them: written in place.
+/// Writes to a device or a pipe, which has no temporary name beside it.
 void write_in_place(const std::string& path, std::string_view bytes) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.get() < 0) fail_to_write(path, errno);
@@ -69,7 +69,7 @@ void write_in_place(const std::string& path, std::string_view bytes) {
   if (const int error = file.close(); error != 0) fail_to_write(path, error);
 }
 
-/// The name of a new, empty file beside `path`, opened for writing.
+/// Opens a new, empty file beside `path` for writing and sets `temporary` to its name.
 int open_temporary(const std::string& path, std::string& temporary) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     temporary = fmt::format("{}.{}.{}.tmp", path, ::getpid(), attempt);
@@ -79,7 +79,7 @@ int open_temporary(const std::string& path, std::string& temporary) {
   return -1;
 }
 
-/// What is there, said before it is read.
+/// Opens an ordinary file; refuses anything else before it is read.
 Descriptor open_to_read(const std::string& path, struct stat* status) {
   // a pipe is opened without waiting for somebody to write into it
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
@@ -94,7 +94,7 @@ Descriptor open_to_read(const std::string& path, struct stat* status) {
   return file;
 }
 
-/// Where writing to `path` ends up: links are followed, also one to a file that is not there yet.
+/// Returns the file that writing to `path` reaches: follows links, even to a missing file.
 std::filesystem::path followed(std::filesystem::path path) {
   constexpr int kMostLinks = 40;  // as many as Linux follows
   std::error_code ignored;
@@ -104,8 +104,8 @@ std::filesystem::path followed(std::filesystem::path path) {
   return path;
 }
 
-/// Renaming a file over a protected one succeeds, so its mode is asked. Root may write everywhere:
-/// a file that its mode lets nobody write is protected from root as well.
+/// Renaming over a protected file succeeds, so this checks its mode. Root may write everywhere, so
+/// a file whose mode lets nobody write counts as protected for root too.
 void check_protection(const std::string& path) {
   constexpr mode_t kAnybody = S_IWUSR | S_IWGRP | S_IWOTH;
   struct stat status {};
@@ -116,7 +116,7 @@ void check_protection(const std::string& path) {
       path, status.st_mode & 0777U));
 }
 
-/// Whether `path` is written through a temporary file, beside `target`: a link stays a link, a
+/// Whether `path` is written through a temporary file beside `target`: a link stays a link, a
 /// device stays a device.
 bool temporary_serves(const std::string& path, std::string& target) {
   std::error_code ignored;
@@ -131,15 +131,15 @@ bool temporary_serves(const std::string& path, std::string& target) {
          kind == std::filesystem::file_type::none;
 }
 
-/// A file that is there, or the folder and the name of one that would be made.
+/// An existing file, or the folder and the name of a file that would be created.
 struct Identity {
   dev_t device = 0;
   ino_t number = 0;
-  std::string name;  // in the folder of that number; empty for a file that is there
+  std::string name;  // in the folder with that number; empty for an existing file
   bool operator==(const Identity&) const = default;
 };
 
-/// None of what is no ordinary file, and where there is no folder to make one in.
+/// Empty unless the file is ordinary or could be created in an existing folder.
 std::optional<Identity> identity_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) {
@@ -152,7 +152,7 @@ std::optional<Identity> identity_of(const std::string& path) {
   return Identity{status.st_dev, status.st_ino, target.filename().string()};
 }
 
-/// 0 or the error; the temporary file is there in both cases.
+/// Returns 0 or the error; the temporary file exists in both cases.
 int fill_and_sync(Descriptor& file, std::string_view bytes) {
   if (const int error = write_all(file.get(), bytes); error != 0) return error;
   if (::fsync(file.get()) != 0) return errno;
@@ -175,7 +175,7 @@ std::string read_file(const std::string& path, std::size_t limit) {
   };
   if (static_cast<std::size_t>(status.st_size) > limit) throw too_large();
 
-  // the size is only a hint: files grow, and those of the kernel have none
+  // the size is only a hint: files grow, and the kernel's files report size 0
   std::string bytes;
   bytes.reserve(static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)));
   std::array<char, 65536> buffer{};

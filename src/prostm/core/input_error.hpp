@@ -5,8 +5,8 @@
 
 namespace prostm {
 
-/// what() is one sentence that says what was wrong, where, and what would be right. The command
-/// line prints it and exits 2.
+/// what() says in one sentence what was wrong, where, and what would be right. The command line
+/// prints it and exits 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

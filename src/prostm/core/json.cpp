@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMaxDepth = 32;
 
-/// Depth of brackets outside strings, so that a file of brackets costs no memory.
+/// Checks the depth of brackets outside strings, so that a file of brackets costs no memory.
 bool is_too_deep(std::string_view text) {
   int depth = 0;
   bool in_string = false;
@@ -43,7 +43,7 @@ std::string position_text(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
 }
 
-/// A value as it may stand in a message: short, and valid text whatever the file holds.
+/// Returns a value for a message: short, and valid text whatever the file holds.
 std::string shown(const nlohmann::json& value) {
   if (value.is_array()) return "an array";
   if (value.is_object()) return "an object";
@@ -157,7 +157,7 @@ int JsonNode::integer(int low, int high) const {
 }
 
 std::string JsonNode::text() const {
-  if (!value_->is_string()) fail(fmt::format("is {}; it must be a text", shown(*value_)));
+  if (!value_->is_string()) fail(fmt::format("is {}; it must be a string", shown(*value_)));
   return value_->get<std::string>();
 }
 
@@ -185,10 +185,10 @@ std::string to_text(const nlohmann::ordered_json& document) {
 }
 
 double to_milli(double x) {
-  // doubles near the largest have no thousandfold
+  // 1000 times a double near the largest overflows
   if (!std::isfinite(x) || std::abs(x) > 1e300) return std::numeric_limits<double>::quiet_NaN();
 
-  // of the product and its neighbours the one with few digits, if it divides back to x
+  // the first to divide back to x: the product with few digits, the product, or its neighbours
   const double product = x * 1000.0;
   const double few_digits = std::strtod(fmt::format("{:.15g}", product).c_str(), nullptr);
   constexpr double kInf = std::numeric_limits<double>::infinity();

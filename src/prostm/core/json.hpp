@@ -1,5 +1,5 @@
 #pragma once
-/// JSON read with sentences: what every JSON file and message of this project shares.
+/// Reading JSON with clear error messages, and writing it, for all JSON files and messages.
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
@@ -18,20 +18,20 @@ inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
 /// beyond a double's range.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
-/// A value of a document that knows where it stands, so that what is wrong with it can be said.
-/// Refers to the document and the file's name: both must outlive it. Everything throws InputError.
+/// A value of a document with its place there, for error messages. Refers to the document and the
+/// file's name, which must outlive it. Everything throws InputError.
 class JsonNode {
  public:
   JsonNode(const nlohmann::json& value, const std::string& file, std::string where = {});
 
   const nlohmann::json& value() const { return *value_; }
   const std::string& file() const { return *file_; }
-  bool has(const char* key) const;  ///< is an object with a member that is not null
+  bool has(const char* key) const;  ///< whether this object has such a member that is not null
   /// @param meaning completes "it must be …" when the member is absent.
   JsonNode at(const char* key, const char* meaning) const;
   JsonNode at(std::size_t i) const;
-  /// Refuses members of an object that are none of these: a mistyped optional one would have no
-  /// effect, without a word.
+  /// Refuses members that are not in `known`: a mistyped optional member would silently have no
+  /// effect.
   void allow_only(const std::vector<std::string>& known) const;
   std::size_t array_size() const;
   double number(double low, double high) const;
@@ -56,8 +56,8 @@ void require_format(const JsonNode& root, const char* format);
 /// by row. Numbers are the shortest that read back the same; those that are not finite are null.
 std::string to_text(const nlohmann::ordered_json& document);
 
-/// Thousandths for files (m to mm, s to ms), with the fewest digits that read back as the same
-/// value wherever a double in thousandths can.
+/// Converts to thousandths for files (m to mm, s to ms), with the fewest digits that read back as
+/// the same value where a double in thousandths can.
 double to_milli(double x);
 inline double from_milli(double thousandths) {
   return thousandths / 1000.0;

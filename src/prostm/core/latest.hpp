@@ -10,7 +10,7 @@ namespace prostm {
 
 /// Three slots rotate: the writer owns one, the reader owns one, and the third waits in `middle_`
 /// with a flag that says whether it is newer than the reader's. A value skipped by the reader is
-/// simply overwritten.
+/// overwritten.
 template <class T>
 class Latest {
  public:
@@ -19,8 +19,7 @@ class Latest {
   Latest(const Latest&) = delete;
   Latest& operator=(const Latest&) = delete;
 
-  /// Writer's slot: fill it, then publish(). Keeps whatever an earlier round left in it. Writer's
-  /// thread only.
+  /// Writer's slot: fill it, then publish(). It still holds an earlier value. Writer's thread only.
   T& draft() { return slots_[writer_]; }
   /// Makes the draft the newest value. Writer's thread only.
   void publish() {

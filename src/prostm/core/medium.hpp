@@ -1,13 +1,11 @@
 #pragma once
-/// Air at rest: the temperature decides the speed of sound and the density, and with the humidity
-/// how much of the sound is lost on its way.
+/// Air at rest: speed of sound, density, and absorption of sound.
 
 #include <cmath>
 
 namespace prostm {
 
-/// An ideal gas, of which the humidity changes only the absorption. Equations (M1) to (M5) of
-/// docs/design.md.
+/// An ideal gas; humidity changes only its absorption. Equations (M1) to (M5) of docs/design.md.
 struct Medium {
   double temperature = 293.15;  ///< [K]
   double pressure = 101325.0;   ///< static pressure [Pa]

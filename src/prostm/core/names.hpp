@@ -11,7 +11,7 @@
 namespace prostm {
 
 /// An std::array of names in the order of the values, which count from 0; specialised beside each
-/// enum that has any.
+/// enum that has names.
 template <class E>
 inline constexpr int kNames = 0;
 
@@ -20,10 +20,10 @@ constexpr std::string_view name_of(E value) {
   return kNames<E>[static_cast<std::size_t>(value)];
 }
 
-/// "a, b or c".
+/// Returns "a, b or c".
 std::string one_of(std::span<const std::string_view> names);
 
-/// Nothing when no value has the name.
+/// Returns the value with this name, or nothing.
 template <class E>
 std::optional<E> value_named(std::string_view name) {
   const auto& names = kNames<E>;
@@ -36,7 +36,7 @@ std::optional<E> value_named(std::string_view name) {
 [[noreturn]] void refuse_name(const char* what, std::string_view name,
                               std::span<const std::string_view> names);
 
-/// @param what is named, e.g. "preset". @throws as refuse_name() does.
+/// @param what the kind of name, e.g. "preset". @throws as refuse_name() does.
 template <class E>
 E from_name(std::string_view name, const char* what) {
   if (const auto value = value_named<E>(name)) return *value;

@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-/// Edits (insert, delete, replace) that turn a into b.
+/// Returns the number of edits (insert, delete, replace) that turn a into b.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -36,7 +36,7 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
       std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
         return edit_distance(typed, a) < edit_distance(typed, b);
       });
-  if (nearest == known.end()) return "there are none";
+  if (nearest == known.end()) return "no names are allowed here";
   const std::size_t tolerance = std::max<std::size_t>(2, nearest->size() / 3);
   if (edit_distance(typed, *nearest) <= tolerance)
     return fmt::format("did you mean \"{}\"?", *nearest);

@@ -1,5 +1,5 @@
 #pragma once
-/// What is said of a name that is not known: which one may have been meant.
+/// Suggestions for unknown names.
 
 #include <string>
 #include <string_view>
@@ -7,10 +7,10 @@
 
 namespace prostm {
 
-/// A name from a file as it may stand in a message: not too long.
+/// Shortens a name from a file for a message.
 std::string shown_name(std::string_view name);
 
-/// "did you mean …", or all that there is when nothing is near.
+/// Returns "did you mean …", or all known names if no name is near.
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& known);
 
 }  // namespace prostm

@@ -1,6 +1,6 @@
 #pragma once
-/// How the numbers of a result are listed once, and written, drawn, shown and merged from that one
-/// list. A new number is one line of a list and its computation.
+/// One list of a result's numbers, from which they are written, drawn, shown and merged. A new
+/// number needs one line in the list and its computation.
 
 #include <algorithm>
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace prostm {
 
-/// Which way a number is better.
+/// The direction in which a number is better.
 enum class Better : std::uint8_t { Neither, Less, More };
 
-/// What becomes of a number when the results of two parts of a run are put together.
+/// Rule for combining a number when the results of two parts of a run are merged.
 enum class Merge : std::uint8_t { Sum, Most, Newest };
 
 /// One number of the result S.
@@ -24,16 +24,16 @@ struct Quantity {
   const char* name;  ///< in files and in Python
   const char* unit;  ///< in files; empty for a plain number
   const char* help;
-  Member value;  ///< where it is, or how it follows from what is there
+  Member value;  ///< the member, or a function of the members
   Better better = Better::Neither;
   Merge merge = Merge::Sum;
-  double scale = 1.0;      ///< a file's value over that in SI, 1e3 for ms
-  const char* group = "";  ///< in JSON, the object that it is in; empty: none
-  bool optional = false;   ///< left out of files where nobody asked for it: NaN there
-  const char* label = "";  ///< heading of its column in tables and figures; empty: it has none
+  double scale = 1.0;      ///< value in files over value in SI, 1e3 for ms
+  const char* group = "";  ///< JSON object that holds it; empty: the document
+  bool optional = false;   ///< NaN, and left out of files, unless requested
+  const char* label = "";  ///< column heading in tables and figures; empty: no column
 };
 
-/// The list of S, specialised where S is.
+/// The list for S, specialised beside S.
 template <class S>
 std::span<const Quantity<S>> quantities();
 
@@ -53,13 +53,13 @@ decltype(auto) visit_value(const Quantity<S>& quantity, const S& s, const Use& u
       quantity.value);
 }
 
-/// In SI.
+/// Returns the number in SI.
 template <class S>
 double value_of(const Quantity<S>& quantity, const S& s) {
   return visit_value(quantity, s, [](auto value) { return static_cast<double>(value); });
 }
 
-/// Puts `more`, of what came later, to `sum`. What follows from other numbers is left to them.
+/// Merges `more`, the later part, into `sum`. Computed numbers follow from the merged members.
 template <class S>
 void merge(const S& more, S& sum) {
   for (const Quantity<S>& quantity : quantities<S>()) {

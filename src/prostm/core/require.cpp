@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-/// The fewest digits that read back as the same number.
+/// Returns the shortest text that reads back as the same number.
 std::string shortest(double value) {
   std::array<char, 32> text{};
   const auto end =

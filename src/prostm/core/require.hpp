@@ -1,5 +1,5 @@
 #pragma once
-/// The bounds of settings, and the one sentence that refuses what lies outside them.
+/// Bounds of settings, and the shared error message for out-of-range values.
 
 namespace prostm {
 

@@ -22,7 +22,7 @@ class SpscRing {
 
   std::size_t capacity() const { return slots_.size() - 1; }
 
-  /// False, and nothing changed, when the ring is full. Writer's thread only.
+  /// Returns false and changes nothing if the ring is full. Writer's thread only.
   bool push(const T& value) {
     T* slot = back();
     if (slot == nullptr) return false;

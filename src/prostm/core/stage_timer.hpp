@@ -1,11 +1,11 @@
 #pragma once
-/// The only clock of the stages: when it is, and how long a piece of work took.
+/// The only clock of the stages: the current time, and the time that work takes.
 
 #include <chrono>
 
 namespace prostm {
 
-/// The steady clock [s].
+/// Time of the steady clock [s].
 inline double steady_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -18,7 +18,7 @@ class StageTimer {
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  /// Seconds since the start, and starts again.
+  /// Returns the seconds since the start and restarts.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double t = std::chrono::duration<double>(now - start_).count();
@@ -30,7 +30,7 @@ class StageTimer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A moment on a timer; without one, never.
+/// A moment on a timer; without a timer it never passes.
 struct Deadline {
   const StageTimer* timer = nullptr;
   double at = 0.0;  ///< [s]

@@ -1,6 +1,5 @@
 #pragma once
-/// Unit literals for the places where a number of the literature is written down. Everything inside
-/// prostm is SI.
+/// Unit literals for numbers from the literature. Everything inside prostm is SI.
 
 #include <numbers>
 

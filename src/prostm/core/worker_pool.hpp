@@ -21,7 +21,7 @@ namespace prostm {
 /// than that bound.
 class WorkerPool {
  public:
-  /// @param threads in all, the caller included; 1 runs everything on the caller. @throws
+  /// @param threads total number, the caller included; 1 runs everything on the caller. @throws
   /// std::invalid_argument if < 1.
   explicit WorkerPool(int threads);
   ~WorkerPool();

@@ -11,10 +11,10 @@ namespace prostm {
 namespace {
 
 constexpr int kMaxSubPoses = 16;
-constexpr double kVelocityReach = 2.0;  // how far from the skin its velocity is told [cells]
-constexpr int kRoot = 16;               // points along a block that is one task
+constexpr double kVelocityReach = 2.0;  // reach of the skin's velocity around it [cells]
+constexpr int kRoot = 16;               // points along each edge of a task's block
 constexpr double kFarthest = 1e3;       // no hand has a joint farther from the array [m]
-constexpr double kSlack = 1e-3;         // more than single precision errs by [cells]
+constexpr double kSlack = 1e-3;         // above the error of single precision [cells]
 
 bool is_usable(const Hand& hand) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -100,10 +100,11 @@ struct Roots {
   int first[3], count[3];
 };
 
-/// Follows what can be within `limit` of a body, from a block of points to its octants, with the
-/// bodies that can be nearest there, down to blocks of two points along each axis. Calls leaf(at,
-/// corners, nearest, within) with the first point of each such block, its points, their nearest
-/// bodies, and bit c of `within` set where point c is in `range` and within the limit.
+/// Descends from a block of points to the octants that can be within `limit` of a body, with the
+/// bodies that can be nearest there, down to blocks of two points along each axis. For each of
+/// these blocks it calls leaf(at, corners, nearest, within) with the first point, the points, their
+/// nearest bodies, and a mask: bit c of `within` is set if point c is in `range` and within the
+/// limit.
 template <class Leaf>
 class Descent {
  public:
@@ -128,7 +129,7 @@ class Descent {
 
  private:
   void descend(const int* at, int size, const BodyList& list) const {
-    // the corners are the points of a block of two, the middles of a larger one's octants
+    // the corners are the points of a block of two, or the middles of a larger block's octants
     CubeCorners corners{};
     for (int a = 0; a < 3; ++a)
       corners.centre[a] = static_cast<float>(start_[a] + cell_ * (at[a] + 0.5 * (size - 1)));
@@ -151,7 +152,7 @@ class Descent {
     }
   }
 
-  /// False where the octant holds no point of the range.
+  /// Sets `lower` to the octant's first point; false if no point of it is in the range.
   bool octant_of(const int* at, int size, unsigned octant, int* lower) const {
     for (int a = 0; a < 3; ++a) {
       lower[a] = at[a] + ((octant >> a & 1U) != 0 ? size : 0);
@@ -216,7 +217,7 @@ void HandRasteriser::rasterise(const HandFrame& frame, WorkerPool& pool) noexcep
   const CellBox old = raster_.box;
   place_box();
 
-  // blocks that held something before or hold something now, of nodes and of cells
+  // blocks of nodes and of cells that held something before or hold something now
   CellBox both = raster_.box.empty() ? old : raster_.box;
   include(old, both);
   if (both.empty()) return;
@@ -269,8 +270,7 @@ void HandRasteriser::add_sub_poses(const Hand& from, const Hand& to) noexcept {
     pose.shape.set(hand);
     pose.bodies.clear(middle_);
     pose.bodies.add(pose.shape);
-    // between poses a cell apart the skin of a fingertip of 5 mm leaves scallops of less than a
-    // fifth of a cell
+    // between poses one cell apart, a 5 mm fingertip leaves scallops of less than a fifth of a cell
     pose.margin = count > 1 ? 0.2 * raster_.grid.cell : 0.0;
     pose.cells = range_of(pose.shape, pose.margin, 0.5);
   }

@@ -25,18 +25,20 @@ struct CellBox {
 struct HandRaster {
   GridShape grid;
   CellBox box;  ///< cells that may touch a hand, its band or its sweep, clipped to the grid
-  std::vector<float> node_distance;  ///< node_count() [m]; right up to the band's width, at least
-                                     ///< that beyond; kFar outside the box
-  std::vector<float> velocity[3];    ///< cell_count() each [m/s], of the nearest skin point; 0
-                                     ///< farther than two cells from the skin
-  std::vector<std::uint8_t>
-      swept;  ///< cell_count(), 1 where the hand passed since the last raster and is gone now
+  /// node_count() values [m]: correct up to the band's width, at least that width beyond it, and
+  /// kFar outside the box
+  std::vector<float> node_distance;
+  /// velocity of the nearest skin point, cell_count() values each [m/s]; 0 more than two cells from
+  /// the skin
+  std::vector<float> velocity[3];
+  /// cell_count() values; 1 where the hand passed since the last raster and is gone now
+  std::vector<std::uint8_t> swept;
   static constexpr float kFar = 1.0F;  ///< [m]
 };
 
 /// Rasterises hands with their motion since the last frame. Each body of a hand is evaluated only
-/// where it can be the nearest, blocks of the grid are shared out over a pool, and the result does
-/// not depend on the number of threads.
+/// where it can be the nearest. Blocks of the grid are distributed over a pool; the result does not
+/// depend on the number of threads.
 class HandRasteriser {
  public:
   /// @param band width of the narrow band in cells, 2 to 16. @throws std::invalid_argument, also
@@ -58,8 +60,8 @@ class HandRasteriser {
   struct SubPose {
     HandShape shape;
     BodySet bodies;
-    CellBox cells;        ///< whose centres it may touch
-    double margin = 0.0;  ///< how near the skin a cell's centre counts as touched [m]
+    CellBox cells;        ///< cells whose centres it may touch
+    double margin = 0.0;  ///< touched centres are at most this far from the skin [m]
   };
 
   void set_shapes(const HandFrame& frame) noexcept;
@@ -73,14 +75,14 @@ class HandRasteriser {
 
   HandRaster raster_;
   double band_;  // [cells]
-  Vec3 middle_;  // of the grid: the origin of what is in single precision
+  Vec3 middle_;  // centre of the grid, the origin of single-precision positions
   HandFrame previous_;
   boost::container::static_vector<HandShape, BodySet::kMaxHands> shapes_;
-  BodySet bodies_;                    // of the shapes
-  std::vector<CellBox> node_ranges_;  // of each shape with its band
+  BodySet bodies_;                    // bodies of the shapes
+  std::vector<CellBox> node_ranges_;  // nodes of each shape with its band
   std::vector<SubPose> sub_poses_;    // newest first, hand by hand
-  std::size_t sub_pose_count_ = 0;    // in use
-  std::vector<std::uint8_t> solid_;   // of each cell: 1 where a hand covers its centre
+  std::size_t sub_pose_count_ = 0;    // sub-poses in use
+  std::vector<std::uint8_t> solid_;   // per cell: 1 where a hand covers its centre
 };
 
 }  // namespace prostm

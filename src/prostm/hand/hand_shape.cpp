@@ -12,7 +12,7 @@ constexpr double kFleshAtKnuckle = 0.80;     // seen from the palm
 constexpr double kFleshAtThumbRoot = 0.95;   // ball of the thumb
 constexpr double kFleshAtThumbKnuckle = 0.75;
 constexpr double kFleshOfWeb = 0.60;  // skin between thumb and index finger
-constexpr double kWebReach = 0.65;    // where it joins the index metacarpal, from its base
+constexpr double kWebReach = 0.65;    // share of the index metacarpal where it joins
 
 CornerSphere corner(const Hand& hand, int joint, double least_radius = 0.0) {
   const auto j = static_cast<std::size_t>(joint);
@@ -23,7 +23,7 @@ CornerSphere between(const CornerSphere& a, const CornerSphere& b, double u, dou
   return {a.centre + u * (b.centre - a.centre), radius, a.velocity + u * (b.velocity - a.velocity)};
 }
 
-/// What the cones are of, in the order in which set() adds them; triangles are the palm's.
+/// Region of each cone, in the order in which set() adds them; triangles belong to the palm.
 constexpr std::array<SkinRegion, HandShape::kMaxCones> kConeRegions = [] {
   std::array<SkinRegion, HandShape::kMaxCones> regions{};
   regions.fill(SkinRegion::Finger);
@@ -35,7 +35,7 @@ constexpr std::array<SkinRegion, HandShape::kMaxCones> kConeRegions = [] {
 /// Lowers `nearest` to the body's distance where that is less. @return whether it is.
 template <class Body>
 bool take_nearer(const Body& body, const Vec3& p, double& nearest) noexcept {
-  // no nearer than its bounds are
+  // a body is no nearer than its bounds
   const double outside = (body.lower() - p).cwiseMax(p - body.upper()).cwiseMax(0.0).squaredNorm();
   if (outside > std::max(nearest, 0.0) * nearest) return false;
   const double distance = body.distance(p);

@@ -11,7 +11,7 @@
 
 namespace prostm {
 
-/// What part of a hand skin belongs to: the last phalanges, the other phalanges, the rest.
+/// Region of a hand's skin: last phalanges (Tip), other phalanges (Finger), all else (Palm).
 enum class SkinRegion : std::uint8_t { Palm, Finger, Tip };
 
 /// Signed distance, normal and velocity of the skin of one hand, in the frame of the hand it was
@@ -23,13 +23,14 @@ class HandShape {
  public:
   HandShape() = default;
   explicit HandShape(const Hand& hand) { set(hand); }
-  /// Trackers report the flesh of the fingers well, but metacarpals as thin as fingers: in the palm
-  /// the radius is at least a share of the palm's own, as (H12) of docs/design.md says.
+  /// Builds the surface. Trackers report the flesh of the fingers well, but metacarpals as thin as
+  /// fingers; so each radius in the palm is at least a share of the palm's own, (H12) of
+  /// docs/design.md.
   void set(const Hand& hand) noexcept;
 
   SurfacePoint query(const Vec3& p) const noexcept;
   double distance(const Vec3& p) const noexcept;
-  /// Of the body that is nearest to p, the first of equals.
+  /// Returns the region of the body nearest to p; of equally near bodies, the first one.
   SkinRegion region(const Vec3& p) const noexcept;
 
   /// Axis-aligned bounds of the skin [m].

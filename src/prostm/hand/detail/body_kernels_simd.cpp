@@ -1,6 +1,6 @@
 #include "prostm/hand/detail/body_set.hpp"
 
-// vectors of a length known at compile time only: points and answers are structs of them
+// only vectors whose length is known at compile time: points and answers are structs of them
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #endif
@@ -9,9 +9,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// A vector is a row of a cube's corners; every lane goes the same way through (H9) and (H10). Where
-// the plain bodies branch to one of a cone's two spheres or its mantle, here the distance to the
-// sphere at the clamped u is taken, which is the same, since u is where that distance is least.
+// A vector is a row of a cube's corners; every lane takes the same steps of (H9) and (H10). Where
+// the plain bodies branch to one of a cone's two spheres or its mantle, this computes the distance
+// to the sphere at the clamped u. Both agree, since that distance is least at u.
 HWY_BEFORE_NAMESPACE();
 namespace prostm {
 namespace HWY_NAMESPACE {
@@ -28,14 +28,14 @@ struct Points {
 
 struct Answer {
   V distance;
-  Points velocity;  // only where asked for
+  Points velocity;  // only if requested
 };
 
 HWY_INLINE V set(float value) {
   return hn::Set(D(), value);
 }
 
-/// The corners from `first` on, one a lane.
+/// Returns the corners from `first` on, one per lane.
 HWY_INLINE Points corners_from(const CubeCorners& corners, std::size_t first) {
   alignas(32) static constexpr float kSide[3][8] = {
       {-1, 1, -1, 1, -1, 1, -1, 1}, {-1, -1, 1, 1, -1, -1, 1, 1}, {-1, -1, -1, -1, 1, 1, 1, 1}};
@@ -89,7 +89,7 @@ HWY_INLINE Answer ask(const PackedCone& cone, const Points& p) {
   return answer;
 }
 
-/// Takes the answer of an edge where it is nearer.
+/// Takes the answer of an edge in the lanes where it is nearer.
 template <bool kVelocity>
 HWY_INLINE void take(const PackedCone& edge, const Points& p, Answer& best) {
   const Answer answer = ask<kVelocity>(edge, p);
@@ -155,7 +155,7 @@ void Cull(const BodySet& bodies, const BodyList& list, const CubeCorners& corner
     }
     const V farthest = hn::Min(hn::Add(nearest, set(2.0F * reach)), set(limit + reach));
     for (int n = 0; n < list.count; ++n) {
-      std::uint8_t bits[8] = {};  // as many as the store may look at
+      std::uint8_t bits[8] = {};  // as many as the store may touch
       hn::StoreMaskBits(d, hn::Le(hn::Load(d, distance[n]), farthest), bits);
       near[n] = static_cast<std::uint8_t>((first == 0 ? 0 : near[n]) | bits[0] << first);
     }
@@ -189,7 +189,7 @@ void Velocity(const BodySet& bodies, const NearestBodies& nearest, const CubeCor
     Points velocity = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     std::int32_t last = -1;
     for (std::size_t c = first; c < first + lanes; ++c) {
-      // neighbours mostly share their body; one that comes twice is only asked twice
+      // neighbours mostly share their body; a body that recurs is evaluated again
       if ((which >> c & 1U) == 0 || nearest.body[c] == last) continue;
       last = nearest.body[c];
       const Answer answer = ask<true>(bodies, static_cast<std::size_t>(last), p);
@@ -232,7 +232,7 @@ void velocity(const BodySet& bodies, const NearestBodies& nearest_bodies,
 
 const BodyKernels& fast_body_kernels() {
   static constexpr BodyKernels kernels{cull, nearest, velocity};
-  // asked once: the question is dear in a virtual machine
+  // queried once: the query is slow in a virtual machine
   static const bool vectors = (hwy::SupportedTargets() & ~(HWY_SCALAR | HWY_EMU128)) != 0;
   return vectors ? kernels : scalar_body_kernels();
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// The bodies of hands, and what blocks of points ask about them: kernels written plain and with
-/// vectors. Private to hand.
+/// The bodies of hands, and kernels (plain and with vectors) that query them for blocks of points.
+/// Private to hand.
 
 #include <boost/container/static_vector.hpp>
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace prostm {
 
-/// Refers to the bodies that were added; they must stay where they are.
+/// Refers to the added bodies, which must not move.
 class BodySet {
  public:
   static constexpr std::size_t kMaxHands = 2;
   static constexpr std::size_t kCapacity =
       kMaxHands * (HandShape::kMaxCones + HandShape::kMaxTriangles);
-  static_assert(kCapacity <= 255, "a body's number is one byte");
+  static_assert(kCapacity <= 255, "a body's number must fit a byte");
   struct Body {
-    const RoundCone* cone;  // one of the two, the other is null
+    const RoundCone* cone;  // of cone and triangle, one is null
     const SphereTriangle* triangle;
-    std::size_t packed;  // its place among the packed ones of its kind
+    std::size_t packed;  // index among the packed bodies of its kind
   };
 
-  /// Without a body; points are relative to `origin` from here on [m].
+  /// Removes all bodies; points are relative to `origin` from now on [m].
   void clear(const Vec3& origin) noexcept;
-  /// @pre size() < kCapacity, and as many of each kind as kMaxHands hands have.
+  /// @pre size() < kCapacity, and at most as many of each kind as kMaxHands hands have.
   void add(const RoundCone& cone) noexcept;
   void add(const SphereTriangle& triangle) noexcept;
   void add(const HandShape& shape) noexcept;
@@ -56,28 +56,28 @@ struct CubeCorners {
   float half;       ///< [m]
 };
 
-/// At each of eight corners the nearest body of a list, the first of equals.
+/// The nearest body of a list at each of eight corners; of equally near bodies, the first one.
 struct NearestBodies {
   alignas(32) float distance[8];  ///< [m]
   alignas(32) std::int32_t body[8];
 };
 
 struct BodyKernels {
-  /// Blocks of points stand around eight corners, each within `reach` of its corner. Bit c of
-  /// near[n] tells whether the list's n-th body can be the nearest of the list, and within `limit`,
-  /// somewhere in the block of corner c: a distance changes at most as fast as the point moves.
+  /// Points lie in blocks around eight corners, each within `reach` of its corner. Bit c of near[n]
+  /// tells whether the list's n-th body can be the nearest of the list, and within `limit`,
+  /// somewhere in the block of corner c. A distance changes at most as fast as the point moves.
   void (*cull)(const BodySet& bodies, const BodyList& list, const CubeCorners& corners, float reach,
                float limit, std::uint8_t* near);
-  /// @pre the list is not empty.
+  /// Finds the nearest body at each corner. @pre the list is not empty.
   void (*nearest)(const BodySet& bodies, const BodyList& list, const CubeCorners& corners,
                   NearestBodies& out);
-  /// Velocities of the nearest skin point of each corner's own body [m/s], for the corners whose
-  /// bit is set in `which`.
+  /// Computes the velocity of the nearest skin point of each corner's body [m/s], for the corners
+  /// whose bit is set in `which`.
   void (*velocity)(const BodySet& bodies, const NearestBodies& nearest, const CubeCorners& corners,
                    unsigned which, float (*out)[8]);
 };
 
-/// By the bodies' own distance() and query(), in double precision.
+/// Kernels that use the bodies' own distance() and query(), in double precision.
 const BodyKernels& scalar_body_kernels();
 /// The vector kernels for this processor, in single precision; the plain ones where Highway knows
 /// only its one-lane fallback.

@@ -6,8 +6,8 @@
 namespace prostm {
 namespace {
 
-/// p as seen from the sphere whose skin is nearest; `fallback` is the normal when p is that
-/// sphere's centre.
+/// Returns the surface point for p on a sphere; `fallback` is the normal if p is the sphere's
+/// centre.
 SurfacePoint seen_from(const Vec3& p, const Vec3& centre, double radius, const Vec3& velocity,
                        const Vec3& fallback) {
   const Vec3 offset = p - centre;
@@ -32,7 +32,7 @@ RoundCone::RoundCone(const CornerSphere& a, const CornerSphere& b) noexcept : a_
   const Vec3 along = b.centre - a.centre;
   const double length = along.norm(), difference = a.radius - b.radius;
   const double generator_squared = length * length - difference * difference;
-  constexpr double kShortest = 1e-6;  // generators below a micrometre are no cone [m]
+  constexpr double kShortest = 1e-6;  // with a shorter generator it is a sphere [m]
   if (generator_squared > kShortest * kShortest) {
     axis_ = along / length;
     generator_ = std::sqrt(generator_squared);
@@ -101,7 +101,7 @@ SphereTriangle::SphereTriangle(const CornerSphere& a, const CornerSphere& b,
   // the dual basis of the edges from a turns offsets in the plane into barycentric weights
   const Vec3 e1 = b.centre - a.centre, e2 = c.centre - a.centre, area = e1.cross(e2);
   const double area_squared = area.squaredNorm();
-  constexpr double kThinnest = 1e-12;  // of the sine between two edges, squared
+  constexpr double kThinnest = 1e-12;  // squared sine of the angle between two edges
   if (!(area_squared > kThinnest * e1.squaredNorm() * e2.squaredNorm())) return;
   plane_normal_ = area / std::sqrt(area_squared);
   const Vec3 dual_b = e2.cross(area) / area_squared, dual_c = area.cross(e1) / area_squared;
@@ -116,7 +116,7 @@ SphereTriangle::SphereTriangle(const CornerSphere& a, const CornerSphere& b,
     const double height = side == 0 ? std::sqrt(rest) : -std::sqrt(rest);
     Face& face = faces_[side];
     face.normal = in_plane + height * plane_normal_;
-    // p falls on the plane along the normal: its weights are those of p − ((p − a)·N / n·N) n
+    // p projects onto the plane along the normal: its weights are those of p − ((p − a)·N / n·N) n
     face.weight_b = dual_b - (face.normal.dot(dual_b) / height) * plane_normal_;
     face.weight_c = dual_c - (face.normal.dot(dual_c) / height) * plane_normal_;
   }
@@ -129,8 +129,8 @@ SphereTriangle::Foot SphereTriangle::foot(const Vec3& p) const noexcept {
 }
 
 unsigned SphereTriangle::candidate_edges(const Foot& foot) const noexcept {
-  // |p − q| − r(q) is convex over the plane, so from the constrained minimum to the free one the
-  // way leaves the triangle through an edge whose weight is negative at the free one
+  // |p − q| − r(q) is convex over the plane, so the way from the constrained minimum to the free
+  // one leaves the triangle through an edge whose weight is negative at the free one
   return (foot.b + foot.c > 1.0 ? 1U : 0U) | (foot.b < 0.0 ? 2U : 0U) | (foot.c < 0.0 ? 4U : 0U);
 }
 
@@ -173,11 +173,10 @@ SurfacePoint SphereTriangle::query(const Vec3& p) const noexcept {
 PackedTriangle SphereTriangle::packed(const Vec3& origin) const noexcept {
   PackedTriangle out{};
   for (std::size_t e = 0; e < 3; ++e) out.edge[e] = edges_[e].packed(origin);
-  // a point that is told wrongly to fall on the face errs by the square of the slip over the
-  // radius; the slip of single precision grows as the triangle gets thinner, and that of leaving
-  // the faces out shrinks
+  // a point wrongly projected onto the face errs by the square of the slip over the radius. In a
+  // thinner triangle single precision slips more, and leaving the faces out slips less
   const Vec3 e1 = b_.centre - a_.centre, e2 = c_.centre - a_.centre;
-  constexpr double kThinnest = 1e-8;  // of the sine between two edges, squared
+  constexpr double kThinnest = 1e-8;  // squared sine of the angle between two edges
   out.has_faces =
       has_faces_ && e1.cross(e2).squaredNorm() > kThinnest * e1.squaredNorm() * e2.squaredNorm();
   if (!out.has_faces) return out;
@@ -185,7 +184,7 @@ PackedTriangle SphereTriangle::packed(const Vec3& origin) const noexcept {
   pack(a_.velocity, out.velocity);
   out.radius = static_cast<float>(a_.radius);
   pack(plane_normal_, out.plane);
-  // what the two faces share, and what is of opposite sign
+  // the parts that the two faces share, and those of opposite sign
   const Face &above = faces_[0], &below = faces_[1];
   pack(0.5 * (above.normal + below.normal), out.in_plane);
   out.height = static_cast<float>(above.normal.dot(plane_normal_));

@@ -13,7 +13,7 @@ namespace prostm {
 struct SurfacePoint {
   double distance = 0.0;         ///< signed, negative inside [m]
   Vec3 normal = Vec3::UnitZ();   ///< outward, unit
-  Vec3 velocity = Vec3::Zero();  ///< of the nearest skin point [m/s]
+  Vec3 velocity = Vec3::Zero();  ///< velocity of the nearest skin point [m/s]
 };
 
 /// A corner of a body: a sphere that moves.
@@ -23,7 +23,7 @@ struct CornerSphere {
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
-/// The hull of two spheres. Where one sphere contains the other it is that sphere.
+/// The hull of two spheres. If one sphere contains the other, it is the larger sphere.
 class RoundCone {
  public:
   RoundCone() = default;
@@ -32,7 +32,7 @@ class RoundCone {
   double distance(const Vec3& p) const noexcept;
   SurfacePoint query(const Vec3& p) const noexcept;
   PackedCone packed(const Vec3& origin) const noexcept;
-  const Vec3& lower() const { return lower_; }  ///< of the bounding box [m]
+  const Vec3& lower() const { return lower_; }  ///< corners of the bounding box [m]
   const Vec3& upper() const { return upper_; }
 
  private:
@@ -41,7 +41,7 @@ class RoundCone {
 
   CornerSphere a_, b_;
   Vec3 axis_ = Vec3::Zero();  // unit, from a to b; zero for a sphere
-  double sine_ = 0.0;         // (r_a − r_b) / |b − a|: of the angle between generator and axis
+  double sine_ = 0.0;         // (r_a − r_b) / |b − a|, sine of the angle from axis to generator
   double cosine_ = 1.0;
   double generator_ = 0.0;  // length of the tangent line from sphere to sphere [m]
   Vec3 lower_ = Vec3::Zero(), upper_ = Vec3::Zero();
@@ -59,18 +59,18 @@ class SphereTriangle {
   /// A triangle too thin for single precision, thinner than 10⁻⁴ of its edges, is packed as its
   /// edges.
   PackedTriangle packed(const Vec3& origin) const noexcept;
-  const Vec3& lower() const { return lower_; }  ///< of the bounding box [m]
+  const Vec3& lower() const { return lower_; }  ///< corners of the bounding box [m]
   const Vec3& upper() const { return upper_; }
 
  private:
-  /// One of the two planes that touch the three spheres, and which point of the triangle a point in
-  /// space falls on.
+  /// One of the two planes that touch the three spheres, and the projection of points onto the
+  /// triangle.
   struct Face {
     Vec3 normal = Vec3::Zero();
     Vec3 weight_b = Vec3::Zero(), weight_c = Vec3::Zero();  // barycentric weight = (p − a) · weight
   };
   struct Foot {
-    double distance, b, c;  // of the face, and barycentric weights
+    double distance, b, c;  // distance to the face, and barycentric weights
     bool inside() const { return b >= 0.0 && c >= 0.0 && b + c <= 1.0; }
   };
   Foot foot(const Vec3& p) const noexcept;
@@ -81,8 +81,8 @@ class SphereTriangle {
   std::array<RoundCone, 3> edges_;  // bc, ca, ab
   std::array<Face, 2> faces_;       // on the side of plane_normal_, and on the other
   Vec3 plane_normal_ = Vec3::Zero();
-  bool has_faces_ =
-      false;  // false: the corners are in line, or a corner is hidden in the hull of the others
+  // false: the corners are in line, or a corner is hidden in the hull of the others
+  bool has_faces_ = false;
   Vec3 lower_ = Vec3::Zero(), upper_ = Vec3::Zero();
 };
 
