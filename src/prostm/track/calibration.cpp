@@ -10,7 +10,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kLeastSpread = 0.010;  // of points beside the line through them, rms [m]
+constexpr double kLeastSpread = 0.010;  // least rms distance of the points from a line [m]
 
 struct Means {
   Vec3 p_T = Vec3::Zero(), p_D = Vec3::Zero();
@@ -20,7 +20,8 @@ Means means_of(std::span<const PointPair> points) {
   Means means;
   for (const PointPair& pair : points) {
     if (!pair.p_T.allFinite() || !pair.p_D.allFinite())
-      throw std::invalid_argument("a calibration point is not finite; points must be places in m");
+      throw std::invalid_argument(
+          "a calibration point is not finite; points must be positions in metres");
     means.p_T += pair.p_T;
     means.p_D += pair.p_D;
   }
@@ -29,7 +30,7 @@ Means means_of(std::span<const PointPair> points) {
   return means;
 }
 
-/// Rms distance of points from the best line through them, on the side where it is less [m].
+/// Rms distance of the points from the best line through them, in the frame where it is less [m].
 double spread_beside_line(std::span<const PointPair> points, const Means& means) {
   Eigen::Matrix3d T = Eigen::Matrix3d::Zero(), D = Eigen::Matrix3d::Zero();
   for (const PointPair& pair : points) {
@@ -44,7 +45,7 @@ double spread_beside_line(std::span<const PointPair> points, const Means& means)
   return std::min(beside(T), beside(D));
 }
 
-/// With the orthogonal matrix R: its translation, and what is left.
+/// Returns the pose with the orthogonal matrix R: its translation and its residuals.
 Calibration with(const Eigen::Matrix3d& R, std::span<const PointPair> points, const Means& means) {
   Calibration found;
   found.X_DT.linear() = R;
@@ -70,8 +71,8 @@ Calibration calibrate(std::span<const PointPair> points) {
   const Means means = means_of(points);
   if (const double spread = spread_beside_line(points, means); !(spread >= kLeastSpread)) {
     throw std::invalid_argument(
-        fmt::format("the calibration points are within {:.1f} mm of one line; they must be at "
-                    "least 10 mm beside it",
+        fmt::format("the calibration points are within {:.1f} mm rms of one line; it must be "
+                    "at least 10 mm",
                     spread * 1e3));
   }
 
@@ -88,7 +89,7 @@ Calibration calibrate(std::span<const PointPair> points) {
   const double mirrored = with(nearest, points, means).rms;
   if (nearest.determinant() < 0.0 && found.rms > 2.0 * mirrored + 0.002) {
     throw std::invalid_argument(fmt::format(
-        "the calibration points fit a mirror image ({:.1f} mm rms) and no rotation ({:.1f} mm); an "
+        "the calibration points fit a mirror image ({:.1f} mm rms) but no rotation ({:.1f} mm); an "
         "axis is reversed or two points are exchanged",
         mirrored * 1e3, found.rms * 1e3));
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the tracker is: its pose from points that are known in both frames.
+/// The tracker's pose from points that are known in both frames.
 
 #include <span>
 
@@ -7,21 +7,21 @@
 
 namespace prostm {
 
-/// The same point as the tracker sees it and as the array has it.
+/// The same point in the tracker's frame and in the array's.
 struct PointPair {
   Vec3 p_T, p_D;  ///< [m]
 };
 
 struct Calibration {
-  Pose X_DT = Pose::Identity();  ///< of the tracker in D
-  double rms = 0.0;              ///< of what is left, |p_D − X_DT p_T| [m]
-  double largest = 0.0;          ///< the same at the worst point [m]
+  Pose X_DT = Pose::Identity();  ///< pose of the tracker in D
+  double rms = 0.0;              ///< rms residual |p_D − X_DT p_T| [m]
+  double largest = 0.0;          ///< residual at the worst point [m]
 };
 
-/// The rotation and translation, without scale, that leave the least Σ|p_D − X_DT p_T|²: (H20) of
+/// Returns the rotation and translation, without scale, that minimise Σ|p_D − X_DT p_T|²: (H20) of
 /// docs/design.md.
 /// @throws std::invalid_argument with a sentence: fewer than 3 points, numbers that are not finite,
-/// points within 10 mm of one line, or points that fit a mirror image and no rotation.
+/// points within 10 mm of one line, or points that fit a mirror image but no rotation.
 Calibration calibrate(std::span<const PointPair> points);
 
 }  // namespace prostm

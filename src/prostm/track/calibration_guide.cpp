@@ -9,10 +9,10 @@
 namespace prostm {
 namespace {
 
-constexpr double kTakeTime = 0.5;       // that a mark is looked at [s]
-constexpr std::size_t kLeastSeen = 5;   // frames in that time
-constexpr double kMostSpread = 0.005;   // of a finger that rests, rms [m]
-constexpr std::size_t kLeastMarks = 3;  // for a pose
+constexpr double kTakeTime = 0.5;       // a mark is observed for this long [s]
+constexpr std::size_t kLeastSeen = 5;   // least frames in that time
+constexpr double kMostSpread = 0.005;   // largest rms spread of a resting finger [m]
+constexpr std::size_t kLeastMarks = 3;  // least marks for a pose
 
 }  // namespace
 
@@ -45,9 +45,9 @@ void CalibrationGuide::watch(double time, const HandFrame& hands_T) {
 
 std::string CalibrationGuide::take(int mark) {
   if (mark < 0 || static_cast<std::size_t>(mark) >= marks_.size())
-    return fmt::format("there is no mark {}; there are 0 to {}", mark, marks_.size() - 1);
+    return fmt::format("there is no mark {}; the marks are 0 to {}", mark, marks_.size() - 1);
   const auto index = static_cast<std::size_t>(mark);
-  if (hands_ > 1) return "two hands are in sight; show one alone";
+  if (hands_ > 1) return "two hands are in sight; show only one";
   if (hands_ == 0 || seen_.size() < kLeastSeen)
     return "no hand has been in sight for long enough; hold a finger still on the mark";
   Vec3 mean = Vec3::Zero();

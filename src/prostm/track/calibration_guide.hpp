@@ -1,6 +1,6 @@
 #pragma once
-/// Leads through a calibration: marks on the array are touched one after the other with the tip of
-/// an index finger.
+/// Guides the user through a calibration: marks on the array are touched one after the other with
+/// the tip of an index finger.
 
 #include <optional>
 #include <span>
@@ -16,31 +16,31 @@ struct CalibrationMark {
   std::string name;
   Vec3 p_D = Vec3::Zero();  ///< [m]
   bool taken = false;
-  double spread = 0.0;  ///< of the finger tip while it was taken, rms [m]
+  double spread = 0.0;  ///< rms spread of the fingertip while it was taken [m]
 };
 
-/// Who uses it calls watch() with every frame of hands, and the rest when asked. No thread, no
-/// clock.
+/// The caller passes every frame of hands to watch() and calls the rest on demand. Has no thread
+/// and no clock.
 class CalibrationGuide {
  public:
-  /// Marks at the corners of the transducers' outline: front is where the user is.
-  /// @throws std::invalid_argument for fewer than 1.
+  /// Places marks at the corners of the transducers' outline; the user is at the front.
+  /// @throws std::invalid_argument without transducers.
   explicit CalibrationGuide(std::span<const Vec3> transducers);
 
-  /// Hands in T, some dozen times a second. @param time of any clock that increases [s].
+  /// Takes in hands in T, some dozen times a second. @param time on any increasing clock [s].
   void watch(double time, const HandFrame& hands_T);
 
-  /// Takes the mean place of the finger tip during the last half second for a mark; a mark can be
-  /// taken again. Empty, or a sentence why not: no such mark, no hand or two, a finger that moves
-  /// (5 mm rms and more). The finger's flesh, `radius` of its tip, is between its tip and the mark.
+  /// Takes the mean position of the fingertip over the last half second for a mark; a mark can be
+  /// taken again. Returns an empty string, or why not: no such mark, no hand or two hands, a finger
+  /// that moves (more than 5 mm rms). The tip is above the mark by the `radius` of its flesh.
   std::string take(int mark);
-  /// Finds the pose from the marks that are taken. Empty, or a sentence why not.
+  /// Finds the pose from the marks taken. Returns an empty string, or why not.
   std::string solve();
 
   const std::vector<CalibrationMark>& marks() const { return marks_; }
-  /// Of the last solve() that found one since a mark was taken.
+  /// The pose found by solve(), unless a mark was taken since.
   const std::optional<Calibration>& result() const { return result_; }
-  /// What to do next.
+  /// Says what to do next, or how well the pose fits.
   std::string sentence() const;
 
  private:
@@ -51,8 +51,8 @@ class CalibrationGuide {
   };
   std::vector<CalibrationMark> marks_;
   std::vector<PointPair> pairs_;  // one per mark
-  std::vector<Seen> seen_;        // of the last half second
-  std::size_t hands_ = 0;         // in the last frame
+  std::vector<Seen> seen_;        // in the last half second
+  std::size_t hands_ = 0;         // number in the last frame
   std::optional<Calibration> result_;
 };
 

@@ -7,7 +7,7 @@
 namespace prostm {
 namespace {
 
-/// (H5): `share` of a small innovation, all of one far above `scale`.
+/// (H5): returns `share` for a small innovation, and about 1 for one far above `scale`.
 double opened(double share, double squared_innovation, double scale) {
   return share + (1.0 - share) * squared_innovation / (squared_innovation + scale * scale);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a hand tracker tells: up to two hands of 26 joints.
+/// Data from a hand tracker: up to two hands of 26 joints each.
 
 #include <array>
 #include <boost/container/static_vector.hpp>
@@ -45,7 +45,7 @@ std::string_view joint_name(int joint);  ///< "palm", "wrist", "thumb-metacarpal
 
 enum class Side : std::uint8_t { Left, Right };
 
-/// One hand. Positions are in the frame of whoever made it: T from trackers and recordings, D after
+/// One hand. Positions are in the frame of its source: T from trackers and recordings, D after
 /// to_device(). Joint frames follow OpenXR: −z along the bone to the tip, +y dorsal.
 struct Hand {
   std::int64_t id = 0;  ///< stays with a hand while it is tracked
@@ -54,23 +54,24 @@ struct Hand {
   std::uint32_t inferred = 0;  ///< bit 0: metacarpals were rebuilt, bit 1: the wrist was
   std::array<Vec3, kJointCount> position;     ///< [m]
   std::array<Quat, kJointCount> orientation;  ///< unit quaternions
-  std::array<double, kJointCount> radius{};   ///< of the flesh around the joint [m]
+  std::array<double, kJointCount> radius{};   ///< radius of the flesh around the joint [m]
   std::array<Vec3, kJointCount> velocity;     ///< [m/s]
 };
 
 struct HandFrame {
   double time = 0.0;  ///< [s]
-  double age = 0.0;  ///< how long before `time` the tracker's frame came in that this is made from;
-                     ///< 0 for hands that were computed for exactly `time` [s]
+  /// `time` less the arrival of the tracker's frame that this is made from; 0 for hands computed
+  /// for exactly `time` [s]
+  double age = 0.0;
   boost::container::static_vector<Hand, 2> hands;
 };
 
-/// Poses, velocities and orientations of a frame in T, expressed in D.
+/// Transforms positions, velocities and orientations of a frame from T to D.
 void to_device(const Pose& X_DT, HandFrame& frame);
 
-/// At the array's centre, axes (x, y, z)_T → (x, −z, y)_D.
+/// Pose at the array's centre, axes (x, y, z)_T → (x, −z, y)_D.
 Pose default_tracker_pose();
-/// The Ultraleap kit's: the tracker sits 121 mm along +y of D from the array's centre.
+/// Pose in the Ultraleap kit: the tracker sits 121 mm along +y of D from the array's centre.
 Pose ultraleap_kit_pose();
 
 }  // namespace prostm

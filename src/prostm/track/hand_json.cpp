@@ -34,8 +34,8 @@ void check_hand(const JsonNode& node, const Hand& hand) {
 void check_ids(const JsonNode& node, const HandFrame& frame) {
   if (frame.hands.size() == 2 && frame.hands[0].id == frame.hands[1].id &&
       frame.hands[0].side == frame.hands[1].side) {
-    node.fail(
-        fmt::format("has two hands of id {} and one side; ids must differ", frame.hands[0].id));
+    node.fail(fmt::format("has two hands of id {} and the same side; ids must differ",
+                          frame.hands[0].id));
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Where hands come from.
+/// Sources of hands.
 
 #include <cstdint>
 #include <limits>
@@ -13,16 +13,16 @@
 
 namespace prostm {
 
-/// How a live tracker does. Plain values, as seen at one moment.
+/// State of a live tracker at one moment, in plain values.
 struct TrackerStatus {
   bool connected = false;
-  std::int64_t frames = 0;      ///< that came in
-  std::int64_t dropped = 0;     ///< of these, refused for what they hold
-  std::int64_t repeated = 0;    ///< of these, with a time that had been seen already
+  std::int64_t frames = 0;      ///< frames received
+  std::int64_t dropped = 0;     ///< received frames refused for their content
+  std::int64_t repeated = 0;    ///< received frames whose time had been seen already
   std::int64_t unsure = 0;      ///< hands not taken: below TrackSettings::least_confidence
   std::int64_t frozen = 0;      ///< hands not taken: no joint moved for TrackSettings::freeze_time
   std::int64_t reconnects = 0;  ///< connections after the first one
-  std::string sentence;         ///< what to tell: where it is, and what is wrong
+  std::string sentence;         ///< for the user: the connection, and what is wrong
 };
 
 /// Hands as a function of time. Frames are in T. Not thread-safe: one caller, except for
@@ -30,45 +30,46 @@ struct TrackerStatus {
 class HandSource {
  public:
   virtual ~HandSource() = default;
-  /// The hands at `time` [s], counted from 0 at the start of the run; times must not decrease from
-  /// call to call. No hand in sight is an ordinary answer. Allocates nothing.
+  /// Sets `out` to the hands at `time` [s], counted from 0 at the start of the run; times must not
+  /// decrease from call to call. A frame without hands is a normal result. Allocates nothing.
   virtual void sample(double time, HandFrame& out) = 0;
   /// Seconds after which sample() has nothing new; infinity for a source without an end.
   virtual double duration() const = 0;
 
   /// Length of the recording that is played, 0 without one [s].
   virtual double recording_length() const { return 0.0; }
-  /// Where in the recording the last sample() was, NaN without one [s].
+  /// Time in the recording at the last sample(), NaN without one [s].
   virtual double recording_time() const { return std::numeric_limits<double>::quiet_NaN(); }
-  /// Goes on from `time` of the recording [s] at the next sample(), as a hand that has just come:
-  /// clamped to the recording. Does nothing without one.
+  /// Continues from `time` of the recording [s], clamped to its length, at the next sample(); hands
+  /// count as new. Does nothing without a recording.
   virtual void seek(double time) { static_cast<void>(time); }
 
-  /// None for hands that are not tracked live. May be called from any thread.
+  /// Empty for hands that are not tracked live. May be called from any thread.
   virtual std::optional<TrackerStatus> tracker_status() const { return {}; }
 };
 
 struct TrackSettings {
-  double smoothing_time = 0.030;  ///< width of the window in which joints are smoothed before they
-                                  ///< are differentiated [s]
-  double max_speed =
-      3.0;  ///< joint velocities are clamped to this magnitude: trackers glitch [m/s]
-  double prediction = 0.015;  ///< hands of live trackers, and of recordings in real time, are
-                              ///< predicted over the age of their frame and this much more; 0: not
-                              ///< at all [s]
+  /// width of the window in which joints are smoothed before they are differentiated [s]
+  double smoothing_time = 0.030;
+  /// joint velocities are clamped to this magnitude, since trackers glitch [m/s]
+  double max_speed = 3.0;
+  /// hands of live trackers, and of recordings in real time, are predicted over the age of their
+  /// frame plus this time; 0: no prediction [s]
+  double prediction = 0.015;
   double prediction_limit = 0.015;  ///< no joint is predicted farther than this [m]
   double max_gap = 0.060;  ///< a hand missing for longer than this between two frames is gone [s]
   double least_confidence = 0.1;  ///< hands that the tracker trusts less are not taken, 0 to 1
-  double freeze_time = 0.5;  ///< a live tracker's hand none of whose joints moves for so long is
-                             ///< not taken until it moves again [s]
-  double filter_position =
-      0.3;  ///< α of the filter on still joints at the pipeline's rate, (0, 1]; 1 = no filter
-  double filter_velocity =
-      0.2;  ///< low-pass of steady velocities at the pipeline's rate, (0, 1]; 1 = no filter
-  double filter_position_scale =
-      0.003;  ///< innovation of a position at which the filter is half open [m]
-  double filter_velocity_scale =
-      0.100;  ///< innovation of a velocity at which the low-pass is half open [m/s]
+  /// a live tracker's hand that has not moved any joint for this long is not taken until it moves
+  /// again [s]
+  double freeze_time = 0.5;
+  /// α of the filter on still joints at the pipeline's rate, (0, 1]; 1 = no filter
+  double filter_position = 0.3;
+  /// low-pass of steady velocities at the pipeline's rate, (0, 1]; 1 = no filter
+  double filter_velocity = 0.2;
+  /// innovation of a position at which the filter is half open [m]
+  double filter_position_scale = 0.003;
+  /// innovation of a velocity at which the low-pass is half open [m/s]
+  double filter_velocity_scale = 0.100;
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
@@ -83,52 +84,52 @@ struct HandRecording {
 
 /// Plays a recording. Between frames positions are interpolated linearly and orientations by slerp,
 /// hand by hand (by id and side); velocities are central differences of joints smoothed over
-/// `smoothing_time` (H1), clamped. When `loop`, the recording starts again as a hand that leaves
-/// and comes back: for two steps [s] after its end there is no hand, so that a caller with that
-/// step sees at least one frame without; no velocity crosses the seam. A hand that its tracker
-/// renamed between two frames goes on under its first id.
+/// `smoothing_time` (H1), clamped. If `loop`, the recording starts again as a hand that leaves and
+/// comes back: for two steps [s] after its end there is no hand, so a caller with that step sees at
+/// least one frame without hands. No velocity crosses the seam. A hand whose tracker changed its id
+/// between two frames keeps its first id.
 /// @throws std::invalid_argument: a setting outside its bounds, no frames, times that do not
-/// increase from 0, two hands of the same id and side in one frame, several frames of which no two
-/// within max_gap have the same hand.
+/// increase from 0, two hands of the same id and side in one frame, several frames with no hand
+/// that is in two of them within max_gap.
 std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step);
 
-/// Plays a recording as a tracker would have sent it: of its frames only those that have come in by
-/// the time asked for are known, and hands come from them through CausalTrack, with the age of the
-/// newest one. When `loop`, frames without hands come in at the end, and the recording starts again
-/// once its last hands are gone and a caller with `step` [s] between samples has seen that.
+/// Plays a recording as a tracker would have sent it: only frames up to the sampled time are known.
+/// CausalTrack makes hands from them, with the age of the newest one. If `loop`, frames without
+/// hands follow the end, and the recording starts again once its last hands are gone and a caller
+/// with `step` [s] between samples has seen that.
 /// @throws std::invalid_argument as make_recorded_hand.
 std::unique_ptr<HandSource> make_replayed_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step);
 
-/// A kinematic skeleton with bone lengths and joint angles, endless: an open right hand, palm down,
-/// comes in from the user's side, hovers over the middle of the tracker, lowers and lifts, tilts,
-/// closes and opens, leaves, and so on in a cycle of `period`.
+/// The endless motion of a kinematic skeleton with bone lengths and joint angles: an open right
+/// hand, palm down, comes in from the user's side, hovers over the middle of the tracker, lowers
+/// and lifts, tilts, closes and opens, and leaves, in cycles of `period`.
 struct ScriptedHandSettings {
-  double height = 0.20;  ///< of the hovering palm joint above the tracker [m], 0.10 to 0.60
-  double period = 20.0;  ///< of the cycle [s], 5 to 3600
+  double height = 0.20;  ///< height of the hovering palm joint above the tracker [m], 0.10 to 0.60
+  double period = 20.0;  ///< duration of a cycle [s], 5 to 3600
   double jitter = 0.0;   ///< standard deviation of white noise on each joint coordinate of each
                          ///< tracker frame [m], 0 to 0.01
-  int seed = 1;          ///< of the jitter
-  bool still = false;    ///< the hovering pose for ever
+  int seed = 1;          ///< seed of the jitter
+  bool still = false;    ///< the hand keeps its hovering pose
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
 };
 /// Without jitter velocities are exact (central differences of the motion itself); with jitter the
-/// hand is seen as through a tracker of 110 Hz: joints are interpolated between noisy frames and
+/// hand is seen as by a tracker of 110 Hz: joints are interpolated between noisy frames and
 /// velocities come from them by (H1).
 /// @throws std::invalid_argument for a setting outside its bounds.
 std::unique_ptr<HandSource> make_scripted_hand(const ScriptedHandSettings& settings,
                                                const TrackSettings& track);
 
-/// Takes the tracker's noise out before the fluid sees it: each joint is predicted with its
-/// filtered velocity and corrected by a share of the innovation, its velocity and orientation are
-/// low-passed. The shares open with the size of the innovation, so that noise is damped and real
-/// motion passes: (H5) to (H7) of docs/design.md. Without the filter, a hand that is still but
-/// tracked with 0.3 mm of noise makes more pressure than the smoke.
+/// Removes the tracker's noise before the fluid meets the hands: each joint is predicted with its
+/// filtered velocity and corrected by a share of the innovation; its velocity and orientation are
+/// low-passed. The shares grow with the innovation, so noise is damped and real motion passes: (H5)
+/// to (H7) of docs/design.md. Without the filter, a still hand tracked with 0.3 mm of noise makes
+/// more pressure than the smoke.
 class HandFilter {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.

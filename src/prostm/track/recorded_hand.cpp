@@ -13,10 +13,10 @@
 namespace prostm {
 namespace {
 
-/// A hand from the frame where it appears to the frame where it is gone for longer than max_gap.
+/// A hand from its first frame to the last one before it is missing for longer than max_gap.
 struct RecordedTrack {
   HandTrack track;
-  std::vector<std::size_t> frames;  // of the recording, one per time of the track
+  std::vector<std::size_t> frames;  // in the recording, one per time of the track
 };
 
 /// Joins the hands of consecutive frames by id and side.
@@ -100,8 +100,8 @@ class RecordedHand final : public HandSource {
     std::size_t track, index;
   };
 
-  /// Which tracks are there from each frame to the next: hands that the frame has come first, hands
-  /// that are missing in it for a moment take what room is left.
+  /// Lists the tracks present from each frame to the next: first the hands of the frame, then, if
+  /// there is room, hands that it misses for a moment.
   void list_active() {
     active_.resize(times_.size());
     for (std::size_t n = 0; n < tracks_.size(); ++n) {
@@ -121,12 +121,12 @@ class RecordedHand final : public HandSource {
 
   TrackSettings settings_;
   bool loop_;
-  double period_ = 0.0;           // of the loop [s]
-  double shift_ = 0.0;            // from the run's time to the recording's [s]
-  double recording_time_ = 0;     // of the last sample [s]
+  double period_ = 0.0;           // duration of the loop [s]
+  double shift_ = 0.0;            // recording time less run time [s]
+  double recording_time_ = 0;     // at the last sample [s]
   std::optional<double> target_;  // to be sampled next [s]
   std::int64_t seeks_ = 0;
-  std::vector<double> times_;  // of the recording's frames [s]
+  std::vector<double> times_;  // times of the recording's frames [s]
   std::vector<RecordedTrack> tracks_;
   std::vector<boost::container::static_vector<Active, 2>> active_;
 };

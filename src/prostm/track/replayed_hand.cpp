@@ -59,8 +59,7 @@ class ReplayedHand final : public HandSource {
   void seek(double time) override { target_ = std::clamp(time, 0.0, length_); }
 
  private:
-  /// The recording's time `from` is now at `shift` + `from` of the run; what came in just before
-  /// counts.
+  /// Continues at recording time `from`, run time `shift` + `from`; frames shortly before it count.
   void start(double shift, double from) {
     shift_ = shift;
     track_.clear();
@@ -77,11 +76,11 @@ class ReplayedHand final : public HandSource {
   bool loop_;
   double length_ = 0.0, period_ = 0.0, history_ = 0.0;  // [s]
   double shift_ = 0.0;                                  // run time less recording time [s]
-  double recording_time_ = 0.0;                         // of the last sample [s]
+  double recording_time_ = 0.0;                         // at the last sample [s]
   std::optional<double> target_;                        // to be sampled next [s]
-  std::size_t next_ = 0;                                // frame to come in
-  HandFrame blank_;           // the last one that came in after the recording's end, without hands
-  double interval_ = 9.1e-3;  // of frames, on the mean [s]
+  std::size_t next_ = 0;                                // next frame to come in
+  HandFrame blank_;           // the latest frame after the recording's end, without hands
+  double interval_ = 9.1e-3;  // mean interval of frames [s]
   std::int64_t starts_ = 0;
 };
 

@@ -1,4 +1,4 @@
-/// The hand that needs no file.
+/// The scripted hand, which needs no file.
 
 #include <algorithm>
 #include <cmath>
@@ -13,17 +13,17 @@
 namespace prostm {
 namespace {
 
-constexpr double kTrackerRate = 110.0;  // frames of the tracker whose noise is imitated [Hz]
+constexpr double kTrackerRate = 110.0;  // frame rate of the tracker whose noise is imitated [Hz]
 
 /// The hand as the script describes it.
 struct Gesture {
-  double x = 0, y = 0, z = 0;  // of the palm joint from where it hovers, in T [m]
+  double x = 0, y = 0, z = 0;  // palm joint relative to its hovering position, in T [m]
   double roll = 0, pitch = 0;  // about T's z and x [rad]
   double closure = 0;
 };
 
 struct Key {
-  double phase;  // of the cycle, 0..1
+  double phase;  // share of the cycle, 0..1
   Gesture gesture;
 };
 
@@ -97,7 +97,7 @@ class ScriptedHand final : public HandSource {
     return phase >= std::begin(kScript)->phase && phase <= std::prev(std::end(kScript))->phase;
   }
 
-  /// The skeleton at `time` of the cycle that starts at `start`.
+  /// Poses the skeleton at `time` in the cycle that starts at `start`.
   void pose(double time, double start, Hand& hand) const {
     Gesture gesture;
     if (!settings_.still) gesture = gesture_at((time - start) / settings_.period);
@@ -146,10 +146,10 @@ class ScriptedHand final : public HandSource {
                  hand);
   }
 
-  /// White noise that depends on the seed and the frame's number alone.
+  /// Adds white noise that depends only on the seed and the frame's number.
   void add_noise(std::int64_t frame, Hand& hand) const {
-    constexpr std::uint64_t kGolden =
-        0x9E3779B97F4A7C15;  // spreads neighbouring frames over the seeds
+    // spreads neighbouring frames over the seeds
+    constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
     Random random((static_cast<std::uint64_t>(frame) + 1) * kGolden ^
                   static_cast<std::uint64_t>(settings_.seed));
     for (Vec3& p : hand.position) {

@@ -9,7 +9,7 @@
 namespace prostm {
 namespace {
 
-/// Σ(t − t̄)² below which frames are at one time [s²]: 1 ms apart and less tells no velocity.
+/// Frames with a smaller Σ(t − t̄)² count as simultaneous [s²]: 1 ms or less gives no velocity.
 constexpr double kLeastSpread = 5e-7;
 
 bool same(const Hand& a, const Hand& b) {
@@ -38,8 +38,8 @@ bool CausalTrack::add(const HandFrame& frame) noexcept {
   return true;
 }
 
-/// The hand's own track; else that of a hand which the frame does not have, first of the same side:
-/// a tracker that lost a hand gives it a new id; else a free one.
+/// Returns the hand's own track; else that of a hand of the same side which the frame lacks, since
+/// a tracker that lost a hand gives it a new id; else a free one; else that of the other hand.
 CausalTrack::Track& CausalTrack::track_of(const HandFrame& frame, const Hand& hand) noexcept {
   for (Track& track : tracks_) {
     if (track.count > 0 && same(track.hand, hand)) return track;
@@ -64,8 +64,8 @@ void CausalTrack::append(Track& track, double time, const Hand& hand) const noex
   set_velocities(track);
 }
 
-/// (H17): Σ(t − t̄)(x − x̄) / Σ(t − t̄)² over the window, which holds the frame before the newest one
-/// even when a slow tracker sent it earlier.
+/// (H17): Σ(t − t̄)(x − x̄) / Σ(t − t̄)² over the window, which includes the frame before the
+/// newest one even if a slow tracker sent it earlier.
 void CausalTrack::set_velocities(Track& track) const noexcept {
   const double newest = track.last_time();
   const auto slot = [&](std::size_t back) { return (track.newest + kFrames - back) % kFrames; };
@@ -73,14 +73,14 @@ void CausalTrack::set_velocities(Track& track) const noexcept {
   while (n < track.count && (n == 1 || newest - track.times[slot(n)] <= settings_.smoothing_time)) {
     ++n;
   }
-  double mean = 0.0, spread = 0.0;  // of times after the newest one
+  double mean = 0.0, spread = 0.0;  // sums over times relative to the newest
   for (std::size_t i = 0; i < n; ++i) mean += (track.times[slot(i)] - newest);
   mean /= static_cast<double>(n);
   track.hand.velocity.fill(Vec3::Zero());
   for (std::size_t i = 0; i < n; ++i) {
     const double t = track.times[slot(i)] - newest - mean;
     spread += t * t;
-    // Σ(t − t̄) = 0, so that any origin of x will do: the newest place keeps digits
+    // Σ(t − t̄) = 0, so any origin of x will do; the newest position keeps digits
     for (std::size_t j = 0; j < kJointCount; ++j) {
       track.hand.velocity[j] += t * (track.positions[slot(i)][j] - track.hand.position[j]);
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a live tracker's frames tell about now: hands from past frames alone.
+/// Hands at the present moment from a live tracker's past frames alone.
 
 #include <array>
 #include <cstddef>
@@ -10,29 +10,30 @@ namespace prostm {
 
 /// Up to two hands from tracker frames that come in at irregular times. A joint's velocity is the
 /// slope of the least-squares line through the frames of the last `smoothing_time`, (H17) of
-/// docs/design.md; with `prediction` its position runs ahead of the newest frame with that velocity
-/// over the frame's age and `prediction`, (H18), at most `prediction_limit` far. Orientations and
-/// radii are the newest ones. Has no clock and no thread: times are its caller's.
+/// docs/design.md. With `prediction`, its position is extrapolated from the newest frame with that
+/// velocity over the frame's age plus `prediction`, (H18), by at most `prediction_limit`.
+/// Orientations and radii are the newest ones. Has no clock and no thread: times come from the
+/// caller.
 class CausalTrack {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.
   explicit CausalTrack(const TrackSettings& settings);
 
-  /// Takes in a frame, whose velocities are not used. False, and nothing changes, unless
-  /// `frame.time` is later than that of the last one. Allocates nothing.
+  /// Takes in a frame; its velocities are not used. Returns false and changes nothing unless
+  /// `frame.time` is later than that of the last frame. Allocates nothing.
   /// @pre finite joints; two hands differ in id or side.
   bool add(const HandFrame& frame) noexcept;
 
-  /// The hands at `time` [s], not before that of the newest frame. A hand that no frame has had for
-  /// longer than `max_gap` is gone. Sets `age` to `time` less the newest frame's time, to 0 before
-  /// the first one. Allocates nothing.
+  /// Sets `out` to the hands at `time` [s], not before that of the newest frame. A hand missing
+  /// from the frames for longer than `max_gap` is gone. Sets `age` to `time` less the newest
+  /// frame's time, or to 0 before the first frame. Allocates nothing.
   void sample(double time, HandFrame& out) const noexcept;
 
   /// Forgets all frames.
   void clear() noexcept;
 
  private:
-  static constexpr std::size_t kFrames = 64;  // of the past: 0.5 s at 120 Hz
+  static constexpr std::size_t kFrames = 64;  // past frames: 0.5 s at 120 Hz
 
   /// One hand's frames, the newest at `newest`; older ones go backwards through the ring.
   struct Track {
@@ -48,7 +49,7 @@ class CausalTrack {
   void set_velocities(Track& track) const noexcept;
 
   TrackSettings settings_;
-  double newest_time_ = 0.0;  // of all frames [s]
+  double newest_time_ = 0.0;  // over all frames [s]
   bool any_ = false;
   std::array<Track, 2> tracks_;
 };

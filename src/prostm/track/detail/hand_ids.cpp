@@ -7,8 +7,7 @@
 namespace prostm {
 namespace {
 
-/// A hand as it was last seen, by the id that its tracker gave it then and by the one that it
-/// keeps.
+/// A hand as it was last seen, with the id that its tracker gave it and the id that it keeps.
 struct KnownHand {
   std::int64_t given = 0, kept = 0;
   Side side = Side::Right;

@@ -5,12 +5,12 @@
 
 namespace prostm {
 
-/// Gives a hand that was renamed from one frame to another its first id back: some trackers count
-/// their hands anew in every frame, and a hand of one frame has no velocity. A hand with a new id
-/// goes on as the nearest one of its side that the frame does not have, if it was there within
-/// `max_gap` and could have come from its place at `max_speed`. Looks back alone, so that it may be
-/// done before a recording stands in for a tracker.
-/// @throws std::invalid_argument when all the same no hand is in two frames within `max_gap`.
+/// Restores the first id of a hand whose id changed between frames: some trackers number their
+/// hands anew in every frame, and a hand of a single frame has no velocity. A hand with a new id
+/// continues the nearest hand of its side that is missing from the frame, if that hand was seen
+/// within `max_gap` and could have moved here at `max_speed`. Looks only back, so it may be used
+/// before a recording stands in for a tracker.
+/// @throws std::invalid_argument if even then no hand is in two frames within `max_gap`.
 void keep_ids(HandRecording& recording, const TrackSettings& settings);
 
 }  // namespace prostm

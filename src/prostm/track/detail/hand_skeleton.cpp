@@ -16,9 +16,9 @@ constexpr double degrees(double x) {
 /// Bone lengths are the means of Buryanov and Kotiuk (2010); radii of the flesh are those that
 /// headsets report.
 struct FingerShape {
-  Joint base;        // its metacarpal joint
-  double x, y, z;    // of the metacarpal's base in H [m]
-  double splay;      // of the metacarpal towards the thumb, about y [rad]
+  Joint base;        // the metacarpal joint
+  double x, y, z;    // position of the metacarpal's base in H [m]
+  double splay;      // splay of the metacarpal towards the thumb, about y [rad]
   double spread;     // further splay of the finger at its knuckle [rad]
   double length[4];  // metacarpal, proximal, intermediate, distal [m]
   double radius[5];  // at the metacarpal's base, the knuckle, …, the tip [m]
@@ -67,8 +67,7 @@ constexpr double kClosed[3] = {degrees(70.0), degrees(95.0), degrees(55.0)};
 constexpr double kThumbOpen[3] = {degrees(0.0), degrees(8.0), degrees(6.0)};
 constexpr double kThumbClosed[3] = {degrees(12.0), degrees(40.0), degrees(45.0)};
 
-/// The open hand's frame of the thumb in H: −z along its metacarpal, +y away from the palm's
-/// inside.
+/// Frame of the open hand's thumb in H: −z along its metacarpal, +y away from the palm's inside.
 Eigen::Matrix3d thumb_frame() {
   const Vec3 z = Vec3(0.62, 0.30, 0.72).normalized();
   const Vec3 outward(-0.70, 0.35, 0.60);

@@ -7,8 +7,8 @@ namespace {
 
 using Joints = std::array<Vec3, kJointCount>;
 
-/// Mean over [begin, end] of the joints that move linearly between frames. @pre begin < end, both
-/// within the track.
+/// Computes the mean over [begin, end] of joints that move linearly between frames. @pre begin <
+/// end, both within the track.
 void mean_joints(const HandTrack& track, double begin, double end, Joints& mean) {
   mean.fill(Vec3::Zero());
   const auto first = std::upper_bound(track.times.begin(), track.times.end(), begin) - 1;

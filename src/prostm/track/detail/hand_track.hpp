@@ -1,6 +1,6 @@
 #pragma once
-/// One tracked hand at the times of its frames, and what is between and behind them. Private to
-/// track.
+/// One tracked hand at the times of its frames, interpolated between and held after them. Private
+/// to track.
 
 #include <cstddef>
 #include <vector>
@@ -14,10 +14,10 @@ struct HandTrack {
   std::vector<Hand> hands;    ///< one per time; their velocities are not used
 };
 
-/// The hand at time t: positions and radii linear between frames i and i + 1, orientations by
-/// slerp, and velocities by (H1) of docs/design.md. The hand's last frame is held, with its
+/// Computes the hand at time t: positions and radii linear between frames i and i + 1, orientations
+/// by slerp, and velocities by (H1) of docs/design.md. The hand's last frame is held, with its
 /// velocity, when i is the last one.
-/// @pre times[i] <= t, and t <= times[i + 1] where there is one. Allocates nothing.
+/// @pre times[i] <= t, and t <= times[i + 1] if that exists. Allocates nothing.
 void sample_track(const HandTrack& track, std::size_t i, double t, const TrackSettings& settings,
                   Hand& out) noexcept;
 

@@ -11,8 +11,9 @@
 namespace prostm {
 namespace {
 
-/// Of a joint that moves [m]. In a Leap's recordings some joint moves by 50 µm and more between 99
-/// of 100 frames, by 1.3 mm in any half second; single precision rounds by less than 1 µm.
+/// Largest motion of a still joint [m]. In a Leap's recordings some joint moves by 50 µm or more
+/// between 99 of 100 frames, and by 1.3 mm in any half second; single precision rounds by less than
+/// 1 µm.
 constexpr double kLeastMotion = 5e-6;
 
 bool same_place(const std::array<Vec3, kJointCount>& a, const std::array<Vec3, kJointCount>& b) {
@@ -32,7 +33,7 @@ HandWatch::HandWatch(const TrackSettings& settings) : settings_(settings) {
   }
 }
 
-/// For each hand of a frame, when its joints came to where they are.
+/// Returns for each hand of a frame the time since which its joints have not moved.
 std::array<double, 2> HandWatch::still_since(const HandFrame& frame) noexcept {
   std::array<Posture*, 2> of_hand{};
   const auto taken = [&](const Posture& posture) {
@@ -45,8 +46,8 @@ std::array<double, 2> HandWatch::still_since(const HandFrame& frame) noexcept {
         });
     if (found != postures_.end()) of_hand[h] = &*found;
   }
-  // who moved takes the place of the newest posture left: that of a hand which stands still and is
-  // not in every frame is kept
+  // a hand that moved replaces the newest posture left; a still hand that is not in every frame
+  // keeps its posture
   for (std::size_t h = 0; h < frame.hands.size(); ++h) {
     if (of_hand[h] != nullptr) continue;
     const bool second =

@@ -1,5 +1,5 @@
 #pragma once
-/// Tells a live tracker's hands from what only looks like them.
+/// Removes false hands from a live tracker's frames.
 
 #include <array>
 #include <atomic>
@@ -9,22 +9,22 @@
 
 namespace prostm {
 
-/// Leaves hands out of a live tracker's frames: those below `least_confidence`, and those none of
-/// whose joints has moved for `freeze_time`, since no real tracker is without noise. Not for hands
-/// that may stand still in truth: recordings, the scripted hand, the page's. Has no clock: times
-/// are those of the frames.
+/// Removes hands below `least_confidence` from a live tracker's frames, and hands that have not
+/// moved any joint for `freeze_time`, since every real tracker has noise. Not for hands that may
+/// really stand still: recordings, the scripted hand, the page's. Has no clock: times are those of
+/// the frames.
 class HandWatch {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.
   explicit HandWatch(const TrackSettings& settings);
 
-  /// Takes out of `frame` what is not to be taken. One thread; frames in the order of their times.
+  /// Removes these hands from `frame`. One thread; frames in the order of their times.
   void check(HandFrame& frame) noexcept;
-  /// Adds what was left out so far, and says so. Any thread.
+  /// Adds the counts of removed hands, and a message about them. Any thread.
   void report(TrackerStatus& status) const;
 
  private:
-  /// Where the joints of a hand have been since a time [s], whatever id the tracker gives it.
+  /// Joint positions that a hand has kept since a time [s], whatever id the tracker gives it.
   struct Posture {
     double since;
     std::array<Vec3, kJointCount> position;
@@ -32,7 +32,7 @@ class HandWatch {
   std::array<double, 2> still_since(const HandFrame& frame) noexcept;
 
   const TrackSettings settings_;
-  std::array<Posture, 2> postures_;  // of the last two hands
+  std::array<Posture, 2> postures_;  // postures of the last two hands
   std::atomic<std::int64_t> unsure_{0}, frozen_{0};
   std::atomic<bool> freezes_{false};  // the newest frame had a hand that does not move
 };

@@ -14,45 +14,49 @@ namespace {
 void require_factor(const char* name, double value) {
   if (value > 0.0 && value <= 1.0) return;
   std::ostringstream sentence;
-  sentence << name << " = " << value << " must be above 0 and at most 1, where 1 is no filter";
+  sentence << name << " = " << value << " must be above 0 and at most 1, where 1 means no filter";
   throw std::invalid_argument(sentence.str());
 }
 
 template <class Settings, class Visitor>
 void list_track(Settings& s, Visitor& v) {
-  v.field({"smoothing_time", "s", 0.001, 0.5, "window of joints before they are differentiated"},
+  v.field({"smoothing_time", "s", 0.001, 0.5,
+           "window for smoothing joints before they are differentiated"},
           s.smoothing_time);
-  v.field({"max_speed", "m/s", 0.01, 100, "of a joint; faster ones are glitches"}, s.max_speed);
+  v.field({"max_speed", "m/s", 0.01, 100,
+           "joint velocities are clamped to this; faster ones are glitches"},
+          s.max_speed);
   v.field({"max_gap", "s", 0.001, 10, "a hand missing for longer is gone"}, s.max_gap);
   v.field({"least_confidence", "", 0, 1, "hands that the tracker trusts less are not taken"},
           s.least_confidence);
   v.field({"freeze_time", "s", 0.05, 60,
-           "a live hand none of whose joints moves for so long is "
+           "a live hand that has not moved any joint for this long is "
            "not taken"},
           s.freeze_time);
   v.field({"prediction", "s", 0, 0.2,
-           "hands are predicted so far beyond the age of their frame; "
-           "0: not at all"},
+           "hands are predicted this far beyond the age of their frame; "
+           "0: no prediction"},
           s.prediction);
-  v.field({"prediction_limit", "m", 0, 0.1, "no joint is predicted farther"}, s.prediction_limit);
+  v.field({"prediction_limit", "m", 0, 0.1, "no joint is predicted farther than this"},
+          s.prediction_limit);
   v.field({"filter_position", "", 0, 1,
            "share of a still joint's change that is taken, above 0; "
            "1: no filter"},
           s.filter_position);
-  v.field({"filter_velocity", "", 0, 1, "the same of velocities"}, s.filter_velocity);
+  v.field({"filter_velocity", "", 0, 1, "the same for velocities"}, s.filter_velocity);
   v.field({"filter_position_scale", "m", 1e-5, 1, "change at which the filter is half open"},
           s.filter_position_scale);
-  v.field({"filter_velocity_scale", "m/s", 1e-4, 100, "the same of velocities"},
+  v.field({"filter_velocity_scale", "m/s", 1e-4, 100, "the same for velocities"},
           s.filter_velocity_scale);
 }
 
 template <class Settings, class Visitor>
 void list_scripted(Settings& s, Visitor& v) {
   constexpr int kSeeds = std::numeric_limits<int>::max();
-  v.field({"height", "m", 0.10, 0.60, "of the hovering palm above the tracker"}, s.height);
-  v.field({"period", "s", 5, 3600, "of the cycle"}, s.period);
+  v.field({"height", "m", 0.10, 0.60, "height of the hovering palm above the tracker"}, s.height);
+  v.field({"period", "s", 5, 3600, "duration of a cycle"}, s.period);
   v.field({"jitter", "m", 0, 0.01, "standard deviation of a joint's noise"}, s.jitter);
-  v.field({"seed", "", 0, kSeeds, "of that noise"}, s.seed);
+  v.field({"seed", "", 0, kSeeds, "seed of that noise"}, s.seed);
   v.field({.name = "still", .help = "whether the hand hovers and does not move"}, s.still);
 }
 
@@ -96,7 +100,7 @@ void validate_recording(const HandRecording& recording) {
     if (frame.hands.size() == 2 && frame.hands[0].id == frame.hands[1].id &&
         frame.hands[0].side == frame.hands[1].side) {
       sentence << "frame " << i << " of the recording has two hands of id " << frame.hands[0].id
-               << " and the same side; a hand must be there once";
+               << " and the same side; ids must differ";
       throw std::invalid_argument(sentence.str());
     }
     last = frame.time;

@@ -9,14 +9,14 @@ namespace prostm {
 void validate(const TrackSettings& settings);
 void validate(const ScriptedHandSettings& settings);
 /// @throws std::invalid_argument for no frames, times that do not increase from 0, or two hands of
-/// one id and side in a frame.
+/// the same id and side in a frame.
 void validate_recording(const HandRecording& recording);
-/// Takes out hands below `least_confidence`. @throws std::invalid_argument with a sentence when
-/// there were hands and none is left.
+/// Removes hands below `least_confidence`. @throws std::invalid_argument with a sentence when there
+/// were hands and all are removed.
 void leave_out_unsure(const TrackSettings& settings, HandRecording& recording);
-void validate_step(double step);  ///< between samples [s]
+void validate_step(double step);  ///< time between samples [s]
 
-/// Hands of a recording before and after a seek are not the same: their ids differ by this.
+/// Hands of a recording before and after a seek are different hands: their ids differ by this.
 inline constexpr std::int64_t kIdsPerSeek = 1'000'000;
 
 }  // namespace prostm

@@ -35,13 +35,13 @@ constexpr milliseconds kFirstRetry{50}, kLastRetry{1000}, kConnectTime{1000}, kS
 constexpr std::size_t kMaxMessage = std::size_t{256} << 10;  // a frame of two hands has 12 kB
 constexpr std::size_t kFramesKept = 128;
 
-// The bridge compares these letter by letter, and has room for 32 of them.
+// The bridge compares these letter by letter and has room for 32 letters.
 constexpr std::array<std::string_view, 3> kRequests = {
     R"({"background":true})", R"({"focused":true})", R"({"optimizeHMD":false})"};
 
 enum class Link : std::uint8_t { Connecting, Absent, Foreign, Lost, Connected };
 
-/// The places that a host's name stands for.
+/// Resolves a host's name.
 std::vector<tcp::endpoint> endpoints_of(const LeapAddress& address, asio::io_context& io) {
   error_code error;
   const asio::ip::address numeric = asio::ip::make_address(address.host, error);
@@ -50,7 +50,7 @@ std::vector<tcp::endpoint> endpoints_of(const LeapAddress& address, asio::io_con
   const auto found = resolver.resolve(address.host, std::to_string(address.port), error);
   if (error) {
     throw InputError(
-        fmt::format("leap://{}:{}: no host is known by the name {}; the service is "
+        fmt::format("leap://{}:{}: the host {} is unknown; the service is "
                     "usually at leap://127.0.0.1:6437",
                     address.host, address.port, address.host));
   }
@@ -107,7 +107,7 @@ class LeapTracker final : public LiveTracker {
       case Link::Absent:
         return "nothing answers at " + name_ + "; is the tracking service or its bridge running?";
       case Link::Foreign:
-        return "what answers at " + name_ + " does not serve /v6.json";
+        return "the server at " + name_ + " does not serve /v6.json";
       case Link::Lost:
         return "the connection to " + name_ + " was lost; trying again";
       case Link::Connected:
@@ -202,8 +202,8 @@ class LeapTracker final : public LiveTracker {
   asio::io_context io_{1};
   const std::vector<tcp::endpoint> endpoints_;
 
-  // of the tracker's thread alone
-  std::optional<websocket::stream<beast::tcp_stream, false>> socket_;  // nothing deflated
+  // for the tracker's thread alone
+  std::optional<websocket::stream<beast::tcp_stream, false>> socket_;  // no compression
   asio::steady_timer retry_;
   beast::flat_buffer buffer_;
   milliseconds wait_ = kFirstRetry;
@@ -214,10 +214,10 @@ class LeapTracker final : public LiveTracker {
   SpscRing<HandFrame> ring_{kFramesKept};
   std::atomic<Link> link_{Link::Connecting};
   std::atomic<std::int64_t> frames_{0}, dropped_{0}, repeated_{0}, connections_{0};
-  mutable std::mutex problem_mutex_;  // neither who plans nor who emits ever waits for it
+  mutable std::mutex problem_mutex_;  // planner and emitter never wait for it
   std::string problem_;
 
-  std::thread thread_;  // the last to be made: it uses all of the above
+  std::thread thread_;  // constructed last: it uses all of the above
 };
 
 }  // namespace
@@ -240,7 +240,7 @@ LeapAddress leap_address(const std::string& text) {
   const std::size_t host_end = std::min(bracketed ? end + 1 : end, rest.size());
   if (address.host.empty()) throw wrong("names no host");
   if (address.host.find_first_of("/?#@ \t%\\") != address.host.npos)
-    throw wrong("has a host that cannot be");
+    throw wrong("has an invalid host");
   if (host_end == rest.size()) return address;
   const char* first = rest.data() + host_end + 1;
   const char* last = rest.data() + rest.size();

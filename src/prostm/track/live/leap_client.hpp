@@ -14,7 +14,7 @@ struct LeapAddress {
   std::uint16_t port = 6437;
 };
 
-/// Reads `leap://HOST:PORT`; without `:PORT` it is 6437, IPv6 addresses stand in brackets.
+/// Reads `leap://HOST:PORT`; without `:PORT` the port is 6437; IPv6 addresses stand in brackets.
 /// @throws InputError with a sentence.
 LeapAddress leap_address(const std::string& text);
 
@@ -23,7 +23,7 @@ LeapAddress leap_address(const std::string& text);
 /// frames. When nothing answers, the connection is lost, or nothing came for 2 s, it tries again,
 /// first after 50 ms and then after up to 1 s. Frames that leap_message() refuses are dropped and
 /// counted, and so are frames with a time that was seen already (StampClock).
-/// @throws InputError when `address.host` is no address and the name of none.
+/// @throws InputError if `address.host` is neither an address nor a known host name.
 std::unique_ptr<LiveTracker> make_leap_tracker(const LeapAddress& address);
 
 }  // namespace prostm

@@ -20,8 +20,8 @@ constexpr int kFingers = 5;               // thumb, index, middle, ring, little
 constexpr int kFirstJoint[kFingers] = {kThumbMetacarpal, kIndexMetacarpal, kMiddleMetacarpal,
                                        kRingMetacarpal, kLittleMetacarpal};
 
-// The Leap skeleton is one template, scaled as a whole, with a rigid palm. In the palm's frame of a
-// right hand (origin the palm position, x = y × z, y against the palm's normal, z against its
+// The Leap skeleton is a single template, scaled as a whole, with a rigid palm. In the palm's frame
+// of a right hand (origin the palm position, x = y × z, y against the palm's normal, z against its
 // direction), in units of the distance between the index and the little finger's knuckles, measured
 // on recordings that have all of it:
 constexpr double kCarps[4][3] = {{-0.1976046, 0.2015095, 0.7201562},
@@ -40,8 +40,8 @@ constexpr double kPalmRadius = 0.2512;  // in the same unit
 constexpr double kWristOfPalm = 1.25;   // wrist radius over palm radius
 constexpr double kRadiusOfArmWidth = 0.31;
 constexpr double kTipOfFinger = 0.8;  // radius at the tip over radius of the finger
-constexpr double kMinWidth = 0.008,
-                 kMaxWidth = 0.040;  // of a finger [m]; other values are not in millimetres
+// widths of a finger [m]; recorded values outside are not in millimetres
+constexpr double kMinWidth = 0.008, kMaxWidth = 0.040;
 
 /// Joints of one finger as recorded [m].
 struct Finger {
@@ -53,7 +53,7 @@ struct Finger {
 
 /// The palm's frame in T.
 struct Palm {
-  Eigen::Matrix3d R_TP;  // of a right-handed frame for both hands
+  Eigen::Matrix3d R_TP;  // right-handed for both hands
   Vec3 p_TP;             // [m]
   double mirror;         // x of the template: 1 for right, −1 for left hands
   double span;           // index to little finger's knuckle [m]
@@ -75,7 +75,7 @@ Vec3 unit_vector(const JsonNode& node, const char* key) {
   return x.normalized();
 }
 
-/// Rotation with the given z, and a y as near as can be to the given unit one.
+/// Returns the rotation with the given z and a y as near as possible to the given unit vector.
 Eigen::Matrix3d frame_from(const JsonNode& node, const Vec3& y, const Vec3& z) {
   Eigen::Matrix3d R;
   const double length = z.norm();
@@ -87,7 +87,7 @@ Eigen::Matrix3d frame_from(const JsonNode& node, const Vec3& y, const Vec3& z) {
   return R;
 }
 
-/// A recorded basis: rows x, y, z. Left hands come with x to either side; y and z decide.
+/// A recorded basis: rows x, y, z. In left hands x may point to either side; y and z decide.
 Eigen::Matrix3d recorded_basis(const JsonNode& basis) {
   if (basis.array_size() != 3)
     basis.fail(fmt::format("has {} axes; it must have 3", basis.array_size()));
@@ -120,7 +120,7 @@ Finger read_finger(const JsonNode& node) {
   return finger;
 }
 
-/// The five fingers of a hand among the frame's pointables.
+/// Finds the five fingers of a hand among the frame's pointables.
 std::array<Finger, kFingers> read_fingers(const JsonNode& hand, std::int64_t id,
                                           const JsonNode& pointables) {
   std::array<std::optional<Finger>, kFingers> found;
@@ -153,8 +153,8 @@ Palm read_palm(const JsonNode& hand, Side side, const std::array<Finger, kFinger
   return palm;
 }
 
-/// "type" where it is recorded; else the side on which the index finger is, seen from the back of
-/// the hand.
+/// Reads "type" if it is recorded; else decides by the side on which the index finger is, seen from
+/// the back of the hand.
 Side read_side(const JsonNode& hand, const std::array<Finger, kFingers>& fingers) {
   if (hand.has("type")) {
     const JsonNode type = hand.at("type", "");
@@ -167,7 +167,7 @@ Side read_side(const JsonNode& hand, const std::array<Finger, kFingers>& fingers
   return (fingers[1].mcp - fingers[4].mcp).dot(thumb_side) > 0.0 ? Side::Right : Side::Left;
 }
 
-/// R turned by the smallest rotation that brings its −z axis to `bone`.
+/// Returns R turned by the smallest rotation that brings its −z axis to `bone`.
 Eigen::Matrix3d transported(const Eigen::Matrix3d& R, const Vec3& bone) {
   return Quat::FromTwoVectors(-R.col(2), bone).toRotationMatrix() * R;
 }
@@ -180,8 +180,8 @@ Eigen::Matrix3d template_frame(const JsonNode& node, const Palm& palm, std::size
   return palm.R_TP * frame_from(node, y, z);
 }
 
-/// Positions and orientations of a finger's joints. Orientations are recorded, or carried from bone
-/// to bone.
+/// Sets positions and orientations of a finger's joints. Orientations are recorded, or carried from
+/// bone to bone.
 void set_finger(const JsonNode& node, const Palm& palm, const std::array<Finger, kFingers>& fingers,
                 std::size_t f, Hand& hand) {
   const Finger& finger = fingers[f];
@@ -229,7 +229,7 @@ void set_palm_and_wrist(const JsonNode& node, const Palm& palm, Hand& hand) {
       arm_width > 0.0 ? kRadiusOfArmWidth * arm_width : kWristOfPalm * hand.radius[kPalm];
 }
 
-/// A hand of a frame whose fingers are among `pointables`.
+/// Reads a hand whose fingers are among `pointables`.
 Hand leap_hand(const JsonNode& node, const JsonNode& pointables) {
   Hand hand;
   hand.id = node.at("id", "a whole number").integer(0, std::numeric_limits<int>::max());

@@ -12,20 +12,21 @@ namespace prostm {
 
 class JsonNode;
 
-/// The hands of a frame, in T; `time` is the tracker's own [s], velocities are 0. Left hands may
-/// come with left-handed bases, as the original service sends them, or with right-handed ones.
-/// @throws InputError that names the member: one that is missing or not a number, a place farther
-/// than 1 m from the tracker, radii or bone lengths that no hand has, more than 2 hands, a hand
-/// without its five fingers.
+/// Reads the hands of a frame, in T; `time` is the tracker's own [s], velocities are 0. Left hands
+/// may come with left-handed bases, as the original service sends them, or with right-handed ones.
+/// @throws InputError that names the member: it is missing or not a number, a position is farther
+/// than 1 m from the tracker, no hand has such radii or bone lengths, there are more than 2 hands,
+/// or a hand lacks one of its five fingers.
 HandFrame leap_frame(const JsonNode& node);
 
 enum class LeapMessage : std::uint8_t {
-  Frame,   ///< hands, or none in sight
+  Frame,   ///< a frame, with or without hands
   Other,   ///< the greeting with the version, or an event of the device
-  Refused  ///< not JSON, or a frame that leap_frame() refuses, or two hands of one id and side
+  Refused  ///< not JSON, or a frame that leap_frame() refuses, or two hands of the same id and side
 };
 
-/// Reads one message. Sets `frame` when it is one, `problem` to a sentence when it is refused.
+/// Reads one message. Sets `frame` if the message is a frame, and `problem` to a sentence if it is
+/// refused.
 LeapMessage leap_message(std::string_view text, HandFrame& frame, std::string& problem);
 
 }  // namespace prostm

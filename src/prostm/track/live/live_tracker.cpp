@@ -10,8 +10,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kDrift = 1e-3;        // of one clock against the other, at most
-constexpr double kLongestDelay = 0.1;  // a way longer than this is another setting of a clock [s]
+constexpr double kDrift = 1e-3;        // largest drift between two clocks
+constexpr double kLongestDelay = 0.1;  // a longer delay means that a clock was set anew [s]
 
 class LiveHand final : public HandSource {
  public:

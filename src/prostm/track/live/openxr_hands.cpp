@@ -1,6 +1,6 @@
 #include "prostm/track/live/openxr_hands.hpp"
 
-// what openxr_platform.h wants to see first
+// openxr_platform.h needs these first
 #include <ctime>
 #define XR_USE_TIMESPEC
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ void silence_loader() {
   ::setenv("XR_LOADER_DEBUG", "none", 0);
 }
 
-/// A failure of a call, as a sentence.
+/// Describes a failed call in a sentence.
 InputError failure(const char* call, XrResult result) {
   return InputError(
       fmt::format("the OpenXR runtime failed in {} (result {})", call, static_cast<int>(result)));
@@ -71,8 +71,8 @@ void require_extensions() {
       return std::strcmp(p.extensionName, wanted) == 0;
     });
     if (!there) {
-      throw InputError(
-          fmt::format("the OpenXR runtime lacks {}, which hands without a display need", wanted));
+      throw InputError(fmt::format(
+          "the OpenXR runtime lacks {}, which tracking hands without a display needs", wanted));
     }
   }
 }
@@ -94,7 +94,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Takes in what happened; false when the session is over.
+  /// Handles pending events; false when the session is over.
   bool poll() {
     XrEventDataBuffer event{};
     event.type = XR_TYPE_EVENT_DATA_BUFFER;
@@ -114,7 +114,7 @@ class Session {
 
   bool running() const { return running_; }
 
-  /// Both hands now; false when the session is lost. `refused` counts hands that cannot be.
+  /// Locates both hands now; false when the session is lost. `refused` counts impossible hands.
   bool locate(HandFrame& frame, std::int64_t& refused) {
     frame.hands.clear();
     frame.time = steady_now();
@@ -265,7 +265,7 @@ class Session {
     });
   }
 
-  /// Of the joints, that the runtime sees now; others are inferred, or where they were last.
+  /// Share of the joints that the runtime sees now; others are inferred, or as last seen.
   static double tracked_share(const std::array<XrHandJointLocationEXT, kJointCount>& joints) {
     constexpr XrSpaceLocationFlags kTracked =
         XR_SPACE_LOCATION_POSITION_TRACKED_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
@@ -276,7 +276,7 @@ class Session {
     return static_cast<double>(tracked) / static_cast<double>(joints.size());
   }
 
-  /// False for joints that no hand has.
+  /// Reads a hand; false for joints that no hand has.
   static bool take(const std::array<XrHandJointLocationEXT, kJointCount>& joints, Hand& hand) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const XrVector3f& p = joints[j].pose.position;
@@ -344,7 +344,7 @@ class OpenXrTracker final : public LiveTracker {
       if (session_ && !turn()) {
         session_.reset();
         connected_.store(false, std::memory_order_relaxed);
-        say("the OpenXR session is over; asking for another one");
+        say("the OpenXR session has ended; requesting another one");
         wait = kPeriodsToRetry;
       } else if (!session_ && --wait <= 0) {
         open();
@@ -356,7 +356,7 @@ class OpenXrTracker final : public LiveTracker {
     session_.reset();
   }
 
-  /// One look at the session; false when it is over.
+  /// Handles events and takes in a frame; false when the session is over.
   bool turn() {
     if (!session_->poll()) return false;
     connected_.store(session_->running(), std::memory_order_relaxed);
@@ -383,15 +383,15 @@ class OpenXrTracker final : public LiveTracker {
     problem_ = problem;
   }
 
-  std::unique_ptr<Session> session_;  // of the tracker's thread, once that runs
+  std::unique_ptr<Session> session_;  // for the tracker's thread alone, once that runs
   HandFrame frame_;
   SpscRing<HandFrame> ring_{kFramesKept};
   std::atomic<bool> stop_{false}, connected_{false};
   std::atomic<std::int64_t> frames_{0}, dropped_{0}, reconnects_{0};
-  mutable std::mutex problem_mutex_;  // neither who plans nor who emits ever waits for it
+  mutable std::mutex problem_mutex_;  // planner and emitter never wait for it
   std::string problem_;
 
-  std::thread thread_;  // the last to be made: it uses all of the above
+  std::thread thread_;  // constructed last: it uses all of the above
 };
 
 }  // namespace

@@ -11,13 +11,13 @@
 namespace prostm {
 namespace {
 
-constexpr double kReach = 0.5;        // of the palm from the array's centre [m]
-constexpr double kSilence = 0.5;      // after which a hand lets go [s]
-constexpr double kFollowRate = 40.0;  // ω of the spring [1/s]
-constexpr double kLongestStep = 0.1;  // after a pause the spring goes on from where it was [s]
-constexpr std::int64_t kFirstId = 1 << 30;  // no tracker counts so far
+constexpr double kReach = 0.5;              // largest |coordinate| of the palm in D [m]
+constexpr double kSilence = 0.5;            // a hand not placed for this long is released [s]
+constexpr double kFollowRate = 40.0;        // ω of the spring [1/s]
+constexpr double kLongestStep = 0.1;        // longest step of the spring, e.g. after a pause [s]
+constexpr std::int64_t kFirstId = 1 << 30;  // above any tracker's ids
 
-/// The difference of two angles, the short way round.
+/// Returns a difference of two angles, the short way round.
 double short_way(double angle) {
   return std::remainder(angle, 2.0 * kPi);
 }
@@ -134,7 +134,7 @@ void PageHand::follow(double dt) noexcept {
   }
 }
 
-/// The skeleton `offset` [s] from now at the rates of now, in D.
+/// Poses the skeleton `offset` [s] from now at the present rates, in D.
 void PageHand::pose_at(double offset, Hand& out) const noexcept {
   std::array<double, kFreedom> x;
   for (std::size_t i = 0; i < kFreedom; ++i) x[i] = motion_.value[i] + offset * motion_.rate[i];
@@ -153,7 +153,7 @@ HandSwitch::HandSwitch(std::unique_ptr<HandSource> base, std::shared_ptr<PageHan
     : base_(std::move(base)), page_(std::move(page)), X_TD_(X_DT.inverse()) {}
 
 void HandSwitch::sample(double time, HandFrame& out) {
-  // also while the page holds its hand: time goes on for the other ones
+  // also while the page holds its hand, since time goes on for the other hands
   base_->sample(time, out);
   Hand hand;
   double age = 0.0;

@@ -10,7 +10,7 @@
 
 namespace prostm {
 
-/// Where a page wants the hand. With all angles 0 the palm is down and the fingers point along +y
+/// The pose that a page requests. With all angles 0 the palm is down and the fingers point along +y
 /// of D; yaw turns about z of D (positive to the left, seen from above), then pitch about the
 /// hand's x (positive: fingers up), then roll about its fingers (positive: the right side goes
 /// down).
@@ -21,24 +21,24 @@ struct PagePose {
   Side side = Side::Right;
 };
 
-/// The page's hand. It follows the poses that are placed as a critically damped spring does, (H19)
-/// of docs/design.md, so that 60 messages a second of uneven timing make a fluid motion with a
-/// true velocity. A hand that is not placed for 0.5 s of run time lets go.
+/// The page's hand. It follows the placed poses like a critically damped spring, (H19) of
+/// docs/design.md, so that 60 unevenly timed messages a second make a smooth motion with a true
+/// velocity. A hand that is not placed for 0.5 s of run time is released.
 class PageHand {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.
   explicit PageHand(const TrackSettings& settings);
 
-  /// The newest pose wins. False, and nothing changes, when a number is not finite or the palm is
-  /// outside its bounds; angles and closure are clamped (yaw and roll ±180°, pitch ±90°). One
-  /// thread, the same for place() and release(); lock-free.
+  /// Sets the requested pose; the newest wins. Returns false and changes nothing if a number is not
+  /// finite or the palm is outside its bounds; angles and closure are clamped (yaw and roll ±180°,
+  /// pitch ±90°). One thread, the same for place() and release(); lock-free.
   bool place(const PagePose& pose) noexcept;
-  /// Lets go.
+  /// Releases the hand.
   void release() noexcept;
 
-  /// The hand at run time `time` [s], in D; false when no page holds it. `age` gets how long before
-  /// `time` the newest pose was first seen here [s]. Every time a page takes the hand it has a new
-  /// id. Times must not decrease. One other thread; allocates nothing.
+  /// Sets `out` to the hand at run time `time` [s], in D; false if no page holds it. Sets `age` to
+  /// `time` less the time when the newest pose was first seen here [s]. The hand gets a new id each
+  /// time a page takes it. Times must not decrease. One other thread; allocates nothing.
   bool sample(double time, Hand& out, double& age) noexcept;
 
  private:
@@ -63,10 +63,10 @@ class PageHand {
   std::int64_t id_;
 };
 
-/// The page's hand while a page holds it, else the hands of `base`. Either way one thread samples.
+/// The page's hand while a page holds it, else the hands of `base`. A single thread samples both.
 class HandSwitch final : public HandSource {
  public:
-  /// @param X_DT pose of the tracker of `base`: this source answers in T, as all do.
+  /// @param X_DT pose of the tracker of `base`: like every source, the switch gives hands in T.
   HandSwitch(std::unique_ptr<HandSource> base, std::shared_ptr<PageHand> page, const Pose& X_DT);
 
   void sample(double time, HandFrame& out) override;
@@ -78,7 +78,7 @@ class HandSwitch final : public HandSource {
 
   /// Whether the last sample() was the page's. Any thread.
   bool page_in_charge() const { return in_charge_.load(std::memory_order_relaxed); }
-  /// Another pose of the tracker, from the next sample() on. The sampling thread only.
+  /// Sets another pose of the tracker, from the next sample() on. The sampling thread only.
   void set_tracker_pose(const Pose& X_DT) { X_TD_ = X_DT.inverse(); }
 
  private:
@@ -88,7 +88,7 @@ class HandSwitch final : public HandSource {
   std::atomic<bool> in_charge_{false};
 };
 
-/// No hand, for ever: what is behind the page's hand when there is no other (`--hand page`).
+/// A source that never has a hand; the fallback behind the page's hand (`--hand page`).
 std::unique_ptr<HandSource> make_absent_hand();
 
 }  // namespace prostm
