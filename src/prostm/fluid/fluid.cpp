@@ -20,10 +20,10 @@ using fluid::Index;
 namespace {
 
 constexpr int kPlanesPerTask = 4;
-constexpr float kAbsurd = 1e6F;  // [m/s]; a state with such a value is not one
+constexpr float kAbsurd = 1e6F;  // [m/s]; a state with a larger value is unusable
 
-/// The bits of the largest |x| in [begin, end), without a floating-point comparison: NaN would trap
-/// there, and has the largest bits of all.
+/// Returns the bits of the largest |x| in [begin, end), without a floating-point comparison: NaN
+/// would trap there, and has the largest bits of all.
 std::int32_t largest_bits(const float* begin, const float* end) {
   std::int32_t largest = 0;
   for (const float* x = begin; x != end; ++x) {
@@ -41,7 +41,7 @@ GridShape grid_shape(const FluidSettings& settings) {
   return grid;
 }
 
-/// The inflow with its jets at `factor` times their speed.
+/// Returns the inflow with its jets at `factor` times their speed.
 SmokeInflow blown(SmokeInflow inflow, double factor) {
   for (SmokeJet& jet : inflow.jets) jet.speed *= factor;
   return inflow;
@@ -145,12 +145,12 @@ void Fluid::State::advect() {
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) fluid::centre_velocity(padded, velocity, scale, centre, k);
   });
-  // where the particles come from
+  // displacements of the particles
   const float* const from[3] = {centre[0].data(), centre[1].data(), centre[2].data()};
   float* const moved[3] = {trace[0].data(), trace[1].data(), trace[2].data()};
   over_planes([&](int k0, int k1) { kernels.trace(padded, from, moved, k0, k1); });
   surroundings.set_smoke_halo(smoke);
-  // what they bring
+  // the values that they bring
   const float* const displacement[3] = {trace[0].data(), trace[1].data(), trace[2].data()};
   over_planes([&](int k0, int k1) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -296,8 +296,8 @@ std::int32_t Fluid::State::largest_over_planes() const {
   return largest;
 }
 
-/// Whether the state is one: looks for what is not a number, which would trap in later comparisons,
-/// and for what is absurd.
+/// Whether the state is usable: has no NaN, which would trap in later comparisons, and no absurd
+/// speed.
 bool Fluid::State::check() {
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
@@ -314,7 +314,7 @@ bool Fluid::State::check() {
   return true;
 }
 
-/// Copies what others read. False for pressures that are none.
+/// Copies the results for readers; false if a pressure is NaN or absurd.
 bool Fluid::State::publish() {
   const int n = padded.n;
   over_planes([&](int k0, int k1) {
@@ -335,7 +335,7 @@ bool Fluid::State::publish() {
   return largest_over_planes() <= std::bit_cast<std::int32_t>(static_cast<float>(absurd));
 }
 
-/// The divergence that is left.
+/// Measures the remaining divergence.
 void Fluid::State::measure() {
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {

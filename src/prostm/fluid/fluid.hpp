@@ -19,24 +19,25 @@ namespace prostm {
 /// A round jet in the floor of the box: inflow of smoke with a smooth radial profile.
 struct SmokeJet {
   Vec2 centre;          ///< in D [m]
-  double radius = 0.0;  ///< of the profile [m]
-  double speed = 0.0;   ///< on the axis [m/s]
+  double radius = 0.0;  ///< radius of the profile [m]
+  double speed = 0.0;   ///< speed on the axis [m/s]
 };
 
-/// What comes in through the floor.
+/// Inflow through the floor.
 struct SmokeInflow {
   std::vector<SmokeJet> jets;
-  double vent_speed = 0.0;  ///< of clean air let in through the whole floor, so that jets side by
-                            ///< side need not draw each other in [m/s]
+  /// speed of clean air let in through the whole floor, so that jets side by side need not draw
+  /// each other in [m/s]
+  double vent_speed = 0.0;
 };
 
-/// How the pressure is solved for: warm-started V-cycles, or the paper's sweeps.
+/// Pressure solver: warm-started V-cycles, or the paper's sweeps.
 enum class PressureMethod : std::uint8_t { Multigrid, Jacobi };
 template <>
 inline constexpr std::array<std::string_view, 2> kNames<PressureMethod> = {"multigrid", "jacobi"};
 
 struct FluidSettings {
-  int cells = 64;       ///< along each edge of the box; a multiple of 16, 32..128
+  int cells = 64;       ///< cells along each edge of the box; a multiple of 16, 32..128
   double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred
   PressureMethod solver = PressureMethod::Multigrid;
   int cycles = 2;            ///< V-cycles a step
@@ -45,7 +46,7 @@ struct FluidSettings {
   double jet_speed = 1.0;    ///< factor on the speed of the scene's jets, 0 to 3
   double buoyancy = 0.0;     ///< upward acceleration of undiluted smoke [m/s²]
   double vorticity = 0.0;    ///< ε of vorticity confinement [1/s]; 0 = off
-  double density = 1.2;      ///< of air ρ [kg/m³]
+  double density = 1.2;      ///< density ρ of the air [kg/m³]
   double dissipation = 0.0;  ///< decay rate of the smoke's density [1/s]
 
   void visit(SettingsReader& v) const;
@@ -54,14 +55,14 @@ struct FluidSettings {
 };
 
 struct FluidStats {
-  double divergence_rms =
-      0;  ///< relative: rms divergence left over rms divergence before projection
-  double divergence_max =
-      0;  ///< largest |∇·u| left times dt (dimensionless, cells per step per cell)
+  /// rms divergence left over rms divergence before projection
+  double divergence_rms = 0;
+  /// largest |∇·u| left times dt (dimensionless, cells per step per cell)
+  double divergence_max = 0;
   double max_speed = 0;  ///< [cells per step]
   int solid_cells = 0;
-  bool reset =
-      false;  ///< a non-finite (or absurd, above 10⁶ m/s) value came up: the state was set to rest
+  /// a non-finite (or absurd, above 10⁶ m/s) value came up: the state was set to rest
+  bool reset = false;
   double advect = 0, hand = 0, solve = 0, total = 0;  ///< [s]
 };
 
@@ -81,11 +82,11 @@ class Fluid {
   /// finite, resets like a non-finite state.
   FluidStats step(double dt, const HandRaster& raster) noexcept;
 
-  /// The same step in three parts, so that the hands may come late and their pressure is there
-  /// early: to the bit what step() does, which calls them one after the other. prepare() does what
-  /// needs no hand (advection and forces); meet() places the hands and solves for the pressure,
-  /// after which pressure(), fluid_cells() and smoke() are of this step; settle() projects the
-  /// velocity, leaves the state for the next step and measures. @pre called in this order.
+  /// The same step in three parts, so that the hands may come late and their pressure is available
+  /// early. step() calls the three in turn, so results agree to the bit. prepare() does what needs
+  /// no hand (advection and forces); meet() places the hands and solves for the pressure, after
+  /// which pressure(), fluid_cells() and smoke() are of this step; settle() projects the velocity,
+  /// leaves the state for the next step and measures. @pre called in this order.
   void prepare(double dt) noexcept;
   void meet(const HandRaster& raster) noexcept;
   FluidStats settle() noexcept;
@@ -100,8 +101,8 @@ class Fluid {
   /// Velocity at a cell centre [m/s].
   Vec3 velocity(int i, int j, int k) const;
 
-  /// Takes over velocity, smoke and pressure of another fluid, to compare solvers from the same
-  /// state. @pre both are between steps.
+  /// Copies velocity, smoke and pressure of another fluid, to compare solvers from the same state.
+  /// @pre both are between steps.
   /// @throws std::invalid_argument if the grids differ.
   void copy_state(const Fluid& other);
 

@@ -9,9 +9,10 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"offset_cells", "cells", 0.5, 4, "outside the skin, where the pressure is read"},
-          s.offset_cells);
-  v.field({"time_constant", "s", 0, 10, "of a smoothing of the pressure over time; 0: none"},
+  v.field(
+      {"offset_cells", "cells", 0.5, 4, "distance outside the skin at which the pressure is read"},
+      s.offset_cells);
+  v.field({"time_constant", "s", 0, 10, "time constant of smoothing the pressure; 0: no smoothing"},
           s.time_constant);
 }
 
@@ -42,7 +43,7 @@ void FluidPressure::take(std::span<const float> pressure, std::span<const std::u
   const std::uint8_t* known = was_fluid_.data();
   float* smoothed = smoothed_.data();
   for (std::size_t c = 0, count = smoothed_.size(); c < count; ++c) {
-    // a cell that has just become fluid has no history
+    // a cell that was not fluid before has no history
     const float weight = known[c] != 0 ? share : 1.0F;
     smoothed[c] += weight * (now[c] - smoothed[c]);
   }

@@ -11,10 +11,11 @@
 namespace prostm {
 
 struct FluidPressureSettings {
-  double offset_cells =
-      1.0;  ///< the pressure is read this many cells outside the skin, towards the array
-  double time_constant =
-      0.0;  ///< of an exponential smoothing of the fluid's pressure on the skin [s]; 0 = none
+  /// the pressure is read this many cells outside the skin, towards the array
+  double offset_cells = 1.0;
+  /// time constant of exponential smoothing of the fluid's pressure on the skin [s]; 0 = no
+  /// smoothing
+  double time_constant = 0.0;
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
@@ -22,18 +23,18 @@ struct FluidPressureSettings {
 };
 
 /// Reads the pressure of the air `offset_cells` outside the skin, from fluid cells alone, and
-/// smooths it over time where the settings ask for it.
+/// smooths it over time if the settings ask for it.
 class FluidPressure final : public PressureSource {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
   FluidPressure(const FluidPressureSettings& settings, const GridShape& grid);
 
-  /// Takes the air as it is now, as Fluid::pressure() and Fluid::fluid_cells() give it; both are
-  /// referred to until the next call. @pre cell_count() values each. @param dt since the last call,
-  /// for the smoothing [s].
+  /// Takes the present state of the air from Fluid::pressure() and Fluid::fluid_cells(); both are
+  /// referred to until the next call. @pre cell_count() values each. @param dt time since the last
+  /// call, for the smoothing [s].
   void take(std::span<const float> pressure, std::span<const std::uint8_t> fluid_cells, double dt);
 
-  /// 0 where there is no fluid near. @pre take() was called.
+  /// Gives 0 where no fluid is near. @pre take() was called.
   void sample(std::span<const Vec3> p_D, const Vec3& outside,
               std::span<double> out) const noexcept override;
 
@@ -45,7 +46,7 @@ class FluidPressure final : public PressureSource {
   std::span<const float> pressure_;      // one value a cell, the fluid's or smoothed over time
   std::span<const std::uint8_t> fluid_;  // cells whose pressure is known
   std::vector<float> smoothed_;          // empty without smoothing, as is was_fluid_
-  std::vector<std::uint8_t> was_fluid_;  // when the fluid was last looked at
+  std::vector<std::uint8_t> was_fluid_;  // cells that were fluid at the last take()
 };
 
 }  // namespace prostm

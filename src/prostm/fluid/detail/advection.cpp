@@ -90,7 +90,7 @@ void extend_plane(const PaddedGrid& grid, float* field, int k0, int k1) {
     std::copy_n(field + grid.index(-1, 0, k), n + 2, field + grid.index(-1, -1, k));
     std::copy_n(field + grid.index(-1, n - 1, k), n + 2, field + grid.index(-1, n, k));
   }
-  // the outermost planes belong to whoever owns their neighbours
+  // the outermost planes belong to the owner of their neighbours
   if (k0 == 0)
     std::copy_n(field + grid.index(-1, -1, 0), grid.plane(), field + grid.index(-1, -1, -1));
   if (k1 == n)

@@ -6,23 +6,23 @@
 
 namespace prostm::fluid {
 
-/// Where a field's values sit, in the indices of its own array: `count` of them per axis, and the
-/// range that a backtraced position is clamped to.
+/// Extent of a field in the indices of its own array: `count` values per axis, and the range to
+/// which a backtraced position is clamped.
 struct Placement {
-  int axis = -1;  ///< of the face-centred component; −1 for cell centres
+  int axis = -1;  ///< axis of the face-centred component; −1 for cell centres
   int count[3] = {0, 0, 0};
   float lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
 };
 
 Placement face_placement(int n, int axis);
-/// Cell centres whose halo holds the values outside: smoke.
+/// For cell centres whose halo holds the values outside: smoke.
 Placement centre_placement(int n);
 
 /// Velocities and displacements here are in cells per step; planes [k0, k1) are written.
 struct AdvectionKernels {
-  /// Displacement of the particle that arrives at each cell centre, by the midpoint rule (F2): the
-  /// velocity half a step back along its own, trilinear between the cell-centred velocities. Fills
-  /// the halo of its own rows in x and y.
+  /// Computes the displacement of the particle that arrives at each cell centre, by the midpoint
+  /// rule (F2): the velocity half a step back along the cell's own, trilinear between the
+  /// cell-centred velocities. Fills the halo of its own rows in x and y.
   void (*trace)(const PaddedGrid& grid, const float* const velocity[3],
                 float* const displacement[3], int k0, int k1);
   /// out(x) = in(x − d), trilinear (F3); d at a face is the mean of the two cells beside it.
@@ -35,8 +35,8 @@ const AdvectionKernels& scalar_advection_kernels();
 /// fallback.
 const AdvectionKernels& fast_advection_kernels();
 
-/// Trilinear value at (x, y, z), in the indices of the array. @pre lower ≤ position ≤ upper of the
-/// field's placement.
+/// Returns the trilinear value at (x, y, z), in the indices of the array. @pre lower ≤ position ≤
+/// upper of the field's placement.
 float trilinear(const PaddedGrid& grid, const float* field, float x, float y, float z);
 
 /// Copies the first and last value of each row, and the first and last row of planes [k0, k1), into

@@ -21,7 +21,7 @@ using V = hn::Vec<D>;
 
 constexpr int kTileRows = 4;
 constexpr int kMaxLanes = 16;
-constexpr int kMaxTaps = 96;  // more shifted rows than this cost more than lane by lane
+constexpr int kMaxTaps = 96;  // with more shifted rows, lane by lane is cheaper
 
 /// Shifts −d of a tile's lanes, clamped so that lane + shift stays in the field's range.
 struct Tile {
@@ -34,14 +34,14 @@ struct Tile {
   }
 };
 
-/// Stores the clamped shifts of one row of the tile along `axis`.
+/// Returns the shifts clamped so that position + shift is from `lower` to `upper`.
 HWY_INLINE V clamp_shift(V shift, V position, float lower, float upper) {
   const D d;
   const V low = hn::Sub(hn::Set(d, lower), position), high = hn::Sub(hn::Set(d, upper), position);
   return hn::Min(hn::Max(shift, low), high);
 }
 
-/// Range of whole shifts that the tile's lanes need along an axis.
+/// Sets the range of whole shifts that the tile's lanes need along an axis.
 HWY_INLINE void set_range(Tile& tile, int axis, V low, V high, float upper_shift) {
   const D d;
   const float least = hn::GetLane(hn::MinOfLanes(d, hn::Floor(low)));
@@ -69,7 +69,7 @@ HWY_INLINE void set_weights(const Tile& tile, int r, int axis, AxisWeights& weig
     hn::Store(hat(s, t), d, weights.at[t - tile.first[axis]]);
 }
 
-/// Σ over shifts along x of weight × value; kTaps of them, `taps` where kTaps is 0.
+/// Returns Σ weight × value over kTaps shifts along x, or over `taps` if kTaps is 0.
 template <int kTaps>
 HWY_INLINE V along_x(const AxisWeights& weights, const float* field, int taps) {
   const D d;
@@ -79,7 +79,7 @@ HWY_INLINE V along_x(const AxisWeights& weights, const float* field, int taps) {
   return sum;
 }
 
-/// Values of kFields fields at the shifted places of row r of the tile; out + lane.
+/// Computes the values of kFields fields at the shifted places of row r of the tile.
 template <int kFields, int kTaps>
 HWY_INLINE void sum_block(const PaddedGrid& grid, const Tile& tile, int r, const AxisWeights& wx,
                           const AxisWeights& wy, const float* const* fields, float* const* out) {
@@ -107,7 +107,7 @@ HWY_INLINE void sum_block(const PaddedGrid& grid, const Tile& tile, int r, const
   }
 }
 
-/// The block with the number of shifts along x known to the compiler where it is a common one.
+/// Sums the block of a row; the compiler knows common numbers of shifts along x.
 template <int kFields>
 HWY_INLINE void interpolate_row(const PaddedGrid& grid, const Tile& tile, int r,
                                 const float* const* fields, float* const* out) {
@@ -124,7 +124,7 @@ HWY_INLINE void interpolate_row(const PaddedGrid& grid, const Tile& tile, int r,
   }
 }
 
-/// The same lane by lane, where the flow shears so much that the block would be large.
+/// Does the same lane by lane, where the flow shears so much that the block would be large.
 template <int kFields>
 void interpolate_lanes(const PaddedGrid& grid, const Tile& tile, int r, const float* const* fields,
                        float* const* out) {
@@ -138,7 +138,7 @@ void interpolate_lanes(const PaddedGrid& grid, const Tile& tile, int r, const fl
   }
 }
 
-/// One tile: −factor·(d[c − back] + d[c]) are the shifts.
+/// Advects one tile; its shifts are −factor·(d[c − back] + d[c]).
 template <int kFields>
 HWY_INLINE void advect_tile(const PaddedGrid& grid, const Placement& place, Tile& tile,
                             float factor, Index back, const float* const displacement[3],
@@ -247,7 +247,7 @@ void sample(const PaddedGrid& grid, const Placement& place, const float* const d
 
 const AdvectionKernels& fast_advection_kernels() {
   static constexpr AdvectionKernels kernels{trace, sample};
-  // asked once: the question is dear in a virtual machine
+  // queried once: the query is slow in a virtual machine
   static const bool vectors = (hwy::SupportedTargets() & ~(HWY_SCALAR | HWY_EMU128)) != 0;
   return vectors ? kernels : scalar_advection_kernels();
 }

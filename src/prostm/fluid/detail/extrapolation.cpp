@@ -3,7 +3,7 @@
 namespace prostm::fluid {
 namespace {
 
-/// Calls f(index) for every shut face in the hands' box, the floor and the box's outer sides
+/// Calls f(index) for each shut face in the hands' box, the floor and the box's outer sides
 /// excepted.
 template <class F>
 void for_shut_faces(const PressureLevel& level, int axis, F&& f) {

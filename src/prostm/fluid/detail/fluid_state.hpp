@@ -1,5 +1,5 @@
 #pragma once
-/// What a Fluid keeps between steps, and the parts of a step.
+/// The state of a Fluid between steps, and the parts of a step.
 
 #include <span>
 #include <vector>
@@ -16,7 +16,7 @@ namespace prostm {
 struct Fluid::State {
   State(const FluidSettings& settings, const SmokeInflow& inflow, WorkerPool& pool);
 
-  /// Everything at rest, without smoke.
+  /// Sets everything to rest, without smoke.
   void reset();
 
   // a step, see Fluid
@@ -51,13 +51,13 @@ struct Fluid::State {
 
   // state
   fluid::Field velocity[3];  // at faces [m/s]
-  fluid::Field smoke;        // at cells, 0..1; the halo holds what would flow in
+  fluid::Field smoke;        // at cells, 0..1; the halo holds smoke that would flow in
   fluid::Obstacle obstacle;
   fluid::PressureSolver solver;
 
-  // of the step that is being made
+  // the present step
   double dt = 0.0;                 // [s]
-  bool usable = false;             // nothing came up that resets
+  bool usable = false;             // false: the state is to be reset
   double divergence_before = 0.0;  // Σ of squares, before the projection
   FluidStats stats;
 
@@ -70,9 +70,9 @@ struct Fluid::State {
     std::int32_t largest = 0;  // the bits of the largest |pressure|, then of the largest |velocity|
   };
   std::vector<PlaneSums> sums;  // one per plane, so that totals do not depend on threads
-  CellBox marked;               // where fluid_cells may be 0
+  CellBox marked;               // box in which fluid_cells may be 0
 
-  // what others read, without padding
+  // results for readers, without padding
   std::vector<float> pressure_out, smoke_out;
   std::vector<std::uint8_t> fluid_cells;
 };

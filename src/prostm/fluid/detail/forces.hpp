@@ -1,5 +1,5 @@
 #pragma once
-/// What pushes the smoke besides pressure: its own lightness, and vorticity confinement.
+/// Forces on the smoke besides pressure: buoyancy, and vorticity confinement.
 
 #include "prostm/fluid/detail/padded_grid.hpp"
 
@@ -8,7 +8,7 @@ namespace prostm::fluid {
 /// w += dt·β·s on the z-faces of plane k (the floor's excepted), s the smoke beside the face (F11).
 void add_buoyancy(const PaddedGrid& grid, const Field& smoke, float dt_beta, Field& w, int k);
 
-/// Cell-centred velocity of plane k times `scale`.
+/// Computes the cell-centred velocity of plane k times `scale`.
 void centre_velocity(const PaddedGrid& grid, const Field velocity[3], float scale, Field centre[3],
                      int k);
 

@@ -103,7 +103,7 @@ void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) 
       for (int i = box_.lower[0]; i < box_.upper[0] + (axis == 0); ++i) {
         open[i] = open_fraction(phi[i], phi[i + s], phi[i + s + t], phi[i + t]);
         if (open[i] == 1.0F) continue;
-        // the wall moves with the mean of the two cells beside it, one where the other is outside
+        // the wall moves with the mean of the two cells beside it, or with the one inside the grid
         const int position = axis == 0 ? i : axis == 1 ? j : k;
         const float* v =
             raster.velocity[axis].data() + (static_cast<Index>(k) * g.ny + j) * g.nx + i;

@@ -11,9 +11,9 @@
 
 namespace prostm::fluid {
 
-/// Fraction 0..1 of a square's area where the signed distance is positive, from its corners in
-/// order around it (F4): the square is cut into four triangles at its centre (the corners' mean),
-/// and each is cut along a straight line.
+/// Returns the fraction 0..1 of a square's area where the signed distance is positive, from its
+/// corners in order around it (F4): the square is cut into four triangles at its centre (the
+/// corners' mean), and each is cut along a straight line.
 float open_fraction(float a, float b, float c, float d);
 
 /// Keeps the hands' part of the problem between steps. Faces whose distance at all four nodes is
@@ -29,7 +29,7 @@ class Obstacle {
 
   /// Velocity of the wall normal to the faces of an axis [m/s], valid where a face is not open.
   const Field& wall_velocity(int axis) const { return wall_[axis]; }
-  /// The same, to set the floor's jets once: faces k = 0 of axis 2.
+  /// The same for writing, to set the floor's jets once: faces k = 0 of axis 2.
   Field& wall_velocity(int axis) { return wall_[axis]; }
 
   bool closed(Index c) const { return state_[c] == kClosed; }
@@ -55,7 +55,7 @@ class Obstacle {
   WorkerPool& pool_;
   Field wall_[3];
   PaddedField<std::uint8_t> state_;  // kReached outside the box
-  std::vector<Index> stack_;         // sized once for every cell
+  std::vector<Index> stack_;         // room for all cells
   CellBox box_;
   int closed_cells_ = 0;
 };

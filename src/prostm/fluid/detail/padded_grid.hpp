@@ -16,8 +16,8 @@ using Index = std::ptrdiff_t;
 /// are aligned to 64 bytes.
 struct PaddedGrid {
   static constexpr Index kLane = 16;  // floats of the widest vector
-  static constexpr Index kGuardRows =
-      6;  // readable rows before the first and after the last: tiles reach beyond
+  // readable rows before the first and after the last: tiles reach beyond
+  static constexpr Index kGuardRows = 6;
 
   int n = 0;
 

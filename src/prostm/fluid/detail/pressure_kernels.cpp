@@ -3,7 +3,7 @@
 namespace prostm::fluid {
 namespace {
 
-/// D and D⁻¹ of a row: tables, or the level's own in the span.
+/// D and D⁻¹ of a row: from tables, or in the span from the level's own fields.
 struct RowDiagonal {
   RowDiagonal(const PressureLevel& level, int j, int k)
       : span(level.span(j, k)),

@@ -20,21 +20,21 @@ struct RowSpan {
 
 /// Σ_f a_f (p − p_f) = b over the six faces of a cell, (F5) and (F6) of docs/design.md: a_f is the
 /// open fraction, doubled on the box's open sides, where p_f = 0 on the face itself, and 0 on the
-/// floor. The neighbour sum needs no special case there because halos of p stay 0: only the
-/// diagonal Σ a_f knows. Far from hands it takes few values, kept in tables; face fractions and
-/// diagonals of their own are read in the rows' spans alone, which saves most of the memory
+/// floor. The neighbour sum needs no special case there because halos of p stay 0; only the
+/// diagonal Σ a_f differs. Far from hands the diagonal takes few values, kept in tables. Face
+/// fractions and stored diagonals are read only in the rows' spans, which saves most of the memory
 /// traffic.
 struct PressureLevel {
   explicit PressureLevel(int n);
 
-  /// Every cell open: forgets the hands.
+  /// Opens every cell: forgets the hands.
   void open_all();
-  /// Fractions as means of the four faces of `fine` (Weber et al. 2015), spans and diagonals.
+  /// Sets fractions, as means of the four faces of `fine` (Weber et al. 2015), spans and diagonals.
   void coarsen_from(const PressureLevel& fine);
-  /// Spans from the fractions in `box`.
+  /// Finds the spans of plane k from the fractions in `box`.
   void find_spans(int k);
-  /// Diagonals in the spans of plane k. A cell whose diagonal is below `kClosed` is solid: no
-  /// equation, p = 0.
+  /// Sets the diagonals in the spans of plane k. A cell whose diagonal is below `kClosed` is solid:
+  /// no equation, p = 0.
   void fill_diagonal(int k);
 
   const RowSpan& span(int j, int k) const {

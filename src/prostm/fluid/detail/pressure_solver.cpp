@@ -12,8 +12,7 @@ constexpr int kBottomSweeps = 8;  // symmetric, on at most 7³ cells
 constexpr int kPlanesPerTask = 4;
 constexpr int kSerialCells = 16;  // below this a region costs more than it saves
 
-/// p and halos 0 where the fine level ended up closed: a cold start, or cells that a hand covers
-/// now.
+/// Sets p to 0 where the fine level is closed, e.g. in cells that a hand covers now.
 void clear_closed(const PressureLevel& level, Field& p, int k) {
   for (int j = 0; j < level.grid.n; ++j) {
     const RowSpan s = level.span(j, k);
@@ -91,7 +90,7 @@ void PressureSolver::v_cycle(std::size_t l, bool from_zero) {
     solve_bottom(level);
     return;
   }
-  // before: two sweeps, the first for free where the correction starts at 0
+  // before: two sweeps, the first without neighbours if the correction starts at 0
   if (from_zero) {
     over_planes(level.problem.grid.n, [&](int k0, int k1) {
       kernels_.smooth_zero(level.problem, level.b.data(), kOmega[0], level.q.data(), k0, k1);

@@ -9,7 +9,7 @@
 
 namespace prostm::fluid {
 
-/// The hierarchy n, n/2, … down to at most 5 (or to an odd number) of cells, and the solvers on it.
+/// The hierarchy n, n/2, … down to at most 4 (or to an odd number) of cells, and the solvers on it.
 /// Section 3.4 of docs/design.md. Every result is independent of the number of threads, to the bit.
 class PressureSolver {
  public:
@@ -25,9 +25,9 @@ class PressureSolver {
   /// b of (F6); 0 in closed cells.
   Field& right_side() { return levels_.front().b; }
 
-  /// V-cycles from the pressure of the last call (F7)–(F10).
+  /// Runs V-cycles from the pressure of the last call (F7)–(F10).
   void v_cycles(int cycles);
-  /// Jacobi sweeps, from the pressure of the last call or from 0.
+  /// Runs Jacobi sweeps, from the pressure of the last call or from 0.
   void jacobi(int sweeps, bool warm);
 
  private:

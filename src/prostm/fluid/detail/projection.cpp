@@ -6,7 +6,7 @@
 namespace prostm::fluid {
 namespace {
 
-/// The outflow of cells [begin, end) of the row at c where hands cut faces.
+/// Computes the outflow of cells [begin, end) of the row at c where hands cut faces.
 void cut_outflow(const PressureLevel& level, const Obstacle& obstacle, const Field velocity[3],
                  Index c, int begin, int end, float* out) {
   for (int i = begin; i < end; ++i) {
@@ -23,13 +23,13 @@ void cut_outflow(const PressureLevel& level, const Obstacle& obstacle, const Fie
   }
 }
 
-/// Takes the gradient along `axis` off the n faces from f on; `below` is the distance to the cell
-/// below a face.
+/// Subtracts the gradient from n faces u; `below` is the distance from the cell above a face to the
+/// one below.
 void subtract_row(float* u, const float* p, Index below, float factor, int n) {
   for (int i = 0; i < n; ++i) u[i] -= factor * (p[i] - p[i - below]);
 }
 
-/// Shut faces in plane k of the hands' box move with their wall.
+/// Lets shut faces in plane k of the hands' box move with their wall.
 void take_wall_velocity(const PressureLevel& level, const Obstacle& obstacle, Field velocity[3],
                         int k) {
   const CellBox& box = level.box;

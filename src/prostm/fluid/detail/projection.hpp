@@ -1,5 +1,5 @@
 #pragma once
-/// Divergence through partly open faces, and the pressure gradient taken off the velocity.
+/// Divergence through partly open faces, and subtraction of the pressure gradient.
 
 #include "prostm/fluid/detail/obstacle.hpp"
 #include "prostm/fluid/detail/padded_grid.hpp"
@@ -7,14 +7,14 @@
 
 namespace prostm::fluid {
 
-/// Of one plane of cells, so that sums do not depend on threads.
+/// Sums over one plane of cells, so that totals do not depend on threads.
 struct DivergenceSum {
   double squares = 0.0;  ///< Σ (flux out of a cell over h²)², open cells [m²/s²]
   float largest = 0.0F;  ///< [m/s]
 };
 
-/// Net outflow of each cell of plane k over h² [m/s]: Σ ±(a u + (1 − a) u_wall) (F5), 0 in closed
-/// cells; times `scale` into `out` unless that is null.
+/// Computes the net outflow of each cell of plane k over h² [m/s]: Σ ±(a u + (1 − a) u_wall) (F5),
+/// 0 in closed cells. Writes it times `scale` to `out` unless that is null.
 DivergenceSum divergence(const PressureLevel& level, const Obstacle& obstacle,
                          const Field velocity[3], int k, float scale, float* out);
 

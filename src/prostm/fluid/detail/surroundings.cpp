@@ -55,7 +55,7 @@ void Surroundings::calm_inflow(Field velocity[3]) const {
   const int last = grid_.n - 1;
   for (int axis = 0; axis < 3; ++axis) {
     const int other[2] = {(axis + 1) % 3, (axis + 2) % 3};
-    for (int side = axis == 2 ? 1 : 0; side < 2; ++side) {  // the floor is no open side
+    for (int side = axis == 2 ? 1 : 0; side < 2; ++side) {  // the floor is not open
       for (int b = 0; b <= last; ++b) {
         for (int a = 0; a <= last; ++a) {
           int at[3];

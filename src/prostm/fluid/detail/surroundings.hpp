@@ -1,5 +1,5 @@
 #pragma once
-/// What lies around the box: a floor with jets and perhaps a vent, and five open sides.
+/// The surroundings of the box: a floor with jets and perhaps a vent, and five open sides.
 
 #include <vector>
 
@@ -8,17 +8,17 @@
 
 namespace prostm::fluid {
 
-/// Constant once made; what it sets in the fluid's fields holds for one step.
+/// Constant once made; the values that it sets in the fluid's fields hold for one step.
 class Surroundings {
  public:
   /// @throws std::invalid_argument for an inflow out of bounds.
   Surroundings(const GridShape& grid, const SmokeInflow& inflow);
 
-  /// The velocity of the floor's faces.
+  /// Sets the velocity of the floor's faces.
   void set_floor(Field& w) const;
-  /// What would flow in with the next step: fresh smoke through a jet, clean air beside it through
-  /// a vented floor; a solid floor repeats the smoke that lies on it. Beyond the open sides is
-  /// clear air, which is what a halo holds from the start.
+  /// Sets the smoke that would flow in with the next step: fresh smoke through a jet, clean air
+  /// beside it through a vented floor; a solid floor repeats the smoke that lies on it. Beyond the
+  /// open sides is clear air, which the halo holds from the start.
   void set_smoke_halo(Field& smoke) const;
   /// Air that enters through an open side was at rest outside (F3a): the side's cells forget their
   /// momentum where the flow is inward, and the projection alone drives it. Kept momentum would
@@ -30,8 +30,8 @@ class Surroundings {
 
   PaddedGrid grid_;
   bool vented_;               // clean air comes through the floor
-  std::vector<float> speed_;  // of what the floor's faces let in [m/s], n·n
-  std::vector<float> share_;  // of fresh smoke in it, 0..1
+  std::vector<float> speed_;  // inflow speed at the floor's faces [m/s], n·n
+  std::vector<float> share_;  // share of fresh smoke in it, 0..1
 };
 
 }  // namespace prostm::fluid
