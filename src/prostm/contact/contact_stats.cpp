@@ -14,11 +14,11 @@ namespace {
 constexpr std::array<Quantity<ContactStats>, 5> kStats{{
     {.name = "skin_cells",
      .unit = "",
-     .help = "Cells of targets with skin, over all updates.",
+     .help = "Target cells with skin, over all updates.",
      .value = &ContactStats::skin_cells},
     {.name = "skin_area_cm2",
      .unit = "cm2",
-     .help = "Of this skin, as it has faded, over all updates.",
+     .help = "Area of this skin, weighted by its fade, over all updates.",
      .value = &ContactStats::skin_area,
      .scale = 1e4},
     {.name = "steep_cells",

@@ -1,5 +1,5 @@
 #pragma once
-/// What presses on skin: smoke, or anything else.
+/// Sources of pressure on skin: smoke, or anything else.
 
 #include <span>
 
@@ -10,9 +10,9 @@ namespace prostm {
 class PressureSource {
  public:
   virtual ~PressureSource() = default;
-  /// The pressure on points of the skin of one hand [Pa]; below 0 counts as none.
+  /// Computes the pressure at points on the skin of one hand [Pa]; values below 0 count as 0.
   /// @param p_D the points.  @param outside unit vector from that skin to the array's side.
-  /// @param out as many values.
+  /// @param out one value per point.
   virtual void sample(std::span<const Vec3> p_D, const Vec3& outside,
                       std::span<double> out) const noexcept = 0;
 };

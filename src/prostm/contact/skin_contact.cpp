@@ -9,21 +9,22 @@
 namespace prostm {
 namespace {
 
-constexpr double kPalmReach = 0.05;    // ℓ of (C1) [m]
-constexpr double kLeastCosine = 1e-3;  // of visible skin, which faces the array but for rounding
-constexpr double kFadeFrom = 40 * kPi / 180.0;  // where the fade (C6) begins, and where
-constexpr double kFadeTo = 62 * kPi / 180.0;    // nothing is left [rad]
-constexpr double kNearSkin = 1.5;  // a crossing is at most this far from the skin itself: √3/2 that
-                                   // trilinear values err by, and a step [cells]
+constexpr double kPalmReach = 0.05;             // ℓ of (C1) [m]
+constexpr double kLeastCosine = 1e-3;           // visible skin faces the array, up to rounding
+constexpr double kFadeFrom = 40 * kPi / 180.0;  // angle at which the fade (C6) begins [rad]
+constexpr double kFadeTo = 62 * kPi / 180.0;    // angle at which nothing is left [rad]
+// a crossing is at most this far from the skin itself: √3/2, the error of trilinear values, and a
+// step [cells]
+constexpr double kNearSkin = 1.5;
 
-/// Of visible skin in the fit (C1).
+/// Weight of visible skin in the fit (C1).
 double plane_weight(double normal_z) {
   const double square = std::pow(std::max(normal_z, kLeastCosine), 2);
   return square * square;
 }
 
-/// The slope of the palm's plane, folded: as steep as the palm up to 45°, from there on level again
-/// towards 90°, where the palm's other side takes over. Continuous in the pose.
+/// Returns the slope of the palm's plane, folded: as steep as the palm up to 45°, then falling to
+/// level towards 90°, where the palm's other side takes over. Continuous in the pose.
 Vec2 palm_slope(const Hand& hand) {
   const Vec3& wrist = hand.position[kWrist];
   const Vec3 across =
@@ -34,7 +35,8 @@ Vec2 palm_slope(const Hand& hand) {
   return -std::min(level / steep, steep / level) * downhill;
 }
 
-/// The share of the pressure that is left on skin at an angle to the way from the array, (C6).
+/// Returns the share of the pressure left on skin at an angle to the direction from the array,
+/// (C6).
 double fade_of(double cosine) {
   const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
   return std::clamp((kFadeTo - angle) / (kFadeTo - kFadeFrom), 0.0, 1.0);
@@ -42,10 +44,10 @@ double fade_of(double cosine) {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  // above 0, since a hand may show but one part of it
+  // above 0, since only one part of a hand may be visible
   v.field({"touch_palm", "", 0.001, 1000, "weight of the palm's skin"}, s.touch_palm);
-  v.field({"touch_finger", "", 0.001, 1000, "weight of the fingers'"}, s.touch_finger);
-  v.field({"touch_tip", "", 0.001, 1000, "weight of the fingertips'"}, s.touch_tip);
+  v.field({"touch_finger", "", 0.001, 1000, "weight of the fingers' skin"}, s.touch_finger);
+  v.field({"touch_tip", "", 0.001, 1000, "weight of the fingertips' skin"}, s.touch_tip);
 }
 
 }  // namespace
@@ -125,7 +127,7 @@ void SkinContact::find_visible() {
   }
 }
 
-/// (C1): the mean, and the unit normal towards +z.
+/// Returns the mean and the unit normal towards +z, (C1).
 std::pair<Vec3, Vec3> SkinContact::fit_plane(std::span<const SeenSkin> visible,
                                              const Hand& hand) const {
   const double column = grid_.cell * grid_.cell;

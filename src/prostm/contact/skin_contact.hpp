@@ -1,5 +1,5 @@
 #pragma once
-/// From what presses on the hands to target fields (the paper's section IV-A, docs/design.md
+/// From the pressure on the hands to target fields (the paper's section IV-A, docs/design.md
 /// section C).
 
 #include <array>
@@ -19,9 +19,9 @@
 namespace prostm {
 
 struct ContactSettings {
-  // how much an error counts on each part of the hand, where all three are not the same
+  // weight of an error on each part of the hand; used unless all three are the same
   double touch_palm = 1.0;    ///< on the palm and the ball of the thumb
-  double touch_finger = 1.0;  ///< on the phalanges but the last
+  double touch_finger = 1.0;  ///< on all phalanges but the last
   double touch_tip = 1.0;     ///< on the last phalanges
 
   void visit(SettingsReader& v) const;
@@ -31,12 +31,12 @@ struct ContactSettings {
 
 struct ContactStats {
   std::int64_t skin_cells = 0;   ///< raster cells with skin, over all patches
-  double skin_area = 0.0;        ///< of these, each counted as it has faded [m²]
-  std::int64_t steep_cells = 0;  ///< cells whose skin is too steep for the array: no target's
-  std::int64_t joints_outside =
-      0;  ///< joints that lie outside the grid: no pressure is known there
+  double skin_area = 0.0;        ///< area of these, each weighted by its fade [m²]
+  std::int64_t steep_cells = 0;  ///< cells without a target: too steep for the array
+  /// joints that lie outside the grid: no pressure is known there
+  std::int64_t joints_outside = 0;
 };
-/// Of skin, the cells that are too steep; 0 where there is none.
+/// Share of the skin's cells that are too steep; 0 without skin.
 double steep_share(const ContactStats& stats);
 template <>
 std::span<const Quantity<ContactStats>> quantities<ContactStats>();
@@ -48,33 +48,33 @@ std::span<const Quantity<ContactStats>> quantities<ContactStats>();
 /// points by least squares without regard to pressure, steep skin counting little (C1), with its
 /// axes and origin fixed so that they neither flip nor wander (C2). Each raster cell then marches
 /// along the plane's normal to the skin nearest to the array (C3), keeps its height, and takes the
-/// pressure that a source says is there, clamped at 0 (C4). It fades to nothing where the skin is
-/// too steep for the array to press on, and skin beyond that has no target (C6); nor has skin
-/// outside the box. All of it is continuous in the hand's pose and remembers nothing of earlier
-/// ones. Where the settings touch_* differ the patches have weights (C5).
+/// source's pressure there, clamped at 0 (C4). The pressure fades to nothing as the skin gets too
+/// steep for the array to press on (C6); steeper skin, and skin outside the box, has no target.
+/// Everything is continuous in the hand's pose and independent of earlier poses. If the settings
+/// touch_* differ, the patches have weights (C5).
 class SkinContact {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
   SkinContact(const ContactSettings& settings, const GridShape& grid);
 
-  /// Largest raster that extract() makes, cells.
+  /// Size of the largest raster that extract() makes [cells].
   std::size_t max_cells() const {
     return static_cast<std::size_t>(max_side_) * static_cast<std::size_t>(max_side_);
   }
 
-  /// @param raster the hands of `hands` on the grid.  @param hands in frame D, of which frame.time
-  /// is written.
+  /// @param raster the hands of `hands` on the grid.  @param hands in frame D; `out` takes over
+  /// their time.
   ContactStats extract(const PressureSource& source, const HandRaster& raster,
                        const HandFrame& hands, TargetFrame& out) noexcept;
 
  private:
   struct SeenSkin {
     Vec3 p_D;
-    double weight = 0.0;  // in (C1)
+    double weight = 0.0;  // weight in (C1)
   };
   struct Pressed {
     std::size_t cell;
-    double fade;  // of (C6)
+    double fade;  // fade of (C6)
   };
   struct Cells {
     int skin = 0, steep = 0;
@@ -96,8 +96,8 @@ class SkinContact {
   SkinRays rays_;
   SkinOwner owner_;
   std::array<std::vector<SeenSkin>, 2> visible_;  // skin of each hand seen from the array
-  std::vector<std::uint32_t> queue_;              // of fill_heights
-  // cells that something may press on, and where they are
+  std::vector<std::uint32_t> queue_;              // scratch of fill_heights
+  // cells that can be pressed on, and their positions
   std::vector<Pressed> pressed_;
   std::vector<Vec3> points_;
   std::vector<double> pressures_;

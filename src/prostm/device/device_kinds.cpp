@@ -16,9 +16,9 @@ std::unique_ptr<Device> make_simulated(const DeviceSetup& setup) {
 }
 
 constexpr DeviceKind kKinds[] = {
-    {"sim", "needs nothing; nobody can feel it", simulated_info, make_simulated},
-    {"autd3", "never tried on the real thing", nullptr, nullptr},
-    {"ultraleap", "needs the vendor's SDK; never tried on the real thing", nullptr, nullptr},
+    {"sim", "needs no hardware; nobody can feel it", simulated_info, make_simulated},
+    {"autd3", "never tried on real hardware", nullptr, nullptr},
+    {"ultraleap", "needs the vendor's SDK; never tried on real hardware", nullptr, nullptr},
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// The devices that there are: what --device, settings and `prostm devices` know.
+/// The kinds of devices, for --device, settings and `prostm devices`.
 
 #include <memory>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace prostm {
 
-/// What a device is made from.
+/// Parts from which a device is made.
 struct DeviceSetup {
   SimulatedArraySettings simulated;
   TransducerArray array;
@@ -18,8 +18,8 @@ struct DeviceSetup {
 
 struct DeviceKind {
   const char* name;   ///< in --device and settings
-  const char* tried;  ///< what it was tried with, or what it lacks
-  /// What it will be able to do, without touching it. Null where this version has not built it.
+  const char* tried;  ///< its needs, and how it was tried
+  /// Returns the device's capabilities without touching it. Null if this version lacks the device.
   DeviceInfo (*info)(const DeviceSetup& setup);
   /// @throws std::invalid_argument with a sentence.
   std::unique_ptr<Device> (*make)(const DeviceSetup& setup);
@@ -29,14 +29,13 @@ struct DeviceKind {
 
 std::span<const DeviceKind> device_kinds();
 
-/// @throws std::invalid_argument for a name that none has or that is not built, with those there
-/// are.
+/// @throws std::invalid_argument for a name that is unknown or not built, listing the built ones.
 const DeviceKind& device_kind(const std::string& name);
 
-/// A device of this kind that streams: one that loads segments only is driven through
-/// SegmentStream. @throws as device_kind() and its make() do.
+/// Makes a device of this kind that streams: one that only loads segments gets a SegmentStream.
+/// @throws as device_kind() and its make() do.
 std::unique_ptr<Device> make_device(const std::string& kind, const DeviceSetup& setup);
-/// The same of a device of one's own.
+/// The same for a given device.
 std::unique_ptr<Device> as_stream(std::unique_ptr<Device> device);
 
 }  // namespace prostm

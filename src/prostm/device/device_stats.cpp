@@ -12,7 +12,7 @@ constexpr std::array<Quantity<DeviceStats>, 4> kStats{{
      .value = &DeviceStats::blocks},
     {.name = "late_blocks",
      .unit = "",
-     .help = "Of these, filled after their deadline.",
+     .help = "Blocks filled after their deadline.",
      .value = &DeviceStats::late_blocks,
      .better = Better::Less},
     {.name = "missed_blocks",

@@ -7,9 +7,9 @@ namespace prostm {
 namespace {
 
 constexpr std::size_t kAtOnce = 64;  // samples of a decimated stream that are made at a time
-constexpr double kRounding = 1e-4;   // of floats, that is no excess
+constexpr double kRounding = 1e-4;   // rounding of floats, which is no excess
 
-/// Without a comparison that a signalling machine would stop at.
+/// Whether all numbers are finite, without comparisons, which trap on NaN.
 bool is_finite(const FocusSample& s) {
   return std::isfinite(s.p_D.x()) && std::isfinite(s.p_D.y()) && std::isfinite(s.p_D.z()) &&
          std::isfinite(s.intensity);
@@ -100,7 +100,7 @@ void SampleChain::append(std::unique_ptr<SampleStage> stage) {
 
 std::unique_ptr<SampleChain> make_sample_chain(SampleSource& source, const DeviceInfo& device,
                                                const SampleLimits& limits) {
-  // an intensity may change as fast in time as it may where every sample counts
+  // decimated samples may change more, so that the change in time stays the same
   auto chain = std::make_unique<SampleChain>(
       source, SampleLimits{limits.power, limits.change * device.decimation});
   if (device.decimation > 1) chain->add<Decimation>(device.decimation);

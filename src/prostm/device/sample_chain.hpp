@@ -1,5 +1,5 @@
 #pragma once
-/// From an emission's samples to those that a device is given: stages in a row, a limiter last.
+/// From an emission's samples to those of a device: stages in a row, a limiter last.
 
 #include <atomic>
 #include <memory>
@@ -17,7 +17,7 @@ class SampleStage : public SampleSource {
 
  protected:
   SampleSource& from() { return *from_; }
-  /// Takes its samples from there. @pre nothing pulls.
+  /// Sets the source of its samples. @pre nothing pulls.
   virtual void follow(SampleSource& from) { from_ = &from; }
 
  private:
@@ -25,13 +25,13 @@ class SampleStage : public SampleSource {
   SampleSource* from_ = nullptr;
 };
 
-/// One intensity for all focal points of a sample, the largest, for devices that have no other.
+/// Gives all focal points of a sample the largest intensity, for devices with one shared intensity.
 class SharedIntensity final : public SampleStage {
  public:
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 };
 
-/// The first of every `factor` samples.
+/// Passes on the first of every `factor` samples.
 class Decimation final : public SampleStage {
  public:
   explicit Decimation(int factor) : factor_(factor) {}
@@ -46,13 +46,13 @@ class Decimation final : public SampleStage {
 /// Hands a copy of every sample to one other thread, as long as that keeps up.
 class SampleTap final : public SampleStage {
  public:
-  /// @param samples of one focal point each that may wait.
+  /// @param samples number that may wait, each of one focal point.
   explicit SampleTap(std::size_t samples) : ring_(samples) {}
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 
-  /// The oldest sample that was not taken; false when there is none. The other thread.
+  /// Takes the oldest waiting sample; false if no sample waits. The other thread.
   bool next(FocusSample& out) { return ring_.pop(out); }
-  /// Samples that found no room. Any thread.
+  /// Number of samples that found no room. Any thread.
   std::int64_t lost() const { return lost_.load(std::memory_order_relaxed); }
 
  private:
@@ -65,20 +65,20 @@ struct SampleLimits {
   double change = 0.025;  ///< largest change of an intensity from sample to sample
 };
 
-/// The last look at what leaves for a device, whatever the stages before it do: no number that is
-/// not finite, intensities from 0 to 1 that change by at most `change` a sample, and Σ intensity²
-/// of at most `power`. What keeps to this passes as it is, to the bit.
+/// Limits the samples that leave for a device, whatever the stages before it do: finite numbers,
+/// intensities from 0 to 1 that change by at most `change` a sample, and Σ intensity² of at most
+/// `power`. Samples within these limits pass unchanged, to the bit.
 class SampleLimiter final : public SampleStage {
  public:
   explicit SampleLimiter(const SampleLimits& limits) : limits_(limits) {}
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
-  /// Samples of a focal point that were changed. Any thread.
+  /// Number of samples of a focal point that were changed. Any thread.
   std::int64_t limited() const { return limited_.load(std::memory_order_relaxed); }
 
  private:
   void follow(SampleSource& from) override;
   const SampleLimits limits_;
-  std::vector<FocusSample> last_;  // of each focal point
+  std::vector<FocusSample> last_;  // sample of each focal point
   std::atomic<std::int64_t> limited_{0};
 };
 
@@ -88,7 +88,7 @@ class SampleChain final : public SampleSource {
   /// @param source outlives this.
   SampleChain(SampleSource& source, const SampleLimits& limits);
 
-  /// Adds a stage after those that there are, before the limiter. @pre nothing pulls.
+  /// Adds a stage after the existing ones, before the limiter. @pre nothing pulls.
   template <class Stage, class... Args>
   Stage& add(Args&&... args) {
     auto stage = std::make_unique<Stage>(std::forward<Args>(args)...);
@@ -110,7 +110,7 @@ class SampleChain final : public SampleSource {
   SampleLimiter limiter_;
 };
 
-/// What a device asks of the samples that it is given: decimated, and with one intensity for all.
+/// Makes the chain that a device needs: decimated, and with one intensity if it has only one.
 std::unique_ptr<SampleChain> make_sample_chain(SampleSource& source, const DeviceInfo& device,
                                                const SampleLimits& limits);
 

@@ -11,7 +11,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr int kQueue = 1;  // blocks: while one plays the next is loaded
+constexpr int kQueue = 1;  // blocks: while one plays, the next is loaded
 
 double seconds_of(SteadyClock::time_point time) {
   return Seconds(time.time_since_epoch()).count();
@@ -22,7 +22,7 @@ double seconds_of(SteadyClock::time_point time) {
 SegmentStream::SegmentStream(std::unique_ptr<Device> device)
     : device_(std::move(device)), info_(device_->info()) {
   if (!info_.loads_segments)
-    throw std::invalid_argument("device " + info_.name + " loads no segments");
+    throw std::invalid_argument("device " + info_.name + " cannot load segments");
   info_.streams = true;
 }
 
@@ -78,7 +78,7 @@ void SegmentStream::run(const std::stop_token& stop) {
   }
 }
 
-/// The next block; false when the device does not take it.
+/// Loads the next block; false if the device does not take it.
 bool SegmentStream::load_block() {
   source_->fill(blocks_ * info_.block_samples, block_);
   if (device_->load_segment(block_, source_->foci()) != DeviceStatus::Running) return false;
@@ -103,7 +103,7 @@ void SegmentStream::stop() {
 }
 
 void SegmentStream::pull(int n) {
-  // what was loaded before plays, then the next one is loaded
+  // the block loaded before plays, then the next one is loaded
   for (int k = 0; k < n; ++k) {
     device_->pull(1);
     if (!load_block()) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A device that loads segments, as one that streams.
+/// Streams to a device that loads segments.
 
 #include <atomic>
 #include <memory>
@@ -19,7 +19,7 @@ namespace prostm {
 /// that refuses a block while the stream plays counts as vanished.
 class SegmentStream final : public Device {
  public:
-  /// @throws std::invalid_argument for a device that loads no segments.
+  /// @throws std::invalid_argument for a device that cannot load segments.
   explicit SegmentStream(std::unique_ptr<Device> device);
   ~SegmentStream() override;
 
@@ -45,9 +45,9 @@ class SegmentStream final : public Device {
   DeviceInfo info_;
   SampleSource* source_ = nullptr;
   std::vector<FocusSample> block_;
-  std::int64_t blocks_ = 0;  // loaded, by the thread that pulls
+  std::int64_t blocks_ = 0;  // blocks loaded, by the thread that pulls
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   DeviceStats stats_;
   std::optional<BlockClock> clock_;
 

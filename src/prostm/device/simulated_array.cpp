@@ -23,8 +23,8 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr std::int64_t kMostWaiting = 64;  // blocks, while a reader holds the lock
 
-/// What the whole array makes 200 mm over its origin [Pa, rms]: there an intensity of 1 is all that
-/// it has. 0 where that is behind it or on it.
+/// Returns the pressure of the whole array 200 mm over its origin [Pa, rms], where an intensity of
+/// 1 means full output. 0 if that point is behind the array or on it.
 double full_scale_of(const TransducerArray& array, const Medium& medium) {
   const Vec3 middle(0.0, 0.0, 0.2);
   const Wave sound = wave(array, medium);
@@ -63,7 +63,7 @@ SteadyClock::duration to_duration(double seconds) {
   return std::chrono::round<SteadyClock::duration>(Seconds(seconds));
 }
 
-/// What the thread that pulls works on; no other thread looks at it while it runs.
+/// Data of the thread that pulls; no other thread looks at it while that thread runs.
 struct Stream {
   SampleSource* source = nullptr;
   std::optional<BlockClock> clock;  // in real time
@@ -134,7 +134,7 @@ DeviceStatus SimulatedArray::Impl::refuse(const std::string& sentence) {
 
 /// Starts to pull. @pre not running, the source fits.
 DeviceStatus SimulatedArray::Impl::begin(SampleSource& s) {
-  if (thread.joinable()) thread.join();  // of a stream that vanished
+  if (thread.joinable()) thread.join();  // thread of a stream that vanished
   const auto width = static_cast<std::size_t>(s.foci());
   stream = Stream();
   stream.source = &s;
@@ -149,7 +149,7 @@ DeviceStatus SimulatedArray::Impl::begin(SampleSource& s) {
   {
     const std::lock_guard lock(mutex);
     foci = s.foci();
-    // what is queued is filled and not yet played, so it comes on top of the history
+    // queued samples are filled and not yet played, so they come on top of the history
     const auto capacity = static_cast<std::size_t>(history_samples + std::int64_t{most_queue + 1} *
                                                                          settings.block_samples);
     ring.assign(capacity * width, FocusSample());
@@ -212,8 +212,8 @@ bool SimulatedArray::Impl::pull_block() {
   return true;
 }
 
-/// Makes the blocks that wait readable. @pre the mutex is held, by the thread that pulls or while
-/// there is none.
+/// Makes the waiting blocks readable. @pre the mutex is held, by the thread that pulls or while no
+/// thread pulls.
 void SimulatedArray::Impl::publish() {
   const auto width = static_cast<std::size_t>(foci);
   const std::size_t capacity = ring.size() / width;
@@ -353,8 +353,8 @@ std::vector<FocusSample> SimulatedArray::read_back(std::int64_t first, std::int6
   const std::int64_t begin = std::max<std::int64_t>(0, end - impl_->history_samples);
   if (n < 0 || first < begin || n > end - first) {
     std::ostringstream text;
-    text << "samples " << first << " to " << first + n << " cannot be read back; kept are " << begin
-         << " to " << end;
+    text << "samples " << first << " to " << first + n << " cannot be read back; the kept ones are "
+         << begin << " to " << end;
     throw std::out_of_range(text.str());
   }
   const auto width = static_cast<std::size_t>(impl_->foci);
@@ -381,7 +381,7 @@ std::int64_t SimulatedArray::samples() const {
 std::vector<std::complex<double>> SimulatedArray::output(std::int64_t first, std::int64_t n) const {
   const SimulatedArraySettings& s = impl_->settings;
   ArrayOutput array(impl_->array, impl_->medium, output_settings(s, impl_->array, impl_->medium));
-  // in real time the oldest of what is kept may be gone a moment later
+  // in real time the oldest kept samples may be gone a moment later
   const auto moment = static_cast<std::int64_t>(s.realtime ? 0.1 * s.sample_rate : 0.0);
   const std::int64_t kept = std::max<std::int64_t>(0, samples() - impl_->history_samples + moment);
   const std::int64_t begin = std::min(first, std::max(kept, first - kLeadIn));

@@ -15,13 +15,14 @@ struct SimulatedArraySettings {
   double sample_rate = 40e3;  ///< [Hz], 1 kHz to 1 MHz
   int block_samples = 40;     ///< a block is 1 ms; 1..4096
   int max_foci = 8;           ///< 1..8
-  int queue_blocks = 3;       ///< 1..10; each costs a block of latency and covers for one of delay;
-                              ///< the queue shortens to so many while the machine is calm
-  int most_queue_blocks = 10;  ///< queue_blocks..10; that the queue begins with, and grows to
-  double history = 4.0;        ///< kept for reading back [s], up to 600
+  /// 1..10; each costs a block of latency and covers a block of delay; the queue shortens to this
+  /// length while the machine is calm
+  int queue_blocks = 3;
+  int most_queue_blocks = 10;  ///< queue_blocks..10; first and greatest length of the queue
+  double history = 4.0;        ///< time kept for reading back [s], up to 600
   bool realtime = true;        ///< false: no thread and no clock, pull() is called by hand
-  FocusMethod solver = FocusMethod::Weighted;  ///< of `output`: or Superposition, GsPat
-  bool memoryless = false;  ///< transducers follow their drives at once, against (A9)
+  FocusMethod solver = FocusMethod::Weighted;  ///< for `output`; or Superposition, GsPat
+  bool memoryless = false;  ///< transducers follow their drives at once, unlike (A9)
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
@@ -35,8 +36,8 @@ struct SimulatedFaults {
 };
 
 /// In real time its own thread pulls a block every block period by an absolute schedule
-/// (BlockClock), and catches up at once when it wakes late. The thread's priority is raised where
-/// that is allowed (raise_thread_priority); nothing needs it. Samples count from 0 at each start.
+/// (BlockClock), and catches up at once when it wakes late. The thread's priority is raised if that
+/// is allowed (raise_thread_priority), but need not be. Samples count from 0 at each start.
 class SimulatedArray final : public Device, public PlayedSamples {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
@@ -44,7 +45,7 @@ class SimulatedArray final : public Device, public PlayedSamples {
                  const Medium& medium);
   ~SimulatedArray() override;
 
-  /// Of an array that these would make.
+  /// Returns the info of an array with these settings.
   static DeviceInfo info_of(const SimulatedArraySettings& settings, const TransducerArray& array);
   const DeviceInfo& info() const override;
   DeviceStatus status() const override;
@@ -61,25 +62,25 @@ class SimulatedArray final : public Device, public PlayedSamples {
   double ask_time(std::int64_t sample) const override;
   void pull(int n) override;
   const PlayedSamples* played() const override { return this; }
-  /// With `foci` a sample, back to `history`.
+  /// Returns `foci` focal points a sample, back to `history`.
   std::vector<FocusSample> read_back(std::int64_t first, std::int64_t n) const override;
   int foci() const;  ///< per sample, of the running source or segment; 0 before the first
 
   void set_faults(const SimulatedFaults& faults);
 
-  /// Envelopes of the transducers, (A9), at the ends of samples first … first+n−1 as they were
-  /// played, sample-major: solved again, from up to kLeadIn samples before. @throws
-  /// std::out_of_range as read_back does.
+  /// Returns the envelopes of the transducers, (A9), at the ends of samples first … first+n−1 as
+  /// they were played, sample-major. They are solved again, from up to kLeadIn samples before.
+  /// @throws std::out_of_range as read_back does.
   std::vector<std::complex<double>> output(std::int64_t first, std::int64_t n) const;
-  /// rms acoustic pressure [Pa] at points for the same samples, sample-major with one for each
-  /// point: |Σ envelope · (A1)|.
+  /// Returns the rms acoustic pressure [Pa] at points for the same samples, sample-major with one
+  /// value per point: |Σ envelope · (A1)|.
   /// @throws std::out_of_range as read_back does. @pre no point is within kNearestPoint of a
   /// transducer.
   std::vector<double> pressure(std::int64_t first, std::int64_t n,
                                std::span<const Vec3> points) const;
 
-  /// Samples that are solved before those that are asked for: 10 ms at 40 kHz, after which nothing
-  /// is left of what transducers did before, and little of what the solver did.
+  /// Samples solved before the requested ones: 10 ms at 40 kHz, after which nothing is left of
+  /// earlier transducer output, and little of earlier solutions.
   static constexpr std::int64_t kLeadIn = 400;
 
  private:

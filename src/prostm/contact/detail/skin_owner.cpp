@@ -5,7 +5,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kRounding = 1e-9;  // more than the distances err by [m]
+constexpr double kRounding = 1e-9;  // above the error of the distances [m]
 
 /// Squared distance to the bounds of a hand; 0 inside.
 double outside_squared(const HandShape& shape, const Vec3& p) {

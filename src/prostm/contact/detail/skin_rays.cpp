@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kNone = std::numeric_limits<int>::max();  // a level that no ray reaches
 
-/// Trilinear between nodes. @param q in cells from the grid's corner, inside the grid.
+/// Interpolates between nodes. @param q in cells from the grid's corner, inside the grid.
 double between_nodes(const HandRaster& raster, const Vec3& q) {
   const GridShape& g = raster.grid;
   const int i = std::min(static_cast<int>(q.x()), g.nx - 1),
@@ -117,13 +117,13 @@ double SkinRays::column(int i, int j) const noexcept {
   int k = cell_level_[column_index(i, j)];
   if (k == kNone) return kMissed;
   // in the middle of a column the distance is linear from level to level, and the lowest cell's
-  // floor is outside unless the hand reaches through the grid's
+  // floor is outside unless the hand reaches through the grid's floor
   double d0 = mean_of_level(i, j, k);
   if (d0 < 0.0) return kMissed;
   const int top = std::min(raster_->box.upper[2], grid_.nz);
   for (; k < top; ++k) {
     const double d1 = mean_of_level(i, j, k + 1);
-    // the same in halves of a cell, as march() steps, is the same line
+    // march() steps by half a cell, along the same line
     if (d1 < 0.0) return grid_.p_DF.z() + grid_.cell * (k + d0 / (d0 - d1));
     d0 = d1;
   }

@@ -7,35 +7,34 @@
 
 namespace prostm {
 
-inline constexpr double kMarchStep = 0.5;  ///< of a ray through the distances [cells]
+inline constexpr double kMarchStep = 0.5;  ///< step of a ray through the distances [cells]
 
-/// First crossing from outside to inside along start + t·direction, 0 <= t <= t_max [m], of the
-/// distance that is trilinear between nodes and HandRaster::kFar outside the grid; negative when
-/// there is none, or when the start is inside: such skin does not face the array. The distance is
-/// looked at every kMarchStep and taken as linear in between. The plain way, the reference for
-/// SkinRays.
+/// Returns t of the first crossing from outside to inside along start + t·direction, 0 <= t <=
+/// t_max [m]; negative without a crossing, or if the start is inside: such skin does not face the
+/// array. The distance is trilinear between nodes and HandRaster::kFar outside the grid. It is
+/// sampled every kMarchStep and taken as linear in between. The reference for SkinRays.
 /// @param direction unit.
 double march(const HandRaster& raster, const Vec3& start, const Vec3& direction, double t_max);
 
-/// The same crossings with less looking: trilinear values are negative only in cells that have a
-/// node inside a hand, so below the lowest such node of its column a ray only asks where it is.
+/// Finds the same crossings with fewer samples: trilinear values are negative only in cells with a
+/// node inside a hand, so below the lowest such node of its column a ray only checks its position.
 class SkinRays {
  public:
   explicit SkinRays(const GridShape& grid);
 
-  /// Refers to `raster` from here on, as it is now. Allocates nothing.
+  /// Refers to `raster` from now on; call again when it changes. Allocates nothing.
   /// @pre raster.grid is the grid of the constructor.
   void set(const HandRaster& raster) noexcept;
 
-  /// Cells of a column of which some node may be inside a hand lie in here.
+  /// Box of all cells that may have a node inside a hand.
   const CellBox& box() const { return box_; }
-  /// The crossing of the ray that goes along z through the middle of a column, z [m] in D; NaN when
-  /// there is none. It is the one that march() finds from a node's height below the hand.
+  /// Returns the crossing of the ray along z through the middle of a column, z [m] in D; NaN
+  /// without a crossing. march() finds the same one from a node's height below the hand.
   double column(int i, int j) const noexcept;
-  /// The unit normal of the skin at a crossing, into the hand: against the gradient of the distance
-  /// within the crossing's cell. @pre in the grid.
+  /// Returns the unit normal of the skin at a crossing, into the hand: against the gradient of the
+  /// distance within the crossing's cell. @pre in the grid.
   Vec3 inwards(const Vec3& p_D) const noexcept;
-  /// As march(), to rounding.
+  /// Does the same as march(), up to rounding.
   double march(const Vec3& start, const Vec3& direction, double t_max) const noexcept;
 
  private:
@@ -53,8 +52,8 @@ class SkinRays {
   const HandRaster* raster_ = nullptr;
   CellBox box_;
   Vec3 first_ = Vec3::Zero(), last_ = Vec3::Zero();  // corners of box_ [cells]
-  std::vector<int> node_level_;                      // of the lowest node that is inside, by column
-  std::vector<int> cell_level_;  // of the lowest cell that touches such a node, by column
+  std::vector<int> node_level_;                      // level of the lowest node inside, by column
+  std::vector<int> cell_level_;  // level of the lowest cell with such a node, by column
 };
 
 }  // namespace prostm

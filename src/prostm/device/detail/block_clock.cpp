@@ -26,7 +26,7 @@ BlockClock::Time BlockClock::play_time(std::int64_t block) const {
 
 BlockClock::Filled BlockClock::fill(std::int64_t block, Time now) {
   Filled filled;
-  // blocks that a longer queue asks for at once are asked for when it grew
+  // blocks that a longer queue asks for at once count as asked for when it grew
   const Duration delay = now - std::max(ask_time(block), grown_at_);
   filled.late = delay > period_;
   delays_.front() = std::max(delays_.front(), delay);
@@ -44,19 +44,19 @@ BlockClock::Filled BlockClock::fill(std::int64_t block, Time now) {
   return filled;
 }
 
-/// From `block` on, blocks are asked for later and wait longer.
+/// From `block` on, asks for blocks later and lets them wait longer.
 void BlockClock::shift(std::int64_t block, Duration later, Duration longer) {
   const Shift last = shifts_.back();
   if (shifts_.size() == kShifts) shifts_.erase(shifts_.begin());
   shifts_.push_back({block, last.start + later, last.queue + longer});
 }
 
-/// One period more than those that a delay reaches into.
+/// Returns the queue needed for a delay: the periods that it reaches into, and one more.
 BlockClock::Duration BlockClock::needed(Duration delay) const {
   return std::clamp((delay / period_ + 2) * period_, least_, most_);
 }
 
-/// Where the queue was nearly dry.
+/// Lengthens a queue that was nearly dry.
 void BlockClock::lengthen(std::int64_t block, Duration delay, Time now) {
   const Duration lacks = needed(delay) - shifts_.back().queue;
   if (lacks <= Duration::zero()) return;
@@ -64,7 +64,7 @@ void BlockClock::lengthen(std::int64_t block, Duration delay, Time now) {
   grown_at_ = now;
 }
 
-/// By one period, where less was enough for as long as is remembered.
+/// Shortens the queue by one period if less was enough for all remembered blocks.
 void BlockClock::shorten(std::int64_t block) {
   const Duration longest = *std::max_element(delays_.begin(), delays_.end());
   if (shifts_.back().queue > needed(longest)) shift(block + 1, period_, -period_);

@@ -9,17 +9,18 @@
 
 namespace prostm {
 
-/// One sentence on what is wrong with a segment; empty when nothing is.
+/// Says in one sentence what is wrong with a segment; empty if nothing is.
 std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci);
 
-/// Repeats a segment. A new one takes over when the one that plays has come to its end, so that
-/// laps stay whole.
+/// Repeats a segment. A new one takes over at the end of the one that plays, so that laps stay
+/// whole.
 class SegmentPlayer final : public SampleSource {
  public:
   /// Forgets what was loaded; the next segment has `foci` focal points a sample. @pre nothing
   /// pulls.
   void reset(int foci);
-  /// Loads samples, sample-major, from the next end on. Any thread. @pre not empty, whole samples.
+  /// Loads samples, sample-major, to play from the next end on. Any thread. @pre not empty, whole
+  /// samples.
   void load(std::span<const FocusSample> samples);
 
   int foci() const override { return foci_; }
@@ -27,7 +28,7 @@ class SegmentPlayer final : public SampleSource {
 
  private:
   int foci_ = 1;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::vector<FocusSample> playing_, next_;
   bool has_next_ = false;
   std::size_t at_ = 0;  // in playing_
