@@ -8,7 +8,7 @@
 namespace prostm {
 namespace {
 
-// a sum of 40 steps of 1/40 is 1 only to rounding; what is left is taken with the last step
+// 40 steps of 1/40 add up to 1 only to rounding; the last step takes the rest
 constexpr double kRounding = 1e-9;
 
 double slewed(const Drive& drive, double max_rise) {
@@ -37,7 +37,7 @@ double largest_slew(double fade_time, double sample_rate) {
 }
 
 bool limit_drives(std::span<Drive> drives, double max_rise, double power_limit) noexcept {
-  // a common scale for what is wanted
+  // a common scale for the wanted intensities
   double power = 0.0;
   for (const Drive& drive : drives) power += drive.wanted * drive.wanted;
   const bool limited = power > power_limit;
@@ -54,8 +54,8 @@ bool limit_drives(std::span<Drive> drives, double max_rise, double power_limit) 
     power += moved[f] * moved[f];
   }
 
-  // too much when one rises faster than another falls: then all go the same share of their way,
-  // since the straight line between two points of a ball stays in it
+  // too much if one rises faster than another falls: then all go the same share of their way, since
+  // the straight line between two points of a ball stays in it
   if (power > power_limit) {
     double share = 1.0;
     for (const Drive& drive : drives) {

@@ -1,5 +1,5 @@
 #pragma once
-/// From the intensities that are wanted to those that are emitted: power limit and slew limit.
+/// From wanted to emitted intensities: power limit and slew limit.
 
 #include <array>
 #include <span>
@@ -10,7 +10,7 @@ namespace prostm {
 
 /// One focal point's intensity.
 struct Drive {
-  double wanted = 0.0;     ///< by its path; 0 when it is to fall silent
+  double wanted = 0.0;     ///< by its path; 0 to fall silent
   double max_fall = 0.0;   ///< largest fall per sample
   double intensity = 0.0;  ///< emitted last, then emitted now
 };
@@ -19,7 +19,7 @@ struct Drive {
 /// above 1/40. @pre both > 0.
 double largest_slew(double fade_time, double sample_rate);
 
-/// Moves every intensity towards what is wanted, by at most max_rise up and max_fall down, with Σ
+/// Moves every intensity towards its wanted value, by at most max_rise up and max_fall down, with Σ
 /// intensity² <= power limit, (E4). @return true when the power limit scaled the wanted intensities
 /// down.
 /// @pre 0 <= wanted <= 1 and the intensities of the last sample are within the limit.

@@ -8,7 +8,7 @@ constexpr double kMostPressure = 1e300, kLeastPressure = 1e-300;  // [unit of th
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"foci", "", 1, kMaxPaths, "focal points"}, s.foci);
+  v.field({"foci", "", 1, kMaxPaths, "number of focal points"}, s.foci);
   v.field({"full_scale_pressure", "Pa", 0, kMostPressure,
            "rendered pressure at intensity 1; 0: the "
            "scene's, or gain times the largest"},
@@ -17,17 +17,18 @@ void list(Settings& s, Visitor& v) {
           s.silent_below);
   v.field({"power_limit", "", 1e-6, kMaxPaths, "largest sum of squared intensities at a time"},
           s.power_limit);
-  v.field({"tilt_bound", "", 1, 4, "largest factor that makes up for tilted skin; 1: none"},
+  v.field({"tilt_bound", "", 1, 4, "largest factor that compensates tilted skin; 1: off"},
           s.tilt_bound);
   v.field({.name = "switch_at", .help = "when a new plan takes over"}, s.switch_at);
-  v.field({"fade_time", "s", 1e-6, 0.02, "of a fade over the full range; at least 40 samples"},
+  v.field({"fade_time", "s", 1e-6, 0.02, "time of a fade over the full range; at least 40 samples"},
           s.fade_time);
-  v.field({"stall_time", "s", 1e-3, 1e6, "without a new plan for so long, output fades"},
+  v.field({"stall_time", "s", 1e-3, 1e6, "time without a new plan after which output fades"},
           s.stall_time);
-  v.field({"stall_fade_time", "s", 1e-6, 0.04, "of that fade"}, s.stall_fade_time);
-  v.field({"am_frequency", "Hz", 25, 1e4, "of the modulation; at most a 126th of the sample rate"},
+  v.field({"stall_fade_time", "s", 1e-6, 0.04, "time of that fade"}, s.stall_fade_time);
+  v.field({"am_frequency", "Hz", 25, 1e4,
+           "frequency of modulation; at most a 126th of the sample rate"},
           s.am_frequency);
-  v.field({.name = "am_waveform", .help = "of the modulation"}, s.am_waveform);
+  v.field({.name = "am_waveform", .help = "shape of the modulation"}, s.am_waveform);
 }
 
 }  // namespace

@@ -26,17 +26,17 @@ double laps_completed(const EmitStats& s) {
 namespace {
 
 constexpr std::array kStats{
-    count("samples", &EmitStats::samples, "Emitted, of all focal points.", Better::Neither),
+    count("samples", &EmitStats::samples, "Samples emitted, of all focal points.", Better::Neither),
     count("saturated", &EmitStats::saturated, "Samples clipped at full scale."),
     count("power_limited", &EmitStats::limited, "Samples scaled down by the power limit."),
     count("faded", &EmitStats::faded, "Samples in the fade of a transition."),
     Quantity<EmitStats>{.name = "faded_share",
                         .unit = "",
-                        .help = "Of all samples.",
+                        .help = "Share of samples in the fade of a transition.",
                         .value = &faded_share,
                         .better = Better::Less},
-    count("laps_started", &EmitStats::laps_started, "Laps of paths.", Better::Neither),
-    count("laps_cut", &EmitStats::laps_cut, "Of these, cut short by a new plan."),
+    count("laps_started", &EmitStats::laps_started, "Laps of paths begun.", Better::Neither),
+    count("laps_cut", &EmitStats::laps_cut, "Laps cut short by a new plan."),
     Quantity<EmitStats>{.name = "laps_completed",
                         .unit = "",
                         .help = "Share of laps that were not cut short.",

@@ -12,7 +12,7 @@ namespace prostm {
 namespace {
 
 bool usable(const Vec3& p_D) {
-  constexpr double kMaxCoordinate = 10.0;  // of anything that is felt over an array [m]
+  constexpr double kMaxCoordinate = 10.0;  // anything felt is nearer to the array [m]
   return std::all_of(p_D.begin(), p_D.end(),
                      [](double x) { return std::isfinite(x) && std::abs(x) <= kMaxCoordinate; });
 }

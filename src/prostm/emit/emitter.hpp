@@ -1,5 +1,5 @@
 #pragma once
-/// Plans as focal points over time: what emitters of paths and of foci share.
+/// Plans as focal points over time: the base of emitters of paths and of foci.
 
 #include <cstdint>
 #include <memory>
@@ -15,19 +15,19 @@
 
 namespace prostm {
 
-/// Of a focal point that sounds [m/s]; where a path asks for more its laps take longer.
+/// Maximum speed of an audible focal point [m/s]; faster paths are slowed down.
 inline constexpr double kMaxFocusSpeed = 8.0;
 
-/// When a new plan takes over: at each path's lap end, or at the next block.
+/// Moment when a new plan takes over: at each path's lap end, or at the next block.
 enum class SwitchAt : std::uint8_t { Lap, Now };
 template <>
 inline constexpr std::array<std::string_view, 2> kNames<SwitchAt> = {"lap", "now"};
 
-/// Of the intensity a over a period of AM, from 0 to 0 with its peak of 1 in the middle, (B4):
-/// `raised-cosine`: a = (1 − cos 2πt)/2, the radiation pressure a² has the mean 3/8, 1/2 at the
-/// frequency of the modulation and 1/8 at twice that. `sine-magnitude`: a = |sin πt|, the square
-/// root of a raised cosine, so that a² is one itself: mean 1/2, 1/2 at the frequency, nothing at
-/// twice that.
+/// Shape of the intensity a over a period of AM, from 0 to 0 with its peak of 1 in the middle,
+/// (B4). `raised-cosine`: a = (1 − cos 2πt)/2; the radiation pressure a² has the mean 3/8, 1/2 at
+/// the frequency of the modulation and 1/8 at twice that. `sine-magnitude`: a = |sin πt|, the
+/// square root of a raised cosine; so a² is a raised cosine: mean 1/2, 1/2 at the frequency,
+/// nothing at twice that.
 enum class Waveform : std::uint8_t { RaisedCosine, SineMagnitude };
 template <>
 inline constexpr std::array<std::string_view, 2> kNames<Waveform> = {"raised-cosine",
@@ -35,18 +35,20 @@ inline constexpr std::array<std::string_view, 2> kNames<Waveform> = {"raised-cos
 
 struct EmitSettings {
   int foci = 4;                      ///< focal points, 1..8
-  double full_scale_pressure = 0.0;  ///< that maps to intensity 1 [unit of the target]; > 0
+  double full_scale_pressure = 0.0;  ///< pressure at intensity 1 [unit of the target]; > 0
   double silent_below = 0.01;        ///< share of full scale under which a sample is silent
   double power_limit = 4.0;          ///< largest Σ intensity² over simultaneous focal points, > 0
-  double tilt_bound = 1.0;  ///< largest factor of pressure that makes up for tilted skin, (E8),
-                            ///< 1 to 4; 1: none
-  SwitchAt switch_at = SwitchAt::Lap;  ///< take-over
-  double fade_time = 1e-3;    ///< of a fade down or up over the full range [s], at least 40 samples
+  /// largest factor of pressure that compensates tilted skin, (E8), 1 to 4; 1: off
+  double tilt_bound = 1.0;
+  SwitchAt switch_at = SwitchAt::Lap;  ///< moment when a new plan takes over
+  /// time of a fade down or up over the full range [s], at least 40 samples
+  double fade_time = 1e-3;
   double stall_time = 0.100;  ///< without a new plan for this long, the output fades [s]
-  double stall_fade_time = 0.010;  ///< that fade, and the one after lose() [s], at most 40 ms
-  // of foci, which need no fades: their modulation falls silent by itself
-  double am_frequency = 200.0;  ///< of the modulation [Hz], 25 to a 126th of the sample rate
-  Waveform am_waveform = Waveform::SineMagnitude;  ///< of the intensity
+  /// time of that fade and of the one after lose() [s], at most 40 ms
+  double stall_fade_time = 0.010;
+  // for foci, which need no fades: their modulation falls silent by itself
+  double am_frequency = 200.0;  ///< frequency of modulation [Hz], 25 to a 126th of the sample rate
+  Waveform am_waveform = Waveform::SineMagnitude;  ///< shape of the intensity
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
@@ -62,29 +64,29 @@ void validate(const EmitSettings& settings, double sample_rate);
 /// pressure. `saturated` is set when it was clipped. @pre full_scale > 0, both finite.
 double drive_intensity(double pressure, double full_scale, double silent_below, bool& saturated);
 
-/// The largest intensity², or share of full scale's radiation pressure, that `paths` focal points
-/// may have at the same time when they want the same, (E4a): min(1, power_limit / paths).
+/// Returns the largest intensity², or share of full scale's radiation pressure, that each of
+/// `paths` focal points may have if all want the same, (E4a): min(1, power_limit / paths).
 /// @pre paths ≥ 1, power_limit > 0.
 double even_share(int paths, double power_limit);
 
-/// Something that the pipeline wants to know of the emission, in sample counts.
+/// A plan's take-over, reported to the pipeline in sample counts.
 struct TakeOver {
   std::int64_t plan = 0;             ///< id of the plan
-  std::int64_t arrival_sample = 0;   ///< first sample that was made after it had arrived
+  std::int64_t arrival_sample = 0;   ///< first sample made after it arrived
   std::int64_t first_sample = 0;     ///< first sample that follows it
-  std::int64_t redrawn_sample = -1;  ///< when 90 % of its path length was drawn; −1: never
+  std::int64_t redrawn_sample = -1;  ///< sample at which 90 % of its path was drawn; −1: never
 };
 
 struct EmitStats {
-  std::int64_t samples = 0;    ///< emitted, per focal point summed
-  std::int64_t saturated = 0;  ///< clipped at full scale
-  std::int64_t limited = 0;    ///< scaled down by the power limit
-  std::int64_t faded = 0;      ///< in a fade of a transition
+  std::int64_t samples = 0;    ///< samples emitted, summed over focal points
+  std::int64_t saturated = 0;  ///< samples clipped at full scale
+  std::int64_t limited = 0;    ///< samples scaled down by the power limit
+  std::int64_t faded = 0;      ///< samples in a fade of a transition
   std::int64_t laps_started = 0, laps_cut = 0;
   std::int64_t stalls = 0;         ///< fade-outs because no plan came
-  std::int64_t refused_plans = 0;  ///< with a number that is not finite or out of bounds
+  std::int64_t refused_plans = 0;  ///< plans with a number not finite or out of bounds
   std::int64_t dropped_paths = 0;  ///< paths beyond the number of focal points, not drawn
-  double max_focus_step = 0.0;     ///< between samples while intensity > 1 % [m]
+  double max_focus_step = 0.0;     ///< largest, between samples with intensity > 1 % [m]
 };
 
 /// Share of laps that were not cut short; 1 without laps.
@@ -98,15 +100,15 @@ class Emitter : public SampleSource {
  public:
   ~Emitter() override;
 
-  /// The slot for the next plan; fill it, then submit(). What is in it before is of no meaning.
+  /// The slot for the next plan; fill it, then submit(). Its previous contents are unspecified.
   /// Planner's thread.
   LiftedPlan& draft();
-  /// Hands the draft over; a plan that the device had not fetched yet is replaced. Arc lengths are
-  /// computed anew. A plan of the other method, with a number that is not finite, a coordinate
-  /// beyond 10 m, or pressures that do not match its points is counted as refused and treated as
-  /// lose(). Planner's thread.
+  /// Hands the draft over; it replaces a plan that the device has not fetched yet. Arc lengths are
+  /// computed anew. A plan is counted as refused and treated as lose() if it is of the other method
+  /// or has a number that is not finite, a coordinate beyond 10 m, or pressures that do not match
+  /// its points. Planner's thread.
   void submit() noexcept;
-  /// The hand is gone, or a number was not finite: fade out within 50 ms, until the next plan.
+  /// Fades out within 50 ms, until the next plan: the hand is gone, or a number was not finite.
   /// Planner's thread.
   void lose() noexcept;
   /// Obeys a mute from the next block on: while it is on, output fades as after lose(), and plans
@@ -115,15 +117,16 @@ class Emitter : public SampleSource {
 
   int foci() const final;
 
-  /// The oldest report that was not read, once 90 % of a plan has been drawn or nothing follows it
-  /// any more; false when there is none. Keeps 1024, later ones are lost. Planner's thread.
+  /// Takes the oldest unread report; false if all are read. A plan is reported once 90 % of it has
+  /// been drawn or nothing follows it any more. Keeps 1024 reports; later ones are lost. Planner's
+  /// thread.
   bool next_take_over(TakeOver& out);
-  /// A copy of the counters as of the last block. Any one thread.
+  /// Returns a copy of the counters as of the last block. Any one thread.
   EmitStats stats() const;
 
  protected:
   struct Exchange;
-  /// @param method of the plans that it takes. @throws as validate() does.
+  /// @param method method of the plans that it takes. @throws as validate() does.
   Emitter(const EmitSettings& settings, double sample_rate, Method method);
   Exchange& exchange() { return *exchange_; }
 
@@ -131,7 +134,7 @@ class Emitter : public SampleSource {
   std::unique_ptr<Exchange> exchange_;
 };
 
-/// An emitter for the plans of a method. @throws as its constructor does.
+/// Makes an emitter for the plans of a method. @throws as its constructor does.
 std::unique_ptr<Emitter> make_emitter(Method method, const EmitSettings& settings,
                                       double sample_rate);
 

@@ -1,6 +1,5 @@
 #pragma once
-/// What a device is given: at each of its sample times, a position and an intensity per focal
-/// point.
+/// Input of a device: at each of its sample times, a position and an intensity per focal point.
 
 #include <Eigen/Core>
 #include <cstdint>

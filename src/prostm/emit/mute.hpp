@@ -1,18 +1,18 @@
 #pragma once
-/// Silence that is asked for from outside, whatever is planned.
+/// Silence requested from outside, whatever is planned.
 
 #include <atomic>
 #include <cstdint>
 
 namespace prostm {
 
-/// Why the output is to be silent.
+/// Reason for silencing the output.
 enum class MuteReason : std::uint32_t {
   Calibration = 1U,  ///< a finger is going to touch the transducers
   NoHand = 2U        ///< the last step of a run in real time found no hand
 };
 
-/// Asked for by any thread, obeyed by an emitter at its next block. Nobody waits.
+/// Set by any thread, obeyed by an emitter at its next block. Nobody waits.
 class Mute {
  public:
   void set(MuteReason reason, bool on) noexcept {
@@ -23,7 +23,7 @@ class Mute {
       reasons_.fetch_and(~bit, std::memory_order_relaxed);
     }
   }
-  /// For any reason.
+  /// Whether it is on for any reason.
   bool on() const noexcept { return reasons_.load(std::memory_order_relaxed) != 0; }
   bool on(MuteReason reason) const noexcept {
     return (reasons_.load(std::memory_order_relaxed) & static_cast<std::uint32_t>(reason)) != 0;

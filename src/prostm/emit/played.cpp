@@ -14,16 +14,16 @@ namespace prostm {
 namespace {
 
 constexpr double kLongestLap = 1.0;  // [s]
-constexpr int kLimitedLaps = 8;      // of the longest, to take the mean of under the power limit
+constexpr int kLimitedLaps = 8;      // longest laps averaged under the power limit
 
-/// One focal point on its way round.
+/// A lap of one focal point.
 struct Lap {
   std::vector<double> wanted;  // intensity at each sample, sample 0 at the path's first point
-  std::vector<double> power;   // Σ intensity² that was emitted there …
-  std::vector<int> times;      // … in so many laps
+  std::vector<double> power;   // Σ intensity² emitted there …
+  std::vector<int> times;      // … over this many laps
 };
 
-/// What the path wants, sample by sample.
+/// Returns the lap with the intensities that the path wants.
 Lap lap_of(const LiftedPath& path, const EmitSettings& settings, double sample_rate) {
   FocusMotion motion;
   motion.configure(sample_rate, kMaxFocusSpeed / sample_rate);
@@ -39,10 +39,10 @@ Lap lap_of(const LiftedPath& path, const EmitSettings& settings, double sample_r
   return lap;
 }
 
-/// Goes round all paths at once and keeps what is emitted after the longest lap.
+/// Goes round all paths at once and sums the power emitted after the first longest lap.
 void play(const EmitSettings& settings, double sample_rate, std::span<Lap> laps) {
   std::size_t longest = 0;
-  double power = 0.0;  // at most, if all were strongest at once
+  double power = 0.0;  // upper bound, as if all peaked at once
   for (const Lap& lap : laps) {
     longest = std::max(longest, lap.wanted.size());
     const double most = *std::max_element(lap.wanted.begin(), lap.wanted.end());
@@ -68,7 +68,7 @@ void play(const EmitSettings& settings, double sample_rate, std::span<Lap> laps)
   }
 }
 
-/// What (E8) multiplies the pressure of each path and focus by, in their place.
+/// Returns the plan with the factor of (E8) in place of each pressure.
 LiftedPlan tilt_factors(LiftedPlan plan, const TargetFrame& frame, double bound) {
   for (LiftedPath& path : plan.paths) std::fill(path.pressure.begin(), path.pressure.end(), 1.0);
   for (LiftedFocus& focus : plan.foci) focus.pressure = 1.0;
@@ -86,12 +86,12 @@ double power_at(const Lap& lap, const LiftedPath& path, double s) {
   return (1.0 - share) * of(low) + share * of(low + 1);
 }
 
-/// Appends the segments of one path: as many pressures as there are samples on each.
+/// Appends the segments of one path, each with at least as many pressures as samples.
 void append(const Lap& lap, const LiftedPath& path, const LiftedPath& factor, std::size_t segments,
             double full_scale, SegmentPressures& out) {
   const std::size_t points = path.p_D.size(), pieces = points / segments;
   for (std::size_t segment = 0; segment < segments; ++segment) {
-    // arc length at so many pieces of the segment
+    // arc length after so many pieces of the segment
     const auto s_at = [&](double piece) {
       const std::size_t i = segment * pieces + static_cast<std::size_t>(piece);
       if (i >= points || pieces == 0) return path.length;
@@ -143,7 +143,7 @@ SegmentPressures played_pressures(const Plan& plan, const TargetFrame& frame, Em
   if (!laps.empty()) play(settings, sample_rate, laps);
 
   SegmentPressures out;
-  std::size_t k = 0;  // of the lifted paths, which leave out those without points
+  std::size_t k = 0;  // index of the lifted path; paths without points are left out
   for (const FocalPath& path : plan.paths) {
     if (path.points.empty()) continue;
     append(laps[k], lifted.paths[k], factors.paths[k], path.points.size(),

@@ -1,5 +1,5 @@
 #pragma once
-/// What a plan's pressures become when they are played.
+/// The pressures of a plan as they are played.
 
 #include "prostm/emit/emitter.hpp"
 #include "prostm/plan/plan.hpp"
@@ -8,22 +8,22 @@
 
 namespace prostm {
 
-/// The full scale of a plan that stands for itself, without a session's: γ times the target's
-/// largest pressure, within what validate() takes.
+/// Returns the full scale of a plan on its own, outside a session: γ times the target's largest
+/// pressure, within the bounds of validate().
 double own_full_scale(double gain, double largest);
 
-/// The pressures that PathEmitter plays once a plan goes round, (E9): the drive law, full scale,
-/// the limit on how fast an intensity changes and the power limit have done what they do. They are
-/// those of the second lap, each path begun at its first point; where the power limit makes laps
-/// differ, their mean. What (E8) multiplied is divided again, so that what it asks for beyond full
-/// scale is missing and nothing else is changed. Of a plan of foci each one's peak, (B4).
-/// A lap of more than a second counts as one of a second.
-/// @param frame that the plan was made for. @param settings as many paths or foci as the plan has
-/// are played. @throws as validate(settings, sample_rate) does. @pre every patch of the plan is one
-/// of the frame's.
+/// Returns the pressures that PathEmitter plays once a plan goes round, (E9): after the drive law,
+/// full scale, the slew limit and the power limit. They are those of the second lap, each path
+/// begun at its first point, or the mean of laps if the power limit makes them differ. The factor
+/// of (E8) is divided out again, so that only its demand beyond full scale is missing. For a plan
+/// of foci, the peak of each, (B4).
+/// A lap of more than a second counts as a second.
+/// @param frame frame that the plan was made for. @param settings all paths or foci of the plan are
+/// played, whatever `foci` says. @throws as validate(settings, sample_rate) does. @pre every patch
+/// of the plan is in the frame.
 SegmentPressures played_pressures(const Plan& plan, const TargetFrame& frame, EmitSettings settings,
                                   double sample_rate);
-/// The same of a plan for one field.
+/// The same for a plan for one field.
 SegmentPressures played_pressures(const Plan& plan, const TargetField& field, EmitSettings settings,
                                   double sample_rate);
 

@@ -5,7 +5,7 @@
 
 namespace prostm {
 
-/// a at `turns` of a period, 0..1; exactly 0 at 0.
+/// Returns a at `turns` of a period, 0..1; exactly 0 at 0.
 double envelope(Waveform waveform, double turns);
 
 }  // namespace prostm

@@ -1,5 +1,5 @@
 #pragma once
-/// What passes between the planner's thread and the device's. Private to emit.
+/// The exchange between the planner's thread and the device's. Private to emit.
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +13,14 @@
 
 namespace prostm {
 
-/// What is handed to the device's thread.
+/// A message to the device's thread.
 struct Message {
   LiftedPlan plan;
   bool lost = false;
   bool refused = false;
 };
 
-/// The longest way between two samples of a focal point that sounds: max_focus_step.
+/// The longest step between two samples of an audible focal point: max_focus_step.
 class LongestStep {
  public:
   void look(const FocusSample& before, const FocusSample& now) {
@@ -35,7 +35,7 @@ class LongestStep {
   double squared_ = 0.0;
 };
 
-/// What an emitter is told at the beginning of a block.
+/// The news for an emitter at the beginning of a block.
 enum class News : std::uint8_t { None, Plan, Lost };
 
 struct Emitter::Exchange {
@@ -45,7 +45,7 @@ struct Emitter::Exchange {
   Latest<Message> inbox;
   Latest<EmitStats> published;
   TakeOverLog log;
-  std::shared_ptr<const Mute> mute;  // may be none
+  std::shared_ptr<const Mute> mute;  // may be null
 
   /// Takes the newest message, if one came; counts refused plans. Device's thread.
   News receive(EmitStats& stats) {
@@ -57,7 +57,7 @@ struct Emitter::Exchange {
     return message.lost ? News::Lost : News::Plan;
   }
 
-  /// A block of an emitter's samples, which hears at its beginning what is new. Device's thread.
+  /// Fills a block with an emitter's samples; first tells the emitter the news. Device's thread.
   template <class Impl>
   void fill(Impl& impl, std::int64_t first, std::span<FocusSample> out) {
     const auto foci = static_cast<std::size_t>(settings.foci);

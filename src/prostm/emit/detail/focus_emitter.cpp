@@ -32,13 +32,13 @@ std::vector<double> envelope_of(const EmitSettings& settings, int period) {
   return values;
 }
 
-/// What the focal points do from the next zero of the envelope on.
+/// Action of the focal points at the next zero of the envelope.
 enum class Next : std::uint8_t { GoOn, TakeOver, Rest };
 
 struct Focus {
   Vec3 p_D = Vec3(0.0, 0.0, 0.2);  // unused focal points rest 200 mm above the array
   double amplitude = 0.0;          // intensity at the peak
-  bool saturated = false;          // by full scale
+  bool saturated = false;          // clipped at full scale
   FocusSample last;
 };
 
@@ -57,7 +57,7 @@ struct FocusEmitter::Impl {
 
   // constant
   const EmitSettings& settings;
-  const std::vector<double> envelope;  // of a period
+  const std::vector<double> envelope;  // one period
   const std::int64_t stall_samples;
 
   // device's thread
@@ -66,8 +66,8 @@ struct FocusEmitter::Impl {
   LongestStep longest_step;
   TakeOverLog::Entry entry = TakeOverLog::kNone;
   Next next = Next::GoOn;
-  std::size_t phase = 0;        // of the next sample
-  bool silent = true;           // the last sample
+  std::size_t phase = 0;        // envelope index of the next sample
+  bool silent = true;           // whether the last sample was silent
   bool sounding = false;        // some amplitude is above 0
   bool limited = false;         // by the power limit
   bool fed = false;             // a plan came and was not lost since
@@ -84,7 +84,7 @@ struct FocusEmitter::Impl {
   void write(Focus& f, double a, FocusSample& out);
 };
 
-/// Does what the newest message says, if one came.
+/// Acts on the newest message, if one came.
 void FocusEmitter::Impl::receive(std::int64_t sample) {
   const News news = exchange.receive(stats);
   if (news == News::None) return;
@@ -115,7 +115,7 @@ void FocusEmitter::Impl::place(const LiftedPlan& plan) {
   }
 }
 
-/// One factor for all where Σ I² at the peak exceeds the limit.
+/// Scales all by one factor if Σ I² at the peak exceeds the limit.
 void FocusEmitter::Impl::limit_power() {
   double power = 0.0;
   for (const Focus& f : foci()) power += f.amplitude * f.amplitude;
@@ -151,7 +151,7 @@ void FocusEmitter::Impl::write(Focus& f, double a, FocusSample& out) {
   stats.limited += sounds && limited ? 1 : 0;
 }
 
-/// One sample of every focal point.
+/// Emits one sample of every focal point.
 void FocusEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
   // silent stall
   if (fed && ++since_plan > stall_samples) {
@@ -168,7 +168,7 @@ void FocusEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
     exchange.log.draw(entry, 1.0 / static_cast<double>(envelope.size()), sample);
   }
 
-  // the zero lasts while there is nothing to modulate, and until what waits has taken over
+  // the zero lasts while there is nothing to modulate, and until a waiting plan has taken over
   silent = phase == 0;
   if (sounding && (phase > 0 || next == Next::GoOn)) phase = (phase + 1) % envelope.size();
 }

@@ -11,13 +11,12 @@ namespace prostm {
 /// envelope (B4), whose period is a whole number of samples. A new plan takes over at the
 /// envelope's next zero, where its foci are matched to the focal points by least total distance
 /// (B5) and get their intensities, sqrt(pressure / full scale) at the peak, all scaled by one
-/// factor where the power limit asks for it; they keep both until the next plan. The focal points
-/// move between two silent samples, for which a zero at which a plan takes over lasts one sample
-/// longer.
+/// factor if the power limit requires it; they keep both until the next plan. The focal points move
+/// between two silent samples; so a zero at which a plan takes over lasts one sample longer.
 ///
-/// The guarantees are those of PathEmitter, of which some are trivial. After lose(), or when plans
-/// stop coming, the output is silent from the next zero on: at most one period, 40 ms.
-/// docs/design.md, AM baseline (B).
+/// The guarantees are those of PathEmitter; some are trivial here. After lose(), or when plans stop
+/// coming, the output is silent from the next zero on: at most one period, 40 ms. docs/design.md,
+/// AM baseline (B).
 class FocusEmitter final : public Emitter {
  public:
   /// @param sample_rate of the device [Hz], at least 3150.

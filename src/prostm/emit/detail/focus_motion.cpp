@@ -7,8 +7,8 @@ namespace prostm {
 namespace {
 
 constexpr double kSlowest = 1e-6;  // below this speed a focal point is at rest [m/s]
-constexpr double kRounding =
-    1e-6;  // of a sample: a lap this much longer than n samples still takes n
+// a lap longer than n samples by up to this share of a sample still takes n
+constexpr double kRounding = 1e-6;
 constexpr double kNothing = 1e-9;  // an offset that counts as zero [m]
 
 }  // namespace
@@ -77,7 +77,7 @@ double FocusMotion::advance() {
   if (s < 0.0) s += path_.length;
   if (s >= path_.length) s -= path_.length;  // also where the line above rounds up to it
 
-  // position: on the path, plus what is left of the offset
+  // position: on the path, plus the remaining offset
   const PathPoint point = sample_at(s);
   if (moving_over_) shrink_offset(point.p_D - base_);
   base_ = point.p_D;
@@ -87,10 +87,10 @@ double FocusMotion::advance() {
   return point.pressure;
 }
 
-// The step is path_step − d·u with u the offset's direction and d what it shrinks by. Its norm is
-// the largest step when d² − 2 d (path_step·u) + |path_step|² − max² = 0, whose larger root is at
-// least max − |path_step| >= 0. Half of the largest step bounds d, so that a focal point which runs
-// ahead of its path slows down and does not turn back.
+// The step is path_step − d·u with u the offset's direction and d the length by which it shrinks.
+// Its norm is the largest step when d² − 2 d (path_step·u) + |path_step|² − max² = 0, whose larger
+// root is at least max − |path_step| >= 0. Half of the largest step bounds d, so that a focal point
+// which runs ahead of its path slows down and does not turn back.
 void FocusMotion::shrink_offset(const Vec3& path_step) {
   const double distance = offset_.norm();
   if (distance < kNothing) {

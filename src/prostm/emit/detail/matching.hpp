@@ -1,5 +1,5 @@
 #pragma once
-/// Which focal point takes which path of a new plan.
+/// Matching of focal points to the paths of a new plan.
 
 #include <array>
 
@@ -9,12 +9,12 @@ namespace prostm {
 
 inline constexpr int kNoPath = -1;
 
-/// cost[focus][path], and cost[focus][kMaxPaths] for a focal point that gets none.
+/// cost[focus][path], and cost[focus][kMaxPaths] for a focal point that gets no path.
 using MatchCosts = std::array<std::array<double, kMaxPaths + 1>, kMaxPaths>;
 
-/// The assignment of least total cost in which every path has a focal point, (E5): exact, by
-/// dynamic programming over sets of paths; ties go to the lower index. @pre 0 <= paths <= foci <=
-/// kMaxPaths.
+/// Returns the assignment of least total cost in which every path has a focal point, (E5): exact,
+/// by dynamic programming over sets of paths; ties go to the lower index. @pre 0 <= paths <= foci
+/// <= kMaxPaths.
 /// @return for each focal point its path, or kNoPath.
 std::array<int, kMaxPaths> match_paths(const MatchCosts& cost, int foci, int paths) noexcept;
 

@@ -16,7 +16,7 @@ namespace prostm {
 namespace {
 
 constexpr double kFloatMargin = 0.999;  // keeps steps in bounds when positions become floats
-constexpr double kLongestLap = 1.0;     // that a new plan waits for [s]
+constexpr double kLongestLap = 1.0;     // a new plan waits for a lap up to this long [s]
 
 enum class State : std::uint8_t {
   Resting,    // silent, on no path
@@ -27,10 +27,10 @@ enum class State : std::uint8_t {
 struct Focus {
   State state = State::Resting;
   FocusMotion motion;
-  bool has_next = false;  // a newer plan says what to do after this lap …
-  int next = kNoPath;     // … which path of it to follow, or none
-  bool in_fade = false;   // of a transition, until the intensity is what its path wants
-  bool jumped = false;    // in this sample
+  bool has_next = false;  // a newer plan decides what follows this lap …
+  int next = kNoPath;     // … the path of it to follow, or kNoPath
+  bool in_fade = false;   // until the intensity is as its path wants
+  bool jumped = false;    // whether it jumped in this sample
   TakeOverLog::Entry entry = TakeOverLog::kNone;
   std::int64_t to_draw = 0;  // samples of the path not drawn yet
   FocusSample last;
@@ -60,7 +60,7 @@ struct PathEmitter::Impl {
   std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
   const LiftedPlan& plan() const { return exchange.inbox.value().plan; }
 
-  /// Goes over at the end of its lap, not before.
+  /// Whether it goes over to a new plan only at the end of its lap.
   bool waits(const Focus& f) const { return !at_once && f.motion.lap_samples() <= longest_lap; }
 
   void receive(std::int64_t sample);
@@ -92,7 +92,7 @@ PathEmitter::Impl::Impl(Exchange& e, double sample_rate)
   }
 }
 
-/// Does what the newest message says, if one came.
+/// Acts on the newest message, if one came.
 void PathEmitter::Impl::receive(std::int64_t sample) {
   const News news = exchange.receive(stats);
   if (news == News::None) return;
@@ -105,7 +105,7 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   since_plan = 0;
   assign(sample);
 
-  // who fades already goes over at once if it can, and so does who need not wait
+  // a focal point that fades already, or need not wait, goes over at once if it can
   for (std::size_t i = 0; i < foci().size(); ++i) {
     Focus& f = focus[i];
     if (f.state == State::Leaving) {
@@ -118,7 +118,7 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   }
 }
 
-/// Cost of a take-over in (E5) [m]: the way to go, or what stands for a fade.
+/// Cost of a take-over in (E5) [m]: the way to go, or a substitute for a fade.
 double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path) const {
   constexpr double kFadeUp = FocusMotion::kMaxOffset, kFadeBoth = 2.0 * kFadeUp;
   if (f.state == State::Resting) return kFadeUp;
@@ -166,7 +166,7 @@ void PathEmitter::Impl::cut_lap(const Focus& f) {
   if (!f.motion.at_rest() && !f.motion.lap_ended()) ++stats.laps_cut;
 }
 
-/// Goes over to the next path by moving; false when it is too far. @pre next is a path.
+/// Goes over to the next path by moving; false if that is too far. @pre next is a path.
 bool PathEmitter::Impl::join(Focus& f, std::int64_t sample) {
   const LiftedPath& path = plan().paths[static_cast<std::size_t>(f.next)];
   const PathPlace place = nearest_place(path, f.motion.position());
@@ -176,8 +176,8 @@ bool PathEmitter::Impl::join(Focus& f, std::int64_t sample) {
   return true;
 }
 
-/// Where a silent focal point begins a path: at its first point, as planned, with those that begin
-/// at the same time; beside others that run already, where it keeps away from them.
+/// Returns where a silent focal point begins a path: at its first point, as planned, unless others
+/// run already; then where it keeps away from them.
 PathPlace PathEmitter::Impl::start_place(const Focus& f, const LiftedPath& path) const {
   boost::container::static_vector<const FocusMotion*, kMaxPaths> others;
   bool any_runs = false;
@@ -217,7 +217,7 @@ void PathEmitter::Impl::adopt(Focus& f, std::int64_t sample) {
   if (!f.motion.at_rest()) ++stats.laps_started;
 }
 
-/// Starts to go over to what comes next: by moving if it is near, else by fading.
+/// Starts to go over to the next path or to rest: by moving if the path is near, else by fading.
 void PathEmitter::Impl::take_over(Focus& f, Drive& d, std::int64_t sample) {
   if (f.next != kNoPath && join(f, sample)) return;
   f.state = State::Leaving;
@@ -225,7 +225,7 @@ void PathEmitter::Impl::take_over(Focus& f, Drive& d, std::int64_t sample) {
   d.max_fall = fade_slew;
 }
 
-/// One focal point to its next sample: take-overs, position, and the intensity that its path wants.
+/// Moves one focal point to its next sample: take-over, position, and wanted intensity.
 void PathEmitter::Impl::move(Focus& f, Drive& d, std::int64_t sample) {
   d.wanted = 0.0;
   f.jumped = false;
@@ -237,7 +237,7 @@ void PathEmitter::Impl::move(Focus& f, Drive& d, std::int64_t sample) {
     }
   }
 
-  // silent: on to the next path, where this sample stays silent, so that no one feels the jump
+  // if silent, on to the next path; this sample stays silent, so that nobody feels the jump
   if (f.state != State::Following && d.intensity <= 0.0) {
     if (f.has_next) jump(f, sample);
   }
@@ -253,13 +253,13 @@ void PathEmitter::Impl::move(Focus& f, Drive& d, std::int64_t sample) {
   stats.saturated += saturated ? 1 : 0;
 }
 
-/// Keeps the books of one focal point after a sample.
+/// Updates the statistics of one focal point after a sample.
 void PathEmitter::Impl::count(Focus& f, const Drive& d, std::int64_t sample) {
   // a fade ends when the intensity is the path's
   if (f.state == State::Following && !f.jumped && d.intensity >= d.wanted) f.in_fade = false;
   stats.faded += f.in_fade ? 1 : 0;
 
-  // what has been drawn of the path, once round
+  // the path's drawn length, once round
   if (f.state == State::Following && !f.in_fade && f.motion.on_path() && f.to_draw > 0) {
     --f.to_draw;
     exchange.log.draw(f.entry, f.motion.length() / static_cast<double>(f.motion.lap_samples()),
@@ -274,7 +274,7 @@ void PathEmitter::Impl::count(Focus& f, const Drive& d, std::int64_t sample) {
   f.last = now;
 }
 
-/// One sample of every focal point.
+/// Emits one sample of every focal point.
 void PathEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
   // silent stall
   if (fed && ++since_plan > stall_samples) {
@@ -285,7 +285,7 @@ void PathEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
     release();
   }
 
-  // what the paths want, then what the limits allow
+  // wanted intensities, then the limits
   for (std::size_t i = 0; i < out.size(); ++i) move(focus[i], drive[i], sample);
   const std::span<Drive> drives(drive.data(), out.size());
   const bool limited = limit_drives(drives, fade_slew, settings.power_limit);

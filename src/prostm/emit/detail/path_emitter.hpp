@@ -15,10 +15,10 @@ namespace prostm {
 ///
 /// A new plan's paths are matched to the focal points, (E5). Each focal point goes over at the end
 /// of its lap (at the next block with switch_at = "now", or when a lap takes over 1 s): by moving,
-/// when the new path is near, (E3), else by fading down, jumping while silent, and fading up. Those
-/// that all start from silence begin at their paths' first points, one that joins others which run
-/// where it keeps away from them, (E6). A focal point that no path needs fades down and rests where
-/// it is. docs/design.md, section 7.
+/// if the new path is near, (E3), else by fading down, jumping while silent, and fading up. Focal
+/// points that all start from silence begin at their paths' first points; one that joins running
+/// ones begins where it keeps away from them, (E6). A focal point that no path needs fades down and
+/// rests where it is. docs/design.md, section 7.
 class PathEmitter final : public Emitter {
  public:
   /// @param sample_rate of the device [Hz]. @throws as validate() does.

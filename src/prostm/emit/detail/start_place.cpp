@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kPlaces = 32, kLaps = 2;
 constexpr double kMm = 1e3;            // per metre
-constexpr float kLeastSquare = 1e-3F;  // added to a distance's, so that costs are finite [mm²]
+constexpr float kLeastSquare = 1e-3F;  // added to squared distances: keeps costs finite [mm²]
 
 }  // namespace
 
@@ -23,7 +23,7 @@ PathPlace first_place(const LiftedPath& path) {
 PathPlace place_apart(const LiftedPath& path, const FocusMotion& motion,
                       std::span<const FocusMotion* const> others) {
   const std::int64_t lap = motion.lap_samples(path);
-  if (lap == 1) return first_place(path);  // where it rests
+  if (lap == 1) return first_place(path);  // it rests there
   // twice round, so that the places of all starts at one moment lie in a row
   std::array<std::array<float, 2 * kPlaces>, 3> round;
   for (std::size_t i = 0; i < 2 * kPlaces; ++i) {

@@ -12,8 +12,7 @@ void TakeOverLog::arrive(std::int64_t plan, double total_length, std::int64_t sa
 }
 
 TakeOverLog::Entry TakeOverLog::follow(std::int64_t sample) noexcept {
-  // the entry of the newest plan, or a free one: with as many entries as followers and one more
-  // there always is one
+  // the entry of the newest plan, or a free one; one is always free, since followers are fewer
   Entry entry = kNone;
   for (Entry i = 0; i < static_cast<Entry>(plans_.size()); ++i) {
     const Plan& plan = plans_[static_cast<std::size_t>(i)];

@@ -1,5 +1,5 @@
 #pragma once
-/// Which plans are being drawn, and how much of each has been.
+/// Progress of the plans that are being drawn.
 
 #include <array>
 #include <cstdint>
@@ -18,17 +18,17 @@ class TakeOverLog {
   static constexpr Entry kNone = -1;
 
   TakeOverLog();
-  /// A plan arrived before this sample, whose paths have this length in all [m]; earlier ones can
-  /// no longer be taken over.
+  /// Records that a plan arrived before this sample; its paths have this length in all [m]. Earlier
+  /// plans can no longer be taken over.
   void arrive(std::int64_t plan, double total_length, std::int64_t sample) noexcept;
-  /// A focal point takes the newest plan over at this sample.
+  /// Records that a focal point takes the newest plan over at this sample.
   Entry follow(std::int64_t sample) noexcept;
-  /// A focal point has drawn this length of the plan [m], none of it twice.
+  /// Records that a focal point has drawn this length of the plan [m], no part twice.
   void draw(Entry entry, double length, std::int64_t sample) noexcept;
-  /// A focal point stops following.
+  /// Records that a focal point stops following.
   void leave(Entry entry) noexcept;
 
-  /// The oldest report that was not read. Reader's thread.
+  /// Takes the oldest unread report; false if all are read. Reader's thread.
   bool next(TakeOver& out) { return reports_.pop(out); }
 
  private:
@@ -39,8 +39,8 @@ class TakeOverLog {
     int followers = 0;
     bool reported = false;
   };
-  static constexpr double kRedrawn =
-      0.9;  // share of the path length, as in the run summary's redraw_ms
+  // share of the path length, as in the run summary's redraw_ms
+  static constexpr double kRedrawn = 0.9;
   static constexpr std::size_t kReports = 1024;
 
   void report(Plan& plan, std::int64_t redrawn_sample) noexcept;
