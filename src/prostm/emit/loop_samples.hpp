@@ -19,22 +19,22 @@ struct LoopSamples {
   /// How much longer each lap is than the plan says, as a share of it: below 0, shorter.
   std::vector<double> stretch;
 
-  double largest_stretch() const;  ///< of their magnitudes; 0 without foci
+  double largest_stretch() const;  ///< in magnitude; 0 without foci
 };
 
-/// What PathEmitter gives for a plan that goes on, each path from its first point, with periods
-/// adjusted so that all play whole laps in one loop, (E7): the shortest loop of a multiple of
-/// kLoopUnit samples, from one to eight of the longest laps, in which no lap changes by more than
-/// 1 %, or where there is none the one with the least change.
-/// A plan of foci gives what FocusEmitter does: the fewest whole periods of the modulation, (B4),
-/// that are a multiple of kLoopUnit samples.
-/// @param plan its paths are measured, with finite numbers; one of no length or no speed is a
-/// focal point at rest, one of no points a silent one.
+/// Returns the samples of a plan that goes on, as PathEmitter plays them, each path from its first
+/// point. Periods are adjusted so that all paths play whole laps in one loop, (E7). Its length is a
+/// multiple of kLoopUnit samples, from one to eight of the longest laps: the shortest in which no
+/// lap changes by more than 1 %, or else the one with the least change.
+/// A plan of foci is played as FocusEmitter does, for the fewest whole periods of the modulation,
+/// (B4), that are a multiple of kLoopUnit samples.
+/// @param plan its paths are measured, with finite numbers. A path without length or speed is a
+/// focal point at rest, a path without points is silent.
 /// @throws as validate(settings, sample_rate) does, and std::invalid_argument for a plan without
 /// paths or foci, with more than settings.foci, or with a lap that takes more than a second.
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate);
 
-/// Of a plan's paths [s]; 0 where every focal point is at rest.
+/// Returns the time of the longest lap of a plan [s]; 0 if every focal point is at rest.
 double longest_lap(const LiftedPlan& plan);
 
 /// Loops can be cut in parts of this many samples, 0.2 ms at 40 kHz.
