@@ -120,7 +120,9 @@ TEST_F(Server, RefusesRequestsThatSayTwiceWhereTheyGoOrComeFrom) {
   const std::string start = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n";
   for (const char* second : {"Host: 127.0.0.1\r\n", "Host: evil.example\r\n",
                              "Origin: http://127.0.0.1\r\nOrigin: http://evil.example\r\n"}) {
-    EXPECT_EQ(status_of(test::raw_exchange(port_, start + second + "\r\n")), 400) << second;
+    const std::string answer = test::raw_exchange(port_, start + second + "\r\n");
+    EXPECT_EQ(status_of(answer), 400) << second;
+    EXPECT_THAT(answer, HasSubstr("Connection: close")) << second;
   }
 }
 

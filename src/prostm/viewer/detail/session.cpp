@@ -94,7 +94,8 @@ void Session::on_request(beast::error_code wrong) {
     a.body = "As many pages as this server takes are open already.\n";
   }
   if (a.live) return upgrade();
-  reply(a, request.keep_alive(), parts.method == "HEAD");
+  // nothing more is read from whoever sends requests that can be understood in two ways
+  reply(a, request.keep_alive() && a.status != 400, parts.method == "HEAD");
 }
 
 void Session::reply(const HttpAnswer& a, bool keep_alive, bool head) {
