@@ -17,10 +17,9 @@ namespace {
 using Path = std::filesystem::path;
 constexpr std::size_t kMaxPlanBytes = std::size_t{64} << 20;
 
-TargetField read_field_file(const Path& path, std::optional<double> cell_mm, int frame) {
-  FieldFileOptions options;
-  options.cell_mm = cell_mm;
-  options.frame = frame;
+TargetField read_field_file(const Path& path, std::optional<double> cell_mm, int frame, bool invert,
+                            std::optional<double> width_mm) {
+  const FieldFileOptions options{cell_mm, width_mm, frame, invert};
   const py::gil_scoped_release unlocked;
   return read_field(path.string(), options);
 }
@@ -52,9 +51,12 @@ void write_plan_file(const Path& path, const Plan& plan, const TargetField& targ
 void bind_fields(py::module_& m) {
   m.def("read_field", &read_field_file,
         "Reads a field by the ending of its name, as the command line does: .json\n"
-        "(prostm-field/1), .npy and .png (both need cell_mm), .h5 (frame says which).\n"
+        "(prostm-field/1), .npy and .png (both need cell_mm, or the width of the whole field as\n"
+        "width_mm), .h5 (frame says which). invert: a .png is drawn black on white, so that black\n"
+        "is the pressure.\n"
         "Raises InputError, a ValueError, with a sentence that names the file.",
-        py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = 0);
+        py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = 0, py::kw_only(),
+        py::arg("invert") = false, py::arg("width_mm") = py::none());
   m.def(
       "write_field",
       [](const Path& path, const TargetField& field) {

@@ -41,9 +41,8 @@ class Documentation : public SettingsReader {
 
  private:
   static std::string bounds(const Setting& s) {
-    const std::string unit = *s.unit == '\0' ? "" : std::string(" ") + s.unit;
-    return "; " + std::string(py::str(py::float_(s.least))) + " to " +
-           std::string(py::str(py::float_(s.most))) + unit;
+    const std::string text = bounds_text(s);
+    return text.empty() ? text : "; " + text;
   }
   void add(const Setting& s, const std::string& value, const std::string& range) {
     text += std::string("  ") + s.name + " = " + value + range + ": " + s.help + "\n";

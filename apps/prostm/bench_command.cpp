@@ -251,6 +251,7 @@ int bench_command(const BenchOptionsGiven& given) {
     if (!complete) break;
   }
   write_json(given.common.json, rows);
+  say_written(out, given.common.json);
   return interrupt.status();
 }
 

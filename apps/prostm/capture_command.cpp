@@ -56,10 +56,12 @@ int capture_command(const CaptureOptionsGiven& given) {
   const RunSummary summary = run(pipeline, settings, options, capture);
   if (summary.failure) std::rethrow_exception(summary.failure);
   recorder.close();
-  fmt::print(prose(given.common.json), "{}: {} fields of {}\n", given.out, capture.taken(),
-             settings.scene);
+  std::FILE* out = prose(given.common.json);
+  fmt::print(out, "{} fields of {}\n", capture.taken(), settings.scene);
+  say_written(out, given.out);
   write_json(given.common.json,
              {{"file", given.out}, {"scene", settings.scene}, {"frames", capture.taken()}});
+  say_written(out, given.common.json);
   if (capture.interrupt().requested()) return capture.interrupt().status();
   if (capture.taken() < given.frames) {
     throw InputError(

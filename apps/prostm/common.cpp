@@ -207,6 +207,10 @@ std::FILE* prose(const std::string& json_option) {
   return json_option == "-" ? stderr : stdout;
 }
 
+void say_written(std::FILE* out, const std::string& path) {
+  if (!path.empty() && path != "-") fmt::print(out, "wrote {}\n", path);
+}
+
 void flush(std::FILE* out) {
   const int error = std::fflush(out) == 0 ? 0 : errno;
   if (error == 0 && std::ferror(out) == 0) return;

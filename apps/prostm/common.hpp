@@ -91,6 +91,9 @@ class Progress {
 /// the JSON.
 std::FILE* prose(const std::string& json_option);
 
+/// Says that an output was written: "wrote palm.png". Says nothing for "-" and for no name.
+void say_written(std::FILE* out, const std::string& path);
+
 /// Writes what was printed. @throws InputError when it cannot be.
 void flush(std::FILE* out);
 

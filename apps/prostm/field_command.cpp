@@ -40,14 +40,8 @@ Input read_input(const FieldOptionsGiven& given) {
                      "one");
   }
   Input input{file.plan, file.raster, false};
-  if (given.target.empty()) {
-    if (given.cell_mm) throw InputError("--cell-mm needs the --field that it is of");
-    return input;
-  }
-  FieldFileOptions options;
-  options.cell_mm = given.cell_mm;
-  options.frame = given.frame;
-  input.raster = read_field(given.target, options);
+  if (given.target.empty()) return input;
+  input.raster = read_field(given.target, given.file);
   input.has_target = true;
   if (input.raster.rows != file.raster.rows || input.raster.cols != file.raster.cols ||
       std::abs(input.raster.cell - file.raster.cell) > 1e-6 ||
@@ -158,6 +152,7 @@ void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
   if (!given.common.json.empty()) {
     write_file(given.common.json, widths_to_json(array.name, table));
   }
+  say_written(out, given.common.json);
 }
 
 /// Drives for the whole loop, with progress; false when it was interrupted.
@@ -212,6 +207,8 @@ void tell(const PhysicalReport& report, const Input& input, const FieldOptionsGi
   print_power(out, report);
   print_felt(out, report);
   print_scores(out, report);
+  say_written(out, given.common.figure);
+  say_written(out, given.common.json);
 }
 
 }  // namespace

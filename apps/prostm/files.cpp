@@ -2,22 +2,36 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/nearest_name.hpp"
 
 namespace prostm::app {
 
-void Files::reads(const std::string& option, const std::string& path) {
-  entries_.push_back({option, path, check_readable, false, {}});
+void Files::reads(const std::string& option, const std::string& path,
+                  std::vector<std::string> names) {
+  entries_.push_back({option, path, check_readable, false, {}, std::move(names)});
 }
 
 void Files::writes(const std::string& option, const std::string& path, Check also,
                    const std::string& of) {
-  entries_.push_back({option, path, also, true, of});
+  entries_.push_back({option, path, also, true, of, {}});
 }
 
 void Files::check() const {
   for (const Entry& entry : entries_) {
-    if (!entry.output) entry.check(entry.path);
+    // an option that follows an option takes the place of its value
+    if (entry.path.starts_with("--")) {
+      throw InputError(fmt::format("{} needs the name of a file, and {} is an option", entry.option,
+                                   entry.path));
+    }
+    if (entry.output) continue;
+    try {
+      entry.check(entry.path);
+    } catch (const InputError& error) {
+      throw InputError(error.what() + did_you_mean(entry.path, entry.names));
+    }
   }
   for (const Entry& entry : entries_) {
     if (!entry.output) continue;

@@ -15,8 +15,10 @@ class Files {
  public:
   using Check = void (*)(const std::string& path);
 
-  /// @param option names the file in messages, e.g. "--hand".
-  void reads(const std::string& option, const std::string& path);
+  /// @param option names the file in messages, e.g. "--hand". @param names what the option takes
+  /// besides files: one of them may have been meant.
+  void reads(const std::string& option, const std::string& path,
+             std::vector<std::string> names = {});
   /// @param also what else must hold before the work, if anything. @param of how the option of an
   /// input begins that the output may be: a file that the command brings up to date.
   void writes(const std::string& option, const std::string& path, Check also = check_writable,
@@ -31,6 +33,7 @@ class Files {
     Check check;
     bool output;
     std::string of;
+    std::vector<std::string> names;
   };
   std::vector<Entry> entries_;
 };

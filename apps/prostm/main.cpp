@@ -15,6 +15,7 @@
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/version.hpp"
+#include "usage.hpp"
 
 namespace {
 
@@ -22,7 +23,7 @@ using namespace prostm::app;
 
 /// What the command line asks for: done once it has been parsed and its files have been checked.
 struct Work {
-  const Files* files = nullptr;
+  const Files* files = nullptr;  ///< null: none
   std::function<int()> run;
 };
 
@@ -35,15 +36,17 @@ CLI::Option* add_input(CLI::App& command, Files& files, const std::string& name,
       ->each([&files, name](const std::string& path) { files.reads(name, path); });
 }
 
-/// The same, where some values are names of what is built in.
+/// The same, where some values are names of what is built in. @param names those that a misspelled
+/// file may stand for.
 template <class Value>
 CLI::Option* add_input_or_name(CLI::App& command, Files& files, const std::string& name,
                                Value& value, bool (*is_file)(const std::string&),
-                               const std::string& help) {
+                               const std::string& help,
+                               const std::vector<std::string>& names = {}) {
   return command.add_option(name, value, help)
       ->type_name("NAME|INPUT")
-      ->each([&files, name, is_file](const std::string& path) {
-        if (is_file(path)) files.reads(name, path);
+      ->each([&files, name, is_file, names](const std::string& path) {
+        if (is_file(path)) files.reads(name, path, names);
       });
 }
 
@@ -85,8 +88,22 @@ void add_array(CLI::App& command, CommonOptions& o, const std::string& help) {
   add_input_or_name(command, o.files, "--array", o.array, names_json, help);
 }
 
-void add_figure(CLI::App& command, CommonOptions& o, const std::string& help) {
-  add_output(command, o.files, "--figure", o.figure, prostm::check_figure, help);
+CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help) {
+  return add_output(command, o.files, "--figure", o.figure, prostm::check_figure, help);
+}
+
+/// How the file of a field is read. @param of the option that names the file, unless it is always
+/// there.
+void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of = nullptr) {
+  auto* cell = command.add_option("--cell-mm", o.cell_mm, "edge of a cell of a .npy or .png field");
+  auto* width = command.add_option("--width-mm", o.width_mm,
+                                   "instead: width of the whole .npy or .png field");
+  width->excludes(cell);
+  auto* invert = command.add_flag("--invert", o.invert, "the .png field is drawn black on white");
+  auto* frame = command.add_option("--frame", o.frame, "frame of a .h5 recording");
+  frame->capture_default_str();
+  if (of == nullptr) return;
+  for (CLI::Option* option : {cell, width, invert, frame}) option->needs(of);
 }
 
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
@@ -97,7 +114,8 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
   add_input_or_name(
       command, common.files, "--hand", hand, names_recording,
       "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
-      "page (docs/hands.md)")
+      "page (docs/hands.md)",
+      {"scripted", "page", "openxr"})
       ->capture_default_str();
   add_input_or_name(
       command, common.files, "--tracker", common.tracker, names_json,
@@ -114,8 +132,9 @@ void add_run(CLI::App& app, Work& work) {
   add_pipeline(*command, o->common, o->scene, o->hand);
   add_name(*command, "--device", o->device,
            "what plays the paths: sim (default), see prostm devices");
-  add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
-  command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle");
+  auto* figure = add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
+  command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle")
+      ->needs(figure);
   command->add_option("--seconds", o->seconds,
                       "of run time; default: the recording's length, or 60");
   auto* realtime = command->add_flag_callback(
@@ -163,17 +182,18 @@ void add_plan(CLI::App& app, Work& work) {
   auto o = std::make_shared<PlanOptionsGiven>();
   add_common(*command, o->common);
   add_input(*command, o->common.files, "field", o->field,
-            "target field: .json, .npy, .png or .h5 (docs/files.md)")
+            "target field (.json, .npy, .png or .h5; docs/files.md)")
       ->required();
-  command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
-  command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
-  add_figure(*command, o->common,
-             "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
-             "presets (.png or .svg)");
+  add_field_file(*command, o->file);
+  auto* figure =
+      add_figure(*command, o->common,
+                 "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
+                 "presets (.png or .svg)");
   add_array(*command, o->common,
             "plan with the width that the focus of usx, autd3 or an array file has there");
   add_input(*command, o->common.files, "--beside", o->beside,
-            "draw these digitised panels beside ours (JSON)");
+            "draw these digitised panels beside ours (JSON)")
+      ->needs(figure);
   command->footer(
       "Example:\n  prostm plan palm.npy --cell-mm 5 --preset paper --figure palm.png --json "
       "palm.plan.json");
@@ -197,7 +217,7 @@ void add_bench(CLI::App& app, Work& work) {
   auto o = std::make_shared<BenchOptionsGiven>();
   add_common(*command, o->common);
   add_input(*command, o->common.files, "files", o->files,
-            "recordings (.h5) of prostm capture or run --record")
+            "recordings (.h5) of prostm capture or prostm run --record")
       ->required();
   command->add_option("--repeats", o->repeats, "runs of each field, of which the median counts")
       ->capture_default_str();
@@ -228,10 +248,10 @@ void add_field(CLI::App& app, Work& work) {
   add_input(*command, o->common.files, "plan", o->plan, "a plan of prostm plan --json");
   command->add_flag("--widths", o->widths,
                     "instead: how wide a focus of the array is, by height, offset and tilt");
-  add_input(*command, o->common.files, "--field", o->target,
-            "the field that was planned, to compare with (.json, .npy, .png or .h5)");
-  command->add_option("--cell-mm", o->cell_mm, "edge of a cell of a .npy or .png field");
-  command->add_option("--frame", o->frame, "frame of a .h5 recording")->capture_default_str();
+  auto* target =
+      add_input(*command, o->common.files, "--field", o->target,
+                "the field that was planned, to compare with (.json, .npy, .png or .h5)");
+  add_field_file(*command, o->file, target);
   add_array(*command, o->common, "usx (default), autd3, or an array file (.json)");
   add_name(*command, "--solver", o->solver,
            "superposition, ibp, gs-pat, weighted, eigenvector or lm")
@@ -257,6 +277,33 @@ void add_devices(CLI::App& app, Work& work) {
   add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm devices");
   command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
+}
+
+void add_settings(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand(
+      "settings", "every setting of a settings file: its value, bounds and meaning");
+  auto o = std::make_shared<SettingsOptionsGiven>();
+  add_common(*command, o->common);
+  add_name(*command, "name", o->name, "list these alone: a group, a key, or GROUP.KEY");
+  command->add_flag("--toml", o->toml, "print a settings file to start from instead")
+      ->excludes(command->get_option("--json"));
+  command->footer("Example:\n  prostm settings plan\n  prostm settings --toml > my.toml");
+  command->callback([o, &work] {
+    work = {&o->common.files, [o] { return settings_command(*o); }};
+  });
+}
+
+void add_help(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand("help", "the help page of a command, as --help prints it");
+  auto name = std::make_shared<std::string>();
+  add_name(*command, "command", *name, "its name; default: all commands in short");
+  command->footer("Example:\n  prostm help plan");
+  command->callback([name, &app, &work] {
+    work = {nullptr, [name, &app] {
+              std::fputs(help_page(app, *name).c_str(), stdout);
+              return 0;
+            }};
+  });
 }
 
 /// Commands of the design that do not exist yet answer with a sentence, not with a usage error.
@@ -289,14 +336,20 @@ int obey(int argc, char** argv) {
   add_solve(app, work);
   add_field(app, work);
   add_devices(app, work);
+  add_settings(app, work);
+  add_help(app, work);
   add_unbuilt(app);
   try {
+    if (argc < 2) {
+      std::fputs(help_page(app, "").c_str(), stderr);
+      return kBadInput;
+    }
     app.parse(argc, argv);
-    work.files->check();
+    if (work.files != nullptr) work.files->check();
     return work.run();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    std::fprintf(stderr, "prostm: %s; see prostm --help\n", error.what());
+    std::fprintf(stderr, "prostm: %s\n", usage_sentence(app, error).c_str());
     return kBadInput;
   } catch (const std::system_error&) {
     // what could not be printed is told at the end

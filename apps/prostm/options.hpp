@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "files.hpp"
+#include "prostm/io/field_file.hpp"
 
 namespace prostm::app {
 
@@ -40,9 +41,8 @@ struct RunOptionsGiven {
 struct PlanOptionsGiven {
   CommonOptions common;
   std::string field;
-  std::optional<double> cell_mm;
-  int frame = 0;
-  std::string beside;  ///< digitised figure to draw beside the panels
+  FieldFileOptions file;  ///< how `field` is read
+  std::string beside;     ///< digitised figure to draw beside the panels
 };
 
 struct CaptureOptionsGiven {
@@ -70,9 +70,8 @@ struct SolveOptionsGiven {
 struct FieldOptionsGiven {
   CommonOptions common;  ///< settings file, array, JSON and figure
   std::string plan;
-  std::string target;  ///< the field that was planned; empty: no target
-  std::optional<double> cell_mm;
-  int frame = 0;
+  std::string target;     ///< the field that was planned; empty: no target
+  FieldFileOptions file;  ///< how `target` is read
   std::string solver = "weighted";
   double full_scale_pa = 0.0;
   bool memoryless = false;
@@ -84,6 +83,12 @@ struct DevicesOptionsGiven {
   std::string json;
 };
 
+struct SettingsOptionsGiven {
+  CommonOptions common;
+  std::string name;   ///< a group, a key, or group.key; empty: all
+  bool toml = false;  ///< print a settings file
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument. The files that the options name have been checked.
 int run_command(const RunOptionsGiven& options);
@@ -93,5 +98,6 @@ int bench_command(const BenchOptionsGiven& options);
 int solve_command(const SolveOptionsGiven& options);
 int field_command(const FieldOptionsGiven& options);
 int devices_command(const DevicesOptionsGiven& options);
+int settings_command(const SettingsOptionsGiven& options);
 
 }  // namespace prostm::app

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common.hpp"
+#include "field_words.hpp"
 #include "prostm/acoustics/focus_width.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/file.hpp"
@@ -140,10 +141,11 @@ struct Result {
   PlanQuality quality;
   std::optional<double> weighted;  ///< RMSE by the target's weights, where it has some
   std::vector<Control> controls;
+  std::vector<std::string> warnings;  ///< of the field and of the plan
+  Plan other;                         ///< of another target, for the controls
 };
 
-/// @param other gets the plan of another target.
-Result plan_paths(const TargetField& target, const PlanSettings& s, bool traced, Plan& other) {
+Result plan_paths(const TargetField& target, const PlanSettings& s, bool traced) {
   Planner planner(s, target.size());
   Result r;
   // with a budget, a first plan tells how much work it pays for
@@ -155,18 +157,18 @@ Result plan_paths(const TargetField& target, const PlanSettings& s, bool traced,
   if (traced && r.stats.clusters > 0) planner.plan(target, r.plan, unused, &r.trace);
   if (r.status != PlanStatus::Planned) return r;
   planner.reset();
-  planner.plan(another_target(target, static_cast<std::uint64_t>(s.seed)), other, unused);
+  planner.plan(another_target(target, static_cast<std::uint64_t>(s.seed)), r.other, unused);
   return r;
 }
 
-Result plan_foci(const TargetField& target, const PipelineSettings& settings, Plan& other) {
+Result plan_foci(const TargetField& target, const PipelineSettings& settings) {
   AmPlanner planner(settings.am, target.size());
   Result r;
   r.status = planner.plan(target, r.plan, r.stats);
   PlanStats unused;
   if (r.status != PlanStatus::Planned) return r;
   const auto seed = static_cast<std::uint64_t>(settings.plan.seed);
-  planner.plan(another_target(target, seed), other, unused);
+  planner.plan(another_target(target, seed), r.other, unused);
   return r;
 }
 
@@ -186,26 +188,34 @@ PlanQuality quality_of(const TargetField& target, const Plan& plan, const Segmen
   return quality;
 }
 
-/// @param widths as of quality_of().
-Result plan_and_score(const TargetField& target, const PipelineSettings& settings,
-                      const std::vector<double>& widths, bool traced) {
+/// @throws InputError for a field that cannot be planned. @param path names it.
+Result plan_field(const TargetField& target, const PipelineSettings& settings, bool traced,
+                  const std::string& path) {
+  Result r =
+      is_am(settings)
+          ? plan_foci(target, settings)
+          : plan_paths(target, playable_plan_settings(settings, settings.emission_rate()), traced);
+  if (r.status == PlanStatus::InvalidTarget) {
+    throw InputError(
+        path + ": the field has a value that cannot be planned; pressures must be finite and >= 0");
+  }
+  return r;
+}
+
+/// Fills in how good the plan is. @param widths as of quality_of().
+void score(const TargetField& target, const PipelineSettings& settings,
+           const std::vector<double>& widths, Result& r) {
   const PlanSettings& s = settings.plan;
-  Plan other;
-  Result r = is_am(settings)
-                 ? plan_foci(target, settings, other)
-                 : plan_paths(target, playable_plan_settings(settings, settings.emission_rate()),
-                              traced, other);
   const SegmentPressures pressures = played(target, r.plan, settings);
   r.quality = quality_of(target, r.plan, pressures, settings, widths);
   if (!target.weight.empty() && !r.plan.empty()) {
     r.weighted = weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law(), &pressures);
   }
-  if (r.status != PlanStatus::Planned) return r;
+  if (r.status != PlanStatus::Planned) return;
   Progress progress("scoring what must lose to the plan");
-  r.controls = controls(target, settings.sigma(), s.gain_law(), s.max_length(), &other,
+  r.controls = controls(target, settings.sigma(), s.gain_law(), s.max_length(), &r.other,
                         static_cast<std::uint64_t>(s.seed),
                         [&](int done, int all) { progress.show(done, all, "fields"); });
-  return r;
 }
 
 int focal_points(const Plan& plan) {
@@ -248,6 +258,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   extras.stats = &r.stats;
   extras.quality = &r.quality;
   extras.controls = &r.controls;
+  extras.warnings = &r.warnings;
   write_file(json, plan_to_json(r.plan, target, extras, settings_groups(settings)));
 }
 
@@ -288,66 +299,88 @@ double felt_skill_of(const TargetField& target, const Plan& plan,
                     settings.emission_rate(), settings.transducers, pool);
 }
 
+void print_warnings(std::FILE* out, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(out, "warning: {}\n", warning);
+}
+
+void print_plan(std::FILE* out, const Result& r, const TargetField& target,
+                const PipelineSettings& settings, std::optional<double> own_width) {
+  fmt::print(out, "{}\n", verdict(target, r.plan, r.quality.played));
+  print_warnings(out, control_warnings(r.quality.played, r.controls));
+  if (is_am(settings)) {
+    print_foci(out, r.plan, r.stats, max_pressure(target));
+  } else {
+    print_paths(out, r.plan, r.stats);
+  }
+  print_quality(out, r.quality, r.controls);
+  if (own_width) {
+    fmt::print(out, "  focus of {} on the skin: sigma {:.2f} mm\n", settings.transducers.name,
+               1e3 * *own_width);
+  }
+  if (r.weighted) {
+    fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights", *r.weighted);
+  }
+  print_power(out, r.plan, settings.emit.power_limit);
+}
+
+void write_results(const Result& r, const TargetField& target, const PipelineSettings& settings,
+                   const PlanOptionsGiven& given) {
+  if (!given.common.json.empty()) write_plan(r, target, settings, given.common.json);
+  if (given.common.figure.empty()) return;
+  PlanFigure figure = as_figure(target, r.plan, r.trace, settings);
+  figure.metrics = r.quality.played;
+  figure.controls = r.controls;
+  figure.title =
+      given.field +
+      (is_am(settings) ? ", method am" : ", preset " + std::string(name_of(settings.plan.preset)));
+  draw_figure(figure, given, settings);
+}
+
+/// Counts on the width of the array's focus where an array is given. @param other_widths gets the
+/// width besides that of the settings [m]. @return the array's width [m].
+std::optional<double> use_own_width(const PlanOptionsGiven& given, const TargetField& target,
+                                    PipelineSettings& settings, std::vector<double>& other_widths) {
+  if (!given.common.array) return std::nullopt;
+  const double own = sigma_on_skin(settings.transducers, target, settings.sigma());
+  if (settings.array_width && counts_on_own_width(settings)) {
+    other_widths.push_back(settings.sigma());
+    settings.plan.sigma = settings.am.sigma = own;
+  } else {
+    other_widths.push_back(own);
+  }
+  return own;
+}
+
 }  // namespace
 
 int plan_command(const PlanOptionsGiven& given) {
   PipelineSettings settings = make_settings(given.common, std::nullopt);
-  const PlanSettings& s = settings.plan;
-  if (!given.beside.empty() && given.common.figure.empty())
-    throw InputError("--beside needs --figure to draw in");
   if (!given.beside.empty() && is_am(settings))
     throw InputError("--beside shows the steps of --method pro-stm; leave it out with am");
-  FieldFileOptions file_options;
-  file_options.cell_mm = given.cell_mm;
-  file_options.frame = given.frame;
-  const TargetField target = read_field(given.field, file_options);
-  std::optional<double> own_width;
+  const TargetField target = read_field(given.field, given.file);
   std::vector<double> other_widths;
-  if (given.common.array) {
-    own_width = sigma_on_skin(settings.transducers, target, settings.sigma());
-    if (settings.array_width && counts_on_own_width(settings)) {
-      other_widths.push_back(settings.sigma());
-      settings.plan.sigma = settings.am.sigma = *own_width;
-    } else {
-      other_widths.push_back(*own_width);
-    }
-  }
+  const std::optional<double> own_width = use_own_width(given, target, settings, other_widths);
 
-  Result r = plan_and_score(target, settings, other_widths, !given.common.figure.empty());
-  if (r.status == PlanStatus::InvalidTarget) {
-    throw InputError(
-        given.field +
-        ": the field has a value that cannot be planned; pressures must be finite and >= 0");
-  }
-  if (given.common.array) r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
-  if (!given.common.json.empty()) write_plan(r, target, settings, given.common.json);
-  if (!given.common.figure.empty()) {
-    PlanFigure figure = as_figure(target, r.plan, r.trace, settings);
-    figure.metrics = r.quality.played;
-    figure.controls = r.controls;
-    figure.title = given.field +
-                   (is_am(settings) ? ", method am" : ", preset " + std::string(name_of(s.preset)));
-    draw_figure(figure, given, settings);
-  }
+  Result r = plan_field(target, settings, !given.common.figure.empty(), given.field);
+  // before the scores of a large field, which take their time
   std::FILE* out = prose(given.common.json);
+  fmt::print(out, "{}\n", field_in_words(given.field, target, given.file));
+  r.warnings = field_warnings(given.field, target, given.file);
+  print_warnings(out, r.warnings);
+  std::fflush(out);
+
+  score(target, settings, other_widths, r);
+  if (given.common.array) r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
+  const auto losses = control_warnings(r.quality.played, r.controls);
+  r.warnings.insert(r.warnings.end(), losses.begin(), losses.end());
+  write_results(r, target, settings, given);
   if (r.status == PlanStatus::EmptyTarget) {
     print_nothing(out, given.field, max_pressure(target) > 0.0, is_am(settings));
   } else {
-    if (is_am(settings)) {
-      print_foci(out, r.plan, r.stats, max_pressure(target));
-    } else {
-      print_paths(out, r.plan, r.stats);
-    }
-    print_quality(out, r.quality, r.controls);
-    if (own_width) {
-      fmt::print(out, "  focus of {} on the skin: sigma {:.2f} mm\n", settings.transducers.name,
-                 1e3 * *own_width);
-    }
-    if (r.weighted) {
-      fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights", *r.weighted);
-    }
-    print_power(out, r.plan, settings.emit.power_limit);
+    print_plan(out, r, target, settings, own_width);
   }
+  say_written(out, given.common.figure);
+  say_written(out, given.common.json);
   return 0;
 }
 

@@ -41,6 +41,7 @@ int solve_command(const SolveOptionsGiven& options) {
                array.amplitude_low / array.amplitude, high);
   }
   if (!options.json.empty()) write_file(options.json, drives_to_json(array, air, foci, solution));
+  say_written(out, options.json);
   return 0;
 }
 

@@ -161,13 +161,8 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
         (["run", "--budget-ms", "-1"], ["budget", "between 0"]),
         (["run", "--budget-ms", "nan"], ["budget", "between 0"]),
         (["run", "--budget-ms", "5", "--preset", "fast"], ["budget", "best", "fast"]),
-        (["run", "--seconds", "ten"], ["ten"]),
-        (["run", "--realtime", "--stepped"], []),
-        (["run", "--hend", "x"], ["--hend"]),
         (["capture", "--frames", "0", "--out", "x.h5"], ["frames"]),
         (["report", "--out", "x"], ["not built yet"]),
-        (["dance"], []),
-        ([], []),
     ],
 )
 def test_bad_options(refuses, args, words):

@@ -3,14 +3,13 @@
 import json
 import math
 import re
-import struct
-import zlib
 
 import h5py
 import numpy as np
 import pytest
 
 from conftest import ROOT
+from pictures import write_grey_png
 
 
 def blob_field(rows=24, cols=30, cell=5.0):
@@ -45,7 +44,7 @@ def without_times(plan):
 
 
 def test_help_has_an_example(prostm):
-    for command in ["run", "plan", "capture", "bench", "field", "devices"]:
+    for command in ["run", "plan", "capture", "bench", "field", "solve", "devices", "settings", "help"]:
         done = prostm(command, "--help")
         assert "Example:" in done.stdout
 
@@ -153,17 +152,6 @@ def test_every_field_format_gives_the_same_plan(prostm, field, tmp_path):
     from_grey = plan_of(prostm, tmp_path / "grey.npy", "--cell-mm", "5")
     for a, b in zip(from_png["paths"], from_grey["paths"], strict=True):
         np.testing.assert_allclose(a["points_mm"], b["points_mm"], atol=1e-6)
-
-
-def write_grey_png(path, grey):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    rows = b"".join(b"\0" + row.tobytes() for row in grey)
-    header = struct.pack(">IIBBBBB", grey.shape[1], grey.shape[0], 8, 0, 0, 0, 0)
-    path.write_bytes(
-        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-    )
 
 
 def test_a_field_without_pressure_gives_no_path(prostm, tmp_path):

@@ -11,8 +11,8 @@ import pytest
 
 from test_bad_input import foci_file, hand_lines
 
-COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices"]
-# metavars of texts that are not files; the help of all others must say INPUT or OUTPUT
+COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices", "settings"]
+# options that are texts and yet no files; one that is not among these must say that it is INPUT or OUTPUT
 WORDS = {"NAME", "ADDRESS"}
 
 

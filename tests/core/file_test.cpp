@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "prostm/core/file_kind.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"
 
@@ -83,15 +84,33 @@ TEST(WriteFile, SaysThatAFolderIsNotWritable) {
 TEST(ReadFile, SaysWhatCannotBeRead) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(input_error([&] { read_file(folder.file("none")); }),
-              HasSubstr("none cannot be read"));
+              HasSubstr("none cannot be read: there is no such file"));
+  EXPECT_THAT(input_error([&] { read_file(folder.file("gone/none")); }),
+              HasSubstr("none cannot be read: there is no folder " + folder.file("gone")));
   EXPECT_THAT(input_error([&] { read_file(folder.file("")); }), HasSubstr("is a folder"));
   std::ofstream(folder.file("empty")).flush();
   EXPECT_THAT(input_error([&] { read_file(folder.file("empty")); }), HasSubstr("is empty"));
+  EXPECT_EQ(read_file(folder.file("empty"), 1, Empty::Allowed), "");
   write_file(folder.file("large"), std::string((3U << 20) + 1, 'x'));
   EXPECT_THAT(input_error([&] { read_file(folder.file("large"), 3U << 20); }),
               HasSubstr("larger than the 3 MB"));
   // a file of the kernel that does not report its size
   EXPECT_THAT(input_error([&] { read_file("/proc/self/maps", 10); }), HasSubstr("larger than"));
+}
+
+TEST(KindByContent, KnowsTheFilesThatPeopleMixUp) {
+  EXPECT_THAT(kind_by_content(std::string("\x89HDF\r\n\x1a\n and more")), HasSubstr("HDF5 file"));
+  EXPECT_EQ(kind_by_content("\x89PNG\r\n\x1a\n"), "a PNG picture");
+  EXPECT_THAT(kind_by_content("\x93NUMPY\x01"), HasSubstr("NPY"));
+  EXPECT_EQ(kind_by_content("\n {\"format\": 1}"), "JSON");
+  for (const char* other : {"", "   ", "1 2 3", "[plan]", "\x89PNG"})
+    EXPECT_EQ(kind_by_content(other), "");
+}
+
+TEST(IsNot, NamesTheKindThatItFinds) {
+  EXPECT_EQ(is_not("\x93NUMPY\x01", "a PNG picture"), "is an NPY file, not a PNG picture");
+  EXPECT_EQ(is_not("\x93NUMPY\x01", "an NPY file"), "is not an NPY file");
+  EXPECT_EQ(is_not("1 2 3", "JSON"), "is not JSON");
 }
 
 TEST(ReadFile, RefusesPipesAndDevicesWithoutWaiting) {

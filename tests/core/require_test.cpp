@@ -43,9 +43,9 @@ TEST(RequireBetween, NamesTheValueTheBoundsAndTheUnit) {
 
 TEST(RequireBetween, WritesAsManyDigitsAsTellTheValueFromTheBound) {
   EXPECT_EQ(refusal([] { require_between("gain", std::nextafter(100.0, 200.0), 1e-6, 100.0); }),
-            "gain = 100.00000000000001 must be between 1e-06 and 100");
+            "gain = 100.00000000000001 must be between 1e-6 and 100");
   EXPECT_EQ(refusal([] { require_between("sigma", 0.0, 0.0001, 1e300); }),
-            "sigma = 0 must be between 0.0001 and 1e+300");
+            "sigma = 0 must be between 0.0001 and 1e300");
 }
 
 TEST(RequireBetween, RefusesWhatIsNotFiniteWithoutComparingIt) {

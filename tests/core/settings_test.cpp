@@ -21,6 +21,8 @@ struct Paint {
   double litres = 1.0;
   int coats = 2;
   Colour colour = Colour::Green;
+  bool glossy = false;
+  std::string maker = "a \"b\" \\ \n";
   void visit(SettingsReader& v) const { list(*this, v); }
   void visit(SettingsWriter& v) { list(*this, v); }
 
@@ -30,6 +32,8 @@ struct Paint {
     v.field({"litres", "l", 0.1, 10, "in the pot"}, s.litres);
     v.field({"coats", "", 1, 5, "on the wall"}, s.coats);
     v.field({.name = "colour", .help = "of it"}, s.colour);
+    v.field({.name = "glossy", .help = "whether it shines"}, s.glossy);
+    v.field({.name = "maker", .help = "who made it"}, s.maker);
   }
 };
 
@@ -49,6 +53,38 @@ TEST(Names, GoBothWays) {
   EXPECT_FALSE(value_named<Colour>("violet").has_value());
   EXPECT_EQ(refusal([] { from_name<Colour>("violet", "colour"); }),
             "colour \"violet\" is unknown: it must be red, green or blue");
+}
+
+TEST(Names, SayWhichMayHaveBeenMeant) {
+  EXPECT_EQ(refusal([] { from_name<Colour>("gren", "colour"); }),
+            "colour \"gren\" is unknown: it must be red, green or blue; did you mean \"green\"?");
+}
+
+TEST(Bounds, ReadAsPeopleWriteThem) {
+  EXPECT_EQ(bounds_text({"speed", "m/s", 0.1, 100}), "0.1 to 100 m/s");
+  EXPECT_EQ(bounds_text({"tries", "", 0, 2147483647}), "0 to 2147483647");
+  EXPECT_EQ(bounds_text({"pressure", "Pa", 1e-300, 1e300}), "1e-300 to 1e300 Pa");
+  EXPECT_EQ(bounds_text({.name = "age", .unit = "s", .least = 0}), "at least 0 s");
+  EXPECT_EQ(bounds_text({.name = "age", .most = -1}), "at most -1");
+  EXPECT_EQ(bounds_text({.name = "any"}), "");
+}
+
+TEST(SettingRows, AreTheListInOrderAsAFileHasIt) {
+  Paint paint;
+  paint.litres = 8.6e-3;
+  const std::vector<SettingRow> rows =
+      setting_rows([&paint](SettingsReader& v) { std::as_const(paint).visit(v); });
+  ASSERT_EQ(rows.size(), 5u);
+  const auto shown = [](const SettingRow& row) {
+    return std::string(row.setting.name) + " (" + row.type + ") = " + row.value + ", " + row.bounds;
+  };
+  EXPECT_EQ(shown(rows[0]), "litres (float) = 0.0086, 0.1 to 10 l");
+  EXPECT_EQ(shown(rows[1]), "coats (integer) = 2, 1 to 5");
+  EXPECT_EQ(shown(rows[2]), "colour (string) = \"green\", red, green or blue");
+  EXPECT_EQ(shown(rows[3]), "glossy (boolean) = false, true or false");
+  EXPECT_EQ(shown(rows[4]), "maker (string) = \"a \\\"b\\\" \\\\ \\u000a\", ");
+  EXPECT_EQ(rows[2].choices, (std::vector<std::string_view>{"red", "green", "blue"}));
+  EXPECT_STREQ(rows[0].setting.help, "in the pot");
 }
 
 TEST(Bounds, AreThoseOfTheList) {

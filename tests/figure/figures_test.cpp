@@ -5,6 +5,7 @@
 
 #include "figure/example_figures.hpp"
 #include "prostm/core/file.hpp"
+#include "prostm/core/units.hpp"
 #include "prostm/figure/detail/panel.hpp"
 #include "support/input_errors.hpp"
 
@@ -186,6 +187,8 @@ TEST(DrawScene, ShowsEveryPartOfWhatItIsGiven) {
       [](SceneFigure& f) { f.foci.clear(); },
       [](SceneFigure& f) { f.array.pop_back(); },
       [](SceneFigure& f) { f.plan.paths.pop_back(); },
+      [](SceneFigure& f) { f.targets[0].X_DP.translation().x() += 0.02; },
+      [](SceneFigure& f) { f.targets[0].X_DP.translation().z() += 0.02; },
       [](SceneFigure& f) { f.reconstructions[0].assign(f.reconstructions[0].size(), 0.0); }};
   for (const auto& change : changes) {
     SceneFigure changed = scene;
@@ -201,6 +204,9 @@ TEST(DrawScene, RefusesWhatDoesNotBelongTogether) {
   EXPECT_THROW(draw_scene(scene, "a.png"), std::invalid_argument);
   scene = test::scene_example(example, 1);
   scene.reconstructions.clear();
+  EXPECT_THROW(draw_scene(scene, "a.png"), std::invalid_argument);
+  scene = test::scene_example(example, 1);
+  scene.targets[0].X_DP.linear() = Eigen::AngleAxisd(kPi / 2.0, Vec3::UnitX()).toRotationMatrix();
   EXPECT_THROW(draw_scene(scene, "a.png"), std::invalid_argument);
 }
 

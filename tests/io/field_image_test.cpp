@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "io/png_writer.hpp"
+#include "prostm/core/file.hpp"
 #include "prostm/io/field_file.hpp"
 #include "support/input_errors.hpp"
 
@@ -98,6 +99,7 @@ TEST(FieldNpy, SaysWhatIsWrong) {
   };
   const std::string good = npy(dictionary("<f8", "(2, 3)"), data);
   EXPECT_THAT(sentence("PK\x03\x04 not an array"), HasSubstr("is not an NPY file"));
+  EXPECT_THAT(sentence("\x89PNG\r\n\x1a\n"), HasSubstr("is a PNG picture, not an NPY file"));
   EXPECT_THAT(sentence(good.substr(0, 30)), HasSubstr("header is cut off"));
   EXPECT_THAT(sentence(good.substr(0, good.size() - 1)), HasSubstr("holds 47 bytes of numbers"));
   EXPECT_THAT(sentence(good + "x"), HasSubstr("must be 48"));
@@ -155,6 +157,30 @@ TEST(FieldPng, TakesAlphaZeroAsNoSkinAndIgnoresItOtherwise) {
                           testing::DoubleNear(1.0, 1e-12), testing::DoubleNear(0.5, 0.01)));
 }
 
+TEST(ReadField, SizesFieldsByTheirWidthAndInvertsPictures) {
+  const test::TemporaryFolder folder;
+  const std::string picture = folder.file("a.png"), array = folder.file("a.npy");
+  write_file(picture, test::png(4, 1, 4, 8, std::string("\xff\x00\x00\xff\xff\xff\x33\xff", 8)));
+  write_file(array, npy(dictionary("<f8", "(1, 2)"), bytes_of<double>({1, 7})));
+  const TargetField black = read_field(picture, {.width_mm = 20.0, .invert = true});
+  EXPECT_EQ(black.cell, 0.005);
+  EXPECT_THAT(black.skin, ElementsAre(0, 1, 1, 1));
+  EXPECT_THAT(black.pressure, ElementsAre(0.0, 1.0, 0.0, testing::DoubleNear(0.8, 1e-12)));
+  const TargetField white = read_field(picture, {.cell_mm = 5.0});
+  EXPECT_THAT(white.pressure, ElementsAre(0.0, 0.0, 1.0, testing::DoubleNear(0.2, 1e-12)));
+  EXPECT_EQ(read_field(array, {.width_mm = 5.0}).cell, 0.0025);
+
+  const auto refusal = [&](const FieldFileOptions& options) {
+    return input_error([&] { read_field(array, options); });
+  };
+  EXPECT_THAT(refusal({}), HasSubstr("--width-mm"));
+  EXPECT_THAT(refusal({.cell_mm = 5.0, .width_mm = 5.0}), HasSubstr("exclude each other"));
+  EXPECT_THAT(refusal({.width_mm = 5.0, .invert = true}), HasSubstr("is no picture"));
+  EXPECT_THAT(refusal({.width_mm = -5.0}), HasSubstr("--width-mm -5 over 2 columns is -2.5"));
+  EXPECT_THAT(refusal({.width_mm = std::numeric_limits<double>::quiet_NaN()}),
+              HasSubstr("from 0.01 to 1000 mm"));
+}
+
 TEST(FieldPng, SaysWhatIsWrong) {
   const std::string good = test::png(40, 30, 0, 8, std::string(1200, '\x12'));
   const auto sentence = [](const std::string& bytes, double cell = 5.0) {
@@ -162,6 +188,7 @@ TEST(FieldPng, SaysWhatIsWrong) {
   };
   EXPECT_EQ(field_from_png(good, "a.png", 5.0).size(), 1200u);
   EXPECT_THAT(sentence("GIF89a and so on, not a PNG"), HasSubstr("is not a PNG picture"));
+  EXPECT_THAT(sentence("{\"format\": 1}"), HasSubstr("is JSON, not a PNG picture"));
   EXPECT_THAT(sentence(good.substr(0, 20)), HasSubstr("is not a PNG picture"));
   EXPECT_THAT(sentence(good.substr(0, good.size() / 2)), HasSubstr("cut off or broken"));
   std::string palette = good.substr(16, 13);  // colours by number, but without a palette

@@ -286,6 +286,12 @@ TEST(HandFile, TellsTheFormatsApartByTheirContent) {
   EXPECT_EQ(read(jsonl({neutral_header(), neutral_frame(0.0)})).frames.size(), 1u);
   EXPECT_EQ(read(leap_recording().dump(1)).frames.size(), 2u);
   EXPECT_THROW(read_hand_recording(folder.file("none")), InputError);
+  for (const char* other : {"\x89HDF\r\n\x1a\n[[[[[", "1 2 3", "   "}) {
+    EXPECT_THAT(test::input_error([&] { read(other); }),
+                HasSubstr("a hand recording is hand-frames JSON Lines"));
+  }
+  EXPECT_THAT(test::input_error([&] { read("\x89HDF\r\n\x1a\n"); }),
+              HasSubstr("is a recording of prostm (HDF5), not a hand recording"));
 }
 
 struct Difference {

@@ -179,6 +179,8 @@ TEST(Recording, SaysWhatIsNoRecording) {
   EXPECT_THAT(sentence(folder.file("")), HasSubstr("is a folder"));
   write_file(folder.file("text.h5"), "hello");
   EXPECT_THAT(sentence(folder.file("text.h5")), HasSubstr("is not an HDF5 file"));
+  write_file(folder.file("picture.h5"), "\x89PNG\r\n\x1a\n");
+  EXPECT_THAT(sentence(folder.file("picture.h5")), HasSubstr("is a PNG picture, not an HDF5 file"));
 
   // cut off at many lengths
   const std::string bytes = read_file(record(folder.file("r.h5"), random_frames(20)));
@@ -197,6 +199,9 @@ TEST(Recording, CannotBeWrittenWithoutAFolder) {
               HasSubstr("not an ordinary file"));
   EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file(""), {}); }),
               HasSubstr("is a folder"));
+  EXPECT_THAT(input_error([&] { const Recorder recorder(folder.file("r.txt"), {}); }),
+              HasSubstr("r.txt names no recording; it must end in .h5"));
+  EXPECT_EQ(folder.entries(), 0u);
 }
 
 TEST(Recording, SaysThatTheDiskIsFullWheneverThatHappens) {

@@ -83,6 +83,15 @@ TEST(Settings, ReadAFile) {
               HasSubstr("cannot be read"));
 }
 
+TEST(Settings, MayBeAnEmptyFile) {
+  const test::TemporaryFolder folder;
+  Kitchen kitchen;
+  for (const char* text : {"", "\n", "# nothing yet\n"}) {
+    write_file(folder.file("s.toml"), text);
+    EXPECT_THAT(read_settings(folder.file("s.toml"), kitchen.groups()), testing::IsEmpty());
+  }
+}
+
 struct Wrong {
   const char* text;
   const char* sentence;
@@ -106,6 +115,9 @@ TEST(Settings, SayWhatIsWrongAndWhere) {
       {"[stove]\nmaker = 1", "stove.maker must be a text in quotes"},
       {"[stove]\nheat = 1", "stove.heat must be a text in quotes"},
       {"[stove]\nheat = \"warm\"", "s.toml, line 2: stove.heat must be low or high"},
+      {"[stove]\nheat = \"hgh\"", "must be low or high; did you mean \"high\"?"},
+      {"{\"stove\": {}}", "s.toml: is JSON, not TOML"},
+      {"\x89PNG\r\n\x1a\n", "s.toml: is a PNG picture, not TOML"},
       {"[stove]\npower = ", "s.toml, line 2, column 9: is not valid TOML"},
       {"[stove]\npower = 1\npower = 2", "is not valid TOML"},
   };

@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import prostm
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests"))  # what the tests of the program and of the module share
 
 
 def blobs(rows=24, cols=30, cell=5.0):

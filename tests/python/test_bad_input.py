@@ -5,6 +5,7 @@ import prostm
 import pytest
 
 from conftest import blobs
+from pictures import write_grey_png
 
 
 def changed(row, col, value):
@@ -115,6 +116,27 @@ def test_files_are_refused_in_the_words_of_the_command_line(program, tmp_path):
             prostm.read_field(tmp_path / name, cell_mm=cell)
         assert isinstance(refused.value, ValueError)
         assert str(refused.value) in there
+
+
+def test_pictures_are_read_as_the_command_line_reads_them(tmp_path):
+    grey = np.array([[255, 255, 0], [255, 51, 255]], np.uint8)  # the top row first
+    write_grey_png(tmp_path / "black.png", grey)
+    field = prostm.read_field(tmp_path / "black.png", width_mm=30, invert=True)
+    np.testing.assert_allclose(field.pressure, [[0, 0.8, 0], [0, 0, 1]], atol=1e-12)
+    assert field.cell == 0.01 and field.shape == (2, 3)
+    white = prostm.read_field(tmp_path / "black.png", 10)
+    np.testing.assert_allclose(white.pressure, 1 - field.pressure, atol=1e-12)
+
+    np.save(tmp_path / "field.npy", np.ones((2, 4)))
+    assert prostm.read_field(tmp_path / "field.npy", width_mm=20).cell == 0.005
+    for options, words in [({"width_mm": 20, "cell_mm": 5}, "exclude each other"), ({"width_mm": 0}, "0.01 to 1000 mm"),
+                           ({"width_mm": float("nan")}, "0.01 to 1000 mm"), ({}, "--width-mm"),
+                           ({"width_mm": 20, "invert": True}, "is no picture")]:
+        with pytest.raises(prostm.InputError, match=words):
+            prostm.read_field(tmp_path / "field.npy", **options)
+    prostm.write_field(tmp_path / "field.json", field)
+    with pytest.raises(prostm.InputError, match="leave out --cell-mm and --width-mm"):
+        prostm.read_field(tmp_path / "field.json", width_mm=20)
 
 
 def test_plan_files_that_are_wrong(tmp_path, field):

@@ -48,9 +48,9 @@ Places greedy_start(const TargetField& target, int count, double apart, double m
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"foci", "", 1, kMaxPaths, "N, maximum number of focal points"}, s.foci);
+  v.field({"foci", "", 1, kMaxPaths, "largest number of focal points (N)"}, s.foci);
   v.field({"sigma", "m", 1e-3, 0.1, "fall-off of a focal point"}, s.sigma);
-  v.field({"lloyd_iterations", "", 1, 1'000'000, "maximum iterations of the k-means"},
+  v.field({"lloyd_iterations", "", 1, 1'000'000, "largest number of iterations of the k-means"},
           s.lloyd_iterations);
 }
 

@@ -79,13 +79,23 @@ int open_temporary(const std::string& path, std::string& temporary) {
   return -1;
 }
 
+/// Returns why a file cannot be opened to read, in words.
+std::string reason_to_read(const std::string& path, int error) {
+  if (error == EACCES) return "permission is denied";
+  if (error != ENOENT && error != ENOTDIR) return reason(error);
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code ignored;
+  if (folder.empty() || std::filesystem::is_directory(folder, ignored))
+    return "there is no such file";
+  return "there is no folder " + folder.string();
+}
+
 /// Opens an ordinary file; refuses anything else before it is read.
 Descriptor open_to_read(const std::string& path, struct stat* status) {
   // a pipe is opened without waiting for somebody to write into it
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0 || ::fstat(file.get(), status) != 0) {
-    throw InputError(
-        fmt::format("{} cannot be read ({}); name a file that exists", path, reason(errno)));
+    throw InputError(fmt::format("{} cannot be read: {}", path, reason_to_read(path, errno)));
   }
   if (S_ISDIR(status->st_mode)) throw InputError(path + " is a folder; name a file");
   if (!S_ISREG(status->st_mode)) {
@@ -166,7 +176,17 @@ void check_readable(const std::string& path) {
   open_to_read(path, &status);
 }
 
-std::string read_file(const std::string& path, std::size_t limit) {
+std::string read_head(const std::string& path) {
+  struct stat status {};
+  const Descriptor file = open_to_read(path, &status);
+  std::string bytes(64, '\0');
+  const ssize_t n = ::read(file.get(), bytes.data(), bytes.size());
+  if (n < 0) throw InputError(fmt::format("{} cannot be read ({})", path, reason(errno)));
+  bytes.resize(static_cast<std::size_t>(n));
+  return bytes;
+}
+
+std::string read_file(const std::string& path, std::size_t limit, Empty empty) {
   struct stat status {};
   const Descriptor file = open_to_read(path, &status);
   const auto too_large = [&] {
@@ -187,7 +207,9 @@ std::string read_file(const std::string& path, std::size_t limit) {
     bytes.append(buffer.data(), static_cast<std::size_t>(n));
     if (bytes.size() > limit) throw too_large();
   }
-  if (bytes.empty()) throw InputError(path + " is empty; it must hold data");
+  if (bytes.empty() && empty == Empty::Refused) {
+    throw InputError(path + " is empty; it must hold data");
+  }
   return bytes;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/nearest_name.hpp"
 
@@ -78,6 +79,9 @@ void append_text(const nlohmann::ordered_json& value, std::size_t indent, std::s
 }  // namespace
 
 nlohmann::json parse_json(std::string_view text, const std::string& file) {
+  if (const std::string_view kind = kind_by_content(text); !kind.empty() && kind != "JSON") {
+    throw InputError(file + ": " + is_not(text, "JSON"));
+  }
   if (is_too_deep(text)) {
     throw InputError(fmt::format(
         "{}: is nested deeper than {} levels; no file of this kind needs that", file, kMaxDepth));

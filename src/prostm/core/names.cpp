@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "prostm/core/nearest_name.hpp"
+
 namespace prostm {
 
 std::string one_of(std::span<const std::string_view> names) {
@@ -13,9 +15,13 @@ std::string one_of(std::span<const std::string_view> names) {
   return text;
 }
 
+std::string must_be(std::string_view name, std::span<const std::string_view> names) {
+  return "must be " + one_of(names) + did_you_mean(name, {names.begin(), names.end()});
+}
+
 void refuse_name(const char* what, std::string_view name, std::span<const std::string_view> names) {
-  throw std::invalid_argument(std::string(what) + " \"" + std::string(name) +
-                              "\" is unknown: it must be " + one_of(names));
+  throw std::invalid_argument(std::string(what) + " \"" + std::string(name) + "\" is unknown: it " +
+                              must_be(name, names));
 }
 
 }  // namespace prostm

@@ -23,6 +23,9 @@ constexpr std::string_view name_of(E value) {
 /// Returns "a, b or c".
 std::string one_of(std::span<const std::string_view> names);
 
+/// Returns "must be a, b or c", and for a name that is nearly one of them "; did you mean "b"?".
+std::string must_be(std::string_view name, std::span<const std::string_view> names);
+
 /// Returns the value with this name, or nothing.
 template <class E>
 std::optional<E> value_named(std::string_view name) {

@@ -30,16 +30,35 @@ std::string shown_name(std::string_view name) {
   return std::string(name.substr(0, 60));
 }
 
-std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
+std::optional<std::string> nearest_name(std::string_view unknown,
+                                        const std::vector<std::string>& known) {
   const std::string typed = shown_name(unknown);
+  // an abbreviation
+  const auto begins = [&](const std::string& name) { return name.starts_with(typed); };
+  constexpr std::size_t kShortest = 3;
+  if (typed.size() >= kShortest && std::count_if(known.begin(), known.end(), begins) == 1)
+    return *std::find_if(known.begin(), known.end(), begins);
   const auto nearest =
       std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
         return edit_distance(typed, a) < edit_distance(typed, b);
       });
-  if (nearest == known.end()) return "no names are allowed here";
+  if (nearest == known.end()) return std::nullopt;
+  const std::size_t distance = edit_distance(typed, *nearest);
   const std::size_t tolerance = std::max<std::size_t>(2, nearest->size() / 3);
-  if (edit_distance(typed, *nearest) <= tolerance)
+  // a name of two letters is not like any other name of two letters
+  if (distance > tolerance || distance >= nearest->size()) return std::nullopt;
+  return *nearest;
+}
+
+std::string did_you_mean(std::string_view unknown, const std::vector<std::string>& known) {
+  const auto nearest = nearest_name(unknown, known);
+  return nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "";
+}
+
+std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
+  if (const auto nearest = nearest_name(unknown, known))
     return fmt::format("did you mean \"{}\"?", *nearest);
+  if (known.empty()) return "no names are allowed here";
   return fmt::format("known are {}", fmt::join(known, ", "));
 }
 

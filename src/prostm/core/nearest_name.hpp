@@ -1,6 +1,7 @@
 #pragma once
-/// Suggestions for unknown names.
+/// Messages about an unknown name: the known name that may have been meant.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,7 +11,15 @@ namespace prostm {
 /// Shortens a name from a file for a message.
 std::string shown_name(std::string_view name);
 
-/// Returns "did you mean …", or all known names if no name is near.
+/// The only known name that begins with `unknown`, or else the one that is spelled most like it;
+/// nothing if all differ too much.
+std::optional<std::string> nearest_name(std::string_view unknown,
+                                        const std::vector<std::string>& known);
+
+/// '; did you mean "…"?', the end of a sentence; empty if no known name is near.
+std::string did_you_mean(std::string_view unknown, const std::vector<std::string>& known);
+
+/// "did you mean …", or all known names when nothing is near.
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& known);
 
 }  // namespace prostm

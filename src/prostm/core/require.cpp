@@ -1,21 +1,13 @@
 #include "prostm/core/require.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "prostm/core/number_text.hpp"
+
 namespace prostm {
 namespace {
-
-/// Returns the shortest text that reads back as the same number.
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general);
-  return {text.data(), end.ptr};
-}
 
 [[noreturn]] void refuse(const std::string& name, const std::string& value, const std::string& low,
                          const std::string& high, const std::string& unit) {
@@ -29,7 +21,7 @@ std::string shortest(double value) {
 void require_between(const char* name, double value, double low, double high, const char* unit) {
   // NaN is refused before it is compared: the comparison would trap
   if (std::isfinite(value) && value >= low && value <= high) return;
-  refuse(name, shortest(value), shortest(low), shortest(high), unit);
+  refuse(name, number_text(value), number_text(low), number_text(high), unit);
 }
 
 void require_between(const char* name, int value, int low, int high, const char* unit) {

@@ -1,7 +1,11 @@
 #include "prostm/core/settings.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "prostm/core/number_text.hpp"
 #include "prostm/core/require.hpp"
 
 namespace prostm {
@@ -25,7 +29,60 @@ class BoundsCheck : public SettingsReader {
   void choice(const Setting&, std::span<const std::string_view>, int) override {}
 };
 
+/// A text as TOML and JSON quote it.
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += {'\\', c};
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+class RowCollector : public SettingsReader {
+ public:
+  void field(const Setting& s, const double& value) override {
+    rows.push_back({s, "float", number_text(value), bounds_text(s)});
+  }
+  void field(const Setting& s, const int& value) override {
+    rows.push_back({s, "integer", std::to_string(value), bounds_text(s)});
+  }
+  void field(const Setting& s, const bool& value) override {
+    rows.push_back({s, "boolean", value ? "true" : "false", "true or false"});
+  }
+  void field(const Setting& s, const std::string& value) override {
+    rows.push_back({s, "string", in_quotes(value), ""});
+  }
+  void choice(const Setting& s, std::span<const std::string_view> names, int index) override {
+    const std::vector<std::string_view> choices(names.begin(), names.end());
+    rows.push_back(
+        {s, "string", in_quotes(names[static_cast<std::size_t>(index)]), one_of(names), choices});
+  }
+  std::vector<SettingRow> rows;
+};
+
 }  // namespace
+
+std::string bounds_text(const Setting& setting) {
+  const bool below = std::isfinite(setting.least), above = std::isfinite(setting.most);
+  if (!below && !above) return "";
+  const std::string least = number_text(setting.least), most = number_text(setting.most);
+  const std::string range = !above   ? "at least " + least
+                            : !below ? "at most " + most
+                                     : least + " to " + most;
+  return *setting.unit == '\0' ? range : range + " " + setting.unit;
+}
+
+std::vector<SettingRow> setting_rows(const ReadSettings& settings) {
+  RowCollector collector;
+  settings(collector);
+  return collector.rows;
+}
 
 void require_bounds(const ReadSettings& settings) {
   BoundsCheck check;

@@ -89,6 +89,21 @@ SettingsGroup group_of(std::string name, Settings&... settings) {
   return group;
 }
 
+/// The bounds of a number in words, with its unit: "0.1 to 100 m/s", "at least 0", or nothing.
+std::string bounds_text(const Setting& setting);
+
+/// A setting as it is listed.
+struct SettingRow {
+  Setting setting;
+  const char* type;   ///< of its value in a settings file: float, integer, boolean or string
+  std::string value;  ///< as a settings file has it: 0.0086, 4, true, "best"
+  std::string
+      bounds;  ///< "0.1 to 100 m/s", "true or false", "best, fast or paper"; empty for a text
+  std::vector<std::string_view> choices = {};  ///< all values of a choice, empty for other settings
+};
+/// Every setting, in order.
+std::vector<SettingRow> setting_rows(const ReadSettings& settings);
+
 /// Whether every number lies within its bounds. @throws std::invalid_argument with the sentence of
 /// require_between() about the first that does not.
 void require_bounds(const ReadSettings& settings);

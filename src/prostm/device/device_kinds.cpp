@@ -1,7 +1,9 @@
 #include "prostm/device/device_kinds.hpp"
 
 #include <stdexcept>
+#include <vector>
 
+#include "prostm/core/nearest_name.hpp"
 #include "prostm/device/segment_stream.hpp"
 
 namespace prostm {
@@ -29,15 +31,18 @@ std::span<const DeviceKind> device_kinds() {
 
 const DeviceKind& device_kind(const std::string& name) {
   std::string built;
+  std::vector<std::string> names;
   for (const DeviceKind& kind : kKinds) {
-    if (kind.is_built()) built += (built.empty() ? "" : ", ") + std::string(kind.name);
+    names.emplace_back(kind.name);
+    if (kind.is_built()) built += (built.empty() ? "" : ", ") + names.back();
   }
   for (const DeviceKind& kind : kKinds) {
     if (kind.name != name) continue;
     if (kind.is_built()) return kind;
     throw std::invalid_argument("device '" + name + "' is not built yet: it must be " + built);
   }
-  throw std::invalid_argument("device '" + name + "' is unknown: it must be " + built);
+  throw std::invalid_argument("device '" + name + "' is unknown: it must be " + built +
+                              did_you_mean(name, names));
 }
 
 std::unique_ptr<Device> make_device(const std::string& kind, const DeviceSetup& setup) {

@@ -17,18 +17,20 @@ void list(Settings& s, Visitor& v) {
           s.silent_below);
   v.field({"power_limit", "", 1e-6, kMaxPaths, "largest sum of squared intensities at a time"},
           s.power_limit);
-  v.field({"tilt_bound", "", 1, 4, "largest factor that compensates tilted skin; 1: off"},
+  v.field({"tilt_bound", "", 1, 4, "largest factor that compensates for tilted skin; 1: none"},
           s.tilt_bound);
   v.field({.name = "switch_at", .help = "when a new plan takes over"}, s.switch_at);
   v.field({"fade_time", "s", 1e-6, 0.02, "time of a fade over the full range; at least 40 samples"},
           s.fade_time);
   v.field({"stall_time", "s", 1e-3, 1e6, "time without a new plan after which output fades"},
           s.stall_time);
-  v.field({"stall_fade_time", "s", 1e-6, 0.04, "time of that fade"}, s.stall_fade_time);
+  v.field({"stall_fade_time", "s", 1e-6, 0.04, "time of the fade after stall_time"},
+          s.stall_fade_time);
   v.field({"am_frequency", "Hz", 25, 1e4,
-           "frequency of modulation; at most a 126th of the sample rate"},
+           "frequency of the modulation of method am; at most a 126th of the sample rate"},
           s.am_frequency);
-  v.field({.name = "am_waveform", .help = "shape of the modulation"}, s.am_waveform);
+  v.field({.name = "am_waveform", .help = "waveform of the modulation of method am"},
+          s.am_waveform);
 }
 
 }  // namespace

@@ -130,8 +130,9 @@ struct SceneFigure {
   Plan plan;
   std::string title;
 };
-/// The scene from the side with array, smoke, hand and focal points; beside it target and
-/// reconstruction with the paths.
+/// The scene from the side with array, smoke, hand, focal points and the planes of the targets;
+/// beside it target and reconstruction with the paths. Axes along a target's plane read 0 above the
+/// array's middle. @throws std::invalid_argument: sizes that disagree, or an upright plane.
 void draw_scene(const SceneFigure& figure, const std::string& path);
 
 }  // namespace prostm

@@ -21,7 +21,8 @@ using figure::Panel;
 // the page in points: panels of at most 340 x 330 with room for axes and titles around them
 constexpr double kPanelWidth = 340.0, kPanelHeight = 330.0, kColumn = 400.0;
 constexpr double kLeft = 62.0, kTop = 84.0, kBelowPanel = 84.0, kRowHeight = 21.0;
-constexpr double kPageWidth = kLeft + 3.0 * kColumn + 34.0;
+constexpr double kBarRoom = 64.0;  // for the colour bar between the first two columns
+constexpr double kPageWidth = kLeft + 3.0 * kColumn + kBarRoom + 34.0;
 constexpr double kBetween = 56.0;  // two plans, one under the other
 constexpr double kFirstColumn = kLeft + 330.0, kColumnStep = 112.0;  // of the table
 
@@ -83,7 +84,8 @@ void write_values(Canvas& canvas, const Panel& panel, const std::vector<std::str
 /// Panel `index` of three columns and two rows, the first row at `top`.
 Panel panel_at(Canvas& canvas, const TargetField& target, int index, double top) {
   const figure::Extent extent = figure::extent_of(target);
-  const double x = kLeft + kColumn * (index % 3);
+  const int column = index % 3;
+  const double x = kLeft + kColumn * column + (column > 0 ? kBarRoom : 0.0);
   const double height = figure::fitted({0.0, 0.0, kPanelWidth, kPanelHeight}, extent).height;
   const double y = top + (index / 3) * (height + kBelowPanel);
   return {canvas, {x, y, kPanelWidth, kPanelHeight}, extent};

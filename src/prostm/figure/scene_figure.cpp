@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -18,13 +19,14 @@ using figure::Colour;
 using figure::Panel;
 
 constexpr Colour kAir{0.97, 0.975, 0.985}, kSmoke{0.27, 0.36, 0.52}, kHand{0.90, 0.70, 0.56},
-    kArray{0.20, 0.22, 0.26};
+    kArray{0.20, 0.22, 0.26}, kPlane{0.00, 0.45, 0.30};
 
 // the page in points
 constexpr double kTop = 84.0, kSideLeft = 62.0, kSideWidth = 470.0, kSideHeight = 560.0;
 constexpr double kFieldLeft = 612.0, kFieldColumn = 330.0, kFieldWidth = 262.0;
 constexpr double kBelowField = 84.0, kBelowSide = 80.0;
 constexpr Box kSideSpace{kSideLeft, kTop, kSideWidth, kSideHeight};
+constexpr double kUpright = 1e-3;  // normal's share along z of a plane that never meets the z axis
 
 void check(const SceneFigure& f) {
   const auto cells =
@@ -41,6 +43,9 @@ void check(const SceneFigure& f) {
   for (std::size_t i = 0; i < f.targets.size(); ++i) {
     if (f.reconstructions[i].size() != f.targets[i].size()) {
       throw std::invalid_argument("a reconstruction must have as many cells as its target");
+    }
+    if (std::abs(f.targets[i].X_DP(2, 2)) < kUpright) {
+      throw std::invalid_argument("the plane of a target must not be upright");
     }
   }
 }
@@ -93,6 +98,28 @@ void draw_slice(Panel& panel, const SceneFigure& f, const figure::Extent& extent
   });
 }
 
+/// The point of a target's plane above the middle of the array, in the plane: there its axes read
+/// 0, as those of the scene do.
+Vec2 above_array(const TargetField& target) {
+  const Eigen::Matrix2d axes = target.X_DP.linear().topLeftCorner<2, 2>();
+  return axes.inverse() * -target.X_DP.translation().head<2>();
+}
+
+/// The raster of a target from the side, with the name of its x axis at that axis' end.
+void draw_plane(Canvas& canvas, const Panel& panel, const TargetField& target) {
+  const figure::Extent e = figure::extent_of(target);
+  const auto from_side = [&](double x, double y) {
+    const Vec3 p_D = target.X_DP * Vec3(x, y, 0.0);
+    return panel.to_page(Vec2(p_D.x(), p_D.z()));
+  };
+  const std::array<Vec2, 4> corners{
+      from_side(e.low.x(), e.low.y()), from_side(e.high.x(), e.low.y()),
+      from_side(e.high.x(), e.high.y()), from_side(e.low.x(), e.high.y())};
+  canvas.line(corners, true, kPlane, 1.4);
+  canvas.text(0.5 * (corners[1] + corners[2]) + Vec2(5.0, 4.0), "x′",
+              {.size = 11.5, .colour = kPlane, .bold = true});
+}
+
 /// What the colours of the side view mean, in a line under it.
 void draw_legend(Canvas& canvas, const Box& box) {
   struct Entry {
@@ -103,6 +130,7 @@ void draw_legend(Canvas& canvas, const Box& box) {
   const Entry entries[] = {{"smoke", kSmoke, false},
                            {"hand", kHand, false},
                            {"focal points", figure::kWarning, true},
+                           {"plane of the target", kPlane, false},
                            {"array", kArray, false}};
   double x = box.x;
   const double y = box.y + box.height + 54.0;
@@ -129,6 +157,7 @@ void draw_side(Canvas& canvas, const SceneFigure& f) {
     canvas.fill({at.x() - 0.5 * mark, at.y(), mark, 0.5 * mark}, kArray);
   }
   canvas.clip(panel.box());
+  for (const TargetField& target : f.targets) draw_plane(canvas, panel, target);
   for (const Vec3& focus : f.foci) panel.disc(Vec2(focus.x(), focus.z()), 1.8, figure::kWarning);
   canvas.unclip();
   panel.axes({.title = "the scene from the side", .y_label = "z / mm"});
@@ -149,22 +178,28 @@ void draw_fields(Canvas& canvas, const SceneFigure& f) {
                 {.size = 13.0, .colour = figure::kFaintInk});
     return;
   }
+  canvas.text(
+      Vec2(kFieldLeft - 36.0, kTop - 30.0),
+      "x′ and y′ run along the plane of the target, from the point above the array's middle",
+      {.size = 11.5, .colour = figure::kFaintInk});
   double full = 0.0;
   for (const TargetField& target : f.targets) full = std::max(full, max_pressure(target));
   for (std::size_t i = 0; i < f.targets.size(); ++i) {
     const std::string hand = f.targets.size() > 1 ? fmt::format(", hand {}", i + 1) : std::string();
     const figure::Extent extent = figure::extent_of(f.targets[i]);
+    const Vec2 zero = above_array(f.targets[i]);
+    const auto text = [&](const std::string& title) {
+      return figure::PanelText{title + hand, "x′ / mm", "y′ / mm", zero};
+    };
     Box space = field_space(f, i);
     Panel target(canvas, space, extent);
     target.heat_map(f.targets[i], f.targets[i].pressure, full);
-    target.axes({.title = "target pressure" + hand});
+    target.axes(text("target pressure"));
     space.x += kFieldColumn;
     Panel drawn(canvas, space, extent);
     drawn.heat_map(f.targets[i], f.reconstructions[i], full);
     drawn.plan_on_field(f.plan, static_cast<int>(i));
-    drawn.axes(
-        {.title = (f.plan.foci.empty() ? "reconstruction and paths" : "reconstruction and foci") +
-                  hand});
+    drawn.axes(text(f.plan.foci.empty() ? "reconstruction and paths" : "reconstruction and foci"));
     const Box& box = drawn.box();
     figure::colour_bar(canvas, {box.x + box.width + 9.0, box.y, 11.0, box.height}, "p / max p*");
   }

@@ -9,10 +9,9 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field(
-      {"offset_cells", "cells", 0.5, 4, "distance outside the skin at which the pressure is read"},
-      s.offset_cells);
-  v.field({"time_constant", "s", 0, 10, "time constant of smoothing the pressure; 0: no smoothing"},
+  v.field({"offset_cells", "cells", 0.5, 4, "distance from the skin at which the pressure is read"},
+          s.offset_cells);
+  v.field({"time_constant", "s", 0, 10, "time constant of the pressure's smoothing; 0: none"},
           s.time_constant);
 }
 

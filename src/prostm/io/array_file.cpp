@@ -9,6 +9,7 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
+#include "prostm/core/nearest_name.hpp"
 
 namespace prostm {
 namespace {
@@ -122,7 +123,8 @@ TransducerArray array_from_name(const std::string& name) {
   if (name == "usx") return usx_array();
   if (name == "autd3") return autd3_array();
   if (name.ends_with(".json")) return read_array(name);
-  throw InputError("array " + name + " is unknown; it must be usx, autd3 or a file (.json)");
+  throw InputError("array " + name + " is unknown; it must be usx, autd3 or a file (.json)" +
+                   did_you_mean(name, {"usx", "autd3"}));
 }
 
 TransducerArray read_array(const std::string& path) {

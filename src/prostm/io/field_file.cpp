@@ -10,6 +10,7 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
+#include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/recorder.hpp"
 
 namespace prostm {
@@ -26,11 +27,45 @@ std::string lower_ending(const std::string& path) {
   return ending;
 }
 
-double needed_cell(const std::string& path, const FieldFileOptions& options) {
-  if (!options.cell_mm) {
-    throw InputError(path + " does not say how large a cell is; give it in mm with --cell-mm");
+/// @throws InputError for an option that does not belong to this kind of file.
+void check_options(const std::string& path, FieldKind kind, const FieldFileOptions& options) {
+  const bool sized = kind == FieldKind::Json || kind == FieldKind::Recording;
+  const bool given = options.cell_mm || options.width_mm;
+  if (sized && given) {
+    throw InputError(path + " says itself how large a cell is; leave out --cell-mm and --width-mm");
   }
-  return *options.cell_mm;
+  if (!sized && !given) {
+    throw InputError(path +
+                     " does not say how large a cell is; give it in mm with --cell-mm, or the "
+                     "width of the field with --width-mm");
+  }
+  if (options.cell_mm && options.width_mm) {
+    throw InputError(path + ": --cell-mm and --width-mm exclude each other; leave one of them out");
+  }
+  if (options.frame != 0 && kind != FieldKind::Recording) {
+    throw InputError(path + " holds one field; leave out --frame");
+  }
+  if (options.invert && kind != FieldKind::Png) {
+    throw InputError(path + " is no picture; leave out --invert");
+  }
+}
+
+/// An array or a picture with the size that the options give it.
+TargetField sized_field(const std::string& path, FieldKind kind, const FieldFileOptions& options) {
+  constexpr double kUntilItsColumnsAreKnown = 1.0;
+  const double cell_mm = options.cell_mm.value_or(kUntilItsColumnsAreKnown);
+  TargetField field = kind == FieldKind::Npy
+                          ? field_from_npy(read_file(path, kMaxNpyBytes), path, cell_mm)
+                          : field_from_png(read_file(path, kMaxPngBytes), path, cell_mm);
+  if (options.width_mm) {
+    field.cell =
+        checked_cell(*options.width_mm / field.cols, path,
+                     fmt::format("--width-mm {} over {} columns", *options.width_mm, field.cols));
+  }
+  for (std::size_t i = 0; options.invert && i < field.size(); ++i) {
+    if (field.skin[i] != 0) field.pressure[i] = 1.0 - field.pressure[i];
+  }
+  return field;
 }
 
 /// The patch with the larger sum of pressures: a frame of two hands is planned hand by hand.
@@ -51,23 +86,21 @@ TargetField field_from_recording(const std::string& path, int frame_index) {
 
 }  // namespace
 
-TargetField read_field(const std::string& path, const FieldFileOptions& options) {
+FieldKind field_kind(const std::string& path) {
   const std::string ending = lower_ending(path);
-  if (options.cell_mm && (ending == ".json" || ending == ".h5")) {
-    throw InputError(path + " says itself how large a cell is; leave out --cell-mm");
-  }
-  if (options.frame != 0 && ending != ".h5") {
-    throw InputError(path + " holds one field; leave out --frame");
-  }
-  if (ending == ".json") return field_from_json(read_file(path, kMaxJsonBytes), path);
-  if (ending == ".npy") {
-    return field_from_npy(read_file(path, kMaxNpyBytes), path, needed_cell(path, options));
-  }
-  if (ending == ".png") {
-    return field_from_png(read_file(path, kMaxPngBytes), path, needed_cell(path, options));
-  }
-  if (ending == ".h5") return field_from_recording(path, options.frame);
+  if (ending == ".json") return FieldKind::Json;
+  if (ending == ".npy") return FieldKind::Npy;
+  if (ending == ".png") return FieldKind::Png;
+  if (ending == ".h5") return FieldKind::Recording;
   throw InputError(path + " is of no known kind; a field must be a .json, .npy, .png or .h5 file");
+}
+
+TargetField read_field(const std::string& path, const FieldFileOptions& options) {
+  const FieldKind kind = field_kind(path);
+  check_options(path, kind, options);
+  if (kind == FieldKind::Json) return field_from_json(read_file(path, kMaxJsonBytes), path);
+  if (kind == FieldKind::Recording) return field_from_recording(path, options.frame);
+  return sized_field(path, kind, options);
 }
 
 }  // namespace prostm

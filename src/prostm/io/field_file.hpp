@@ -10,9 +10,16 @@
 namespace prostm {
 
 struct FieldFileOptions {
-  std::optional<double> cell_mm;  ///< edge of a cell; needed for .npy and .png, an error elsewhere
-  int frame = 0;                  ///< of a recording
+  /// Edge of a cell, or width of the whole field: one of them is needed for .npy and .png, and both
+  /// are refused elsewhere.
+  std::optional<double> cell_mm, width_mm;
+  int frame = 0;        ///< of a recording
+  bool invert = false;  ///< a picture is drawn black on white: black is the pressure
 };
+
+enum class FieldKind { Json, Npy, Png, Recording };
+/// By the ending of the file's name. @throws InputError for any other ending.
+FieldKind field_kind(const std::string& path);
 
 /// Reads a field by the ending of its name (.json, .npy, .png, .h5). @throws InputError with a
 /// sentence that names the file.

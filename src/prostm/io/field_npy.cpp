@@ -9,6 +9,7 @@
 #include <cstring>
 #include <optional>
 
+#include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/field_file.hpp"
@@ -134,7 +135,7 @@ class HeaderParser {
 NpyHeader read_header(std::string_view bytes, const std::string& name) {
   constexpr std::string_view kMagic("\x93NUMPY", 6);
   if (bytes.substr(0, kMagic.size()) != kMagic || bytes.size() < 12) {
-    fail(name, "is not an NPY file; save a 2-D array of numbers with numpy.save");
+    fail(name, is_not(bytes, "an NPY file") + "; save a 2-D array of numbers with numpy.save");
   }
   const auto byte = [&](std::size_t i) {
     return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i]));

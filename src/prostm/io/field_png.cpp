@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/field_file.hpp"
@@ -21,7 +22,7 @@ using Surface = std::unique_ptr<cairo_surface_t, SurfaceDeleter>;
 void check_size(std::string_view bytes, const std::string& name) {
   constexpr std::string_view kStart("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
   if (bytes.size() < 24 || bytes.substr(0, kStart.size()) != kStart) {
-    throw InputError(name + " is not a PNG picture; save it as PNG");
+    throw InputError(name + " " + is_not(bytes, "a PNG picture") + "; save it as PNG");
   }
   const auto big_endian = [&](std::size_t at) {
     std::uint32_t value = 0;

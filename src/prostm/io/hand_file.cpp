@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/file.hpp"
+#include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/hand_file_parts.hpp"
 #include "prostm/track/hand_json.hpp"
@@ -157,6 +158,15 @@ HandRecording hands_from_jsonl(std::string_view text, const std::string& name,
 
 HandRecording read_hand_recording(const std::string& path, const ReadProgress& progress) {
   const std::string text = read_file(path, kMaxRecordingBytes);
+  if (const std::string_view kind = kind_by_content(text); kind != "JSON") {
+    // people give --hand what --record has written
+    const std::string what = kind == "an HDF5 file"
+                                 ? "is a recording of prostm (HDF5), not a hand recording"
+                                 : is_not(text, "a hand recording");
+    throw InputError(path + " " + what +
+                     "; a hand recording is hand-frames JSON Lines (.hands.jsonl) or a recording "
+                     "of a Leap (.json), see docs/hands.md");
+  }
   // a neutral recording says so in its first line
   const std::string_view first =
       std::string_view(text).substr(0, std::min(text.find('\n', text.find('{')), text.size()));

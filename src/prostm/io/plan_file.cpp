@@ -140,6 +140,8 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
     }
   }
 
+  if (extras.warnings != nullptr) document["warnings"] = *extras.warnings;
+
   // where it lies: what lifts the paths back to the skin
   document["plane"] = plane_json(target.X_DP);
   Json raster = Json::object();

@@ -39,7 +39,8 @@ struct PlanFileExtras {
   const Metrics* metrics = nullptr;  ///< writes "metrics", when given, and nothing on what they are
   const PlanQuality* quality = nullptr;  ///< writes "metrics" and all that they depend on
   const std::vector<Control>* controls = nullptr;
-  const PowerShare* power = nullptr;  ///< writes "power", when given
+  const PowerShare* power = nullptr;                   ///< writes "power", when given
+  const std::vector<std::string>* warnings = nullptr;  ///< writes "warnings", when given
 };
 
 /// @param target the field that was planned: its plane and heights are repeated in the file.

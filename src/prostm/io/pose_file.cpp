@@ -8,6 +8,7 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
+#include "prostm/core/nearest_name.hpp"
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
@@ -65,7 +66,8 @@ Pose tracker_pose_from_name(const std::string& name) {
   if (name == "ultraleap-kit") return ultraleap_kit_pose();
   if (name.ends_with(".json")) return read_pose(name).X_DT;
   throw InputError("tracker " + name +
-                   " is unknown; it must be centre, ultraleap-kit or a pose file (.json)");
+                   " is unknown; it must be centre, ultraleap-kit or a pose file (.json)" +
+                   did_you_mean(name, {"centre", "ultraleap-kit"}));
 }
 
 }  // namespace prostm

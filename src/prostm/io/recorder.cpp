@@ -89,7 +89,8 @@ void check_recording(const std::string& path) {
   const auto kind = std::filesystem::status(path, ignored).type();
   if (kind == std::filesystem::file_type::regular ||
       kind == std::filesystem::file_type::not_found || kind == std::filesystem::file_type::none) {
-    return;
+    if (path.ends_with(".h5") || path.ends_with(".H5")) return;
+    throw InputError(path + " names no recording; it must end in .h5");
   }
   throw InputError(path + " is not an ordinary file; name a file to record into");
 }

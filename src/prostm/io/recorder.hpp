@@ -11,7 +11,7 @@
 namespace prostm {
 
 /// Tries whether a recording could be made there, before the work that fills it. @throws
-/// InputError: as check_writable, and what is no ordinary file.
+/// InputError: as check_writable, no ordinary file, or a name that does not end in .h5.
 void check_recording(const std::string& path);
 
 /// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "prostm/core/file.hpp"
+#include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/hdf5.hpp"
 #include "prostm/io/recorder.hpp"
@@ -118,8 +119,8 @@ RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_uniq
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
   impl_->file = h5::Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!impl_->file.valid()) {
-    throw InputError(path +
-                     " is not an HDF5 file, or is cut off; it must be a recording of prostm");
+    throw InputError(path + " " + is_not(read_head(path), "an HDF5 file") +
+                     ", or is cut off; it must be a recording of prostm (.h5)");
   }
   const std::string format = h5::read_text(impl_->file.get(), "format");
   if (format != "prostm-recording/1") {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/file.hpp"
+#include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/nearest_name.hpp"
 
@@ -69,8 +70,7 @@ class TomlReader : public SettingsWriter {
     std::string name(names[static_cast<std::size_t>(index)]);
     field(s, name);
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-      fail(s.name, *table_.get(s.name), ("must be " + one_of(names)).c_str());
+    if (found == names.end()) fail(s.name, *table_.get(s.name), must_be(name, names).c_str());
     index = static_cast<int>(found - names.begin());
   }
 
@@ -102,6 +102,7 @@ class JsonWriter : public SettingsReader {
 };
 
 toml::table parse_toml(std::string_view text, const std::string& file) {
+  if (!kind_by_content(text).empty()) throw InputError(file + ": " + is_not(text, "TOML"));
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
@@ -131,7 +132,7 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
 std::vector<std::string> read_settings(const std::string& path,
                                        const std::vector<SettingsGroup>& groups) {
   constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
-  return settings_from_toml(read_file(path, kMaxBytes), path, groups);
+  return settings_from_toml(read_file(path, kMaxBytes, Empty::Allowed), path, groups);
 }
 
 std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,

@@ -21,13 +21,14 @@ void list(Settings& s, Visitor& v) {
   v.field({.name = "tracker", .help = "where the tracker is: centre, ultraleap-kit or a file"},
           s.tracker);
   v.field({"world_rate", "Hz", 10, 1000, "steps of the world"}, s.world_rate);
-  v.field({"world_steps_per_plan", "", 0, 100, "a plan every so many; 0: as the method asks"},
+  v.field({"world_steps_per_plan", "", 0, 100,
+           "steps of the world for each plan; 0: as the method asks"},
           s.world_steps_per_plan);
   v.field({"frame_wait", "s", 0, 0.1, "a step waits so long for a late frame of the tracker"},
           s.frame_wait);
   v.field({.name = "side_view", .help = "whether plan updates keep a picture from the side"},
           s.side_view);
-  v.field({"threads", "", 1, 256, "of the world"}, s.threads);
+  v.field({"threads", "", 1, 256, "threads of the world"}, s.threads);
 }
 
 }  // namespace

@@ -17,11 +17,12 @@ void list(Settings& s, Visitor& v) {
   constexpr int kSeeds = std::numeric_limits<int>::max();
   constexpr double kMostClusters = planning::kMaxClusters, kPoints = kMaxPathPoints;
   v.field({.name = "preset", .help = "how paths are planned"}, s.preset);
-  v.field({"paths", "", 1, kMaxPaths, "maximum number of paths"}, s.paths);
+  v.field({"paths", "", 1, kMaxPaths, "largest number of paths"}, s.paths);
   v.field({"clusters", "", 1, kMostClusters, "k of the weighted k-means"}, s.clusters);
-  v.field({"samples", "", 8, kPoints, "N, points of a path; best has fit_samples"}, s.samples);
-  v.field({"speed", "m/s", 0.1, 100, "v of the focal points"}, s.speed);
-  v.field({"draw_rate", "Hz", 0.1, 1e4, "laps per second of the longest path"}, s.draw_rate);
+  v.field({"samples", "", 8, kPoints, "points of a path (N); preset best has fit_samples"},
+          s.samples);
+  v.field({"speed", "m/s", 0.1, 100, "speed of the focal points (v)"}, s.speed);
+  v.field({"draw_rate", "Hz", 0.1, 1e4, "laps a second of the longest path"}, s.draw_rate);
   v.field({"sigma", "m", 1e-4, 0.1, "fall-off of a focal point in Eqs. (1) and (4)"}, s.sigma);
   v.field({"gain", "", 0.01, 100, "gamma of the longest path: rendered over effective pressure"},
           s.gain);
@@ -39,11 +40,11 @@ void list(Settings& s, Visitor& v) {
            "share of the largest pressure below which no point is "
            "clustered"},
           s.weak_pressure);
-  v.field({"lloyd_iterations", "", 1, 10'000, "maximum iterations of the k-means"},
+  v.field({"lloyd_iterations", "", 1, 10'000, "largest number of iterations of the k-means"},
           s.lloyd_iterations);
-  v.field({"refine_iterations", "", 0, 100'000, "maximum number of gradient steps"},
+  v.field({"refine_iterations", "", 0, 100'000, "largest number of gradient steps"},
           s.refine_iterations);
-  v.field({"seed", "", 0, kSeeds, "seed of the clustering"}, s.seed);
+  v.field({"seed", "", 0, kSeeds, "seed of the planner's random choices"}, s.seed);
   v.field({"least_length", "m", 0.005, 1, "least length of a path of presets best and fast"},
           s.least_length);
   v.field({"fit_coverage", "", 0, 100, "weight of pressure that no path reaches"}, s.fit_coverage);
@@ -53,7 +54,7 @@ void list(Settings& s, Visitor& v) {
   v.field({"fit_samples", "", 8, kPoints, "points of a path of preset best"}, s.fit_samples);
   v.field({"fit_hysteresis", "", 0, 1, "share of the cost that new paths must save"},
           s.fit_hysteresis);
-  v.field({"fit_starts", "", 1, 10'000, "sets of paths laid anew if there is no plan before"},
+  v.field({"fit_starts", "", 1, 10'000, "sets of paths that are tried without a plan before"},
           s.fit_starts);
   v.field({"fit_kicks", "", 0, 100'000, "tries to lay one or two paths anew"}, s.fit_kicks);
   v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts apply"},

@@ -133,10 +133,11 @@ void Panel::disc(const Vec2& centre, double radius_points, const Colour& colour)
   canvas_.disc(to_page(centre), radius_points, colour);
 }
 
-void Panel::ticks_x() {
+void Panel::ticks_x(double zero) {
   const double bottom = box_.y + box_.height;
-  for_each_tick(extent_.low.x(), extent_.high.x(), box_.width, [&](double mm) {
-    const double x = to_page(Vec2(1e-3 * mm, 0.0)).x();
+  const double low = extent_.low.x() - zero, high = extent_.high.x() - zero;
+  for_each_tick(low, high, box_.width, [&](double mm) {
+    const double x = to_page(Vec2(zero + 1e-3 * mm, 0.0)).x();
     const std::array<Vec2, 2> tick{Vec2(x, bottom), Vec2(x, bottom + kTick)};
     canvas_.line(tick, false, kInk, 0.8);
     canvas_.text(Vec2(x, bottom + kTick + 11.0), tick_text(mm),
@@ -144,9 +145,10 @@ void Panel::ticks_x() {
   });
 }
 
-void Panel::ticks_y() {
-  for_each_tick(extent_.low.y(), extent_.high.y(), box_.height, [&](double mm) {
-    const double y = to_page(Vec2(0.0, 1e-3 * mm)).y();
+void Panel::ticks_y(double zero) {
+  const double low = extent_.low.y() - zero, high = extent_.high.y() - zero;
+  for_each_tick(low, high, box_.height, [&](double mm) {
+    const double y = to_page(Vec2(0.0, zero + 1e-3 * mm)).y();
     const std::array<Vec2, 2> tick{Vec2(box_.x - kTick, y), Vec2(box_.x, y)};
     canvas_.line(tick, false, kInk, 0.8);
     canvas_.text(Vec2(box_.x - kTick - 3.0, y + 0.36 * kLabelSize), tick_text(mm),
@@ -156,8 +158,8 @@ void Panel::ticks_y() {
 
 void Panel::axes(const PanelText& text) {
   canvas_.frame(box_, kInk, 0.8);
-  ticks_x();
-  ticks_y();
+  ticks_x(text.zero.x());
+  ticks_y(text.zero.y());
   const Vec2 middle(box_.x + 0.5 * box_.width, box_.y + 0.5 * box_.height);
   canvas_.text(Vec2(middle.x(), box_.y + box_.height + 31.0), text.x_label,
                {.size = kLabelSize, .colour = kFaintInk, .align = Align::Centre});

@@ -32,6 +32,7 @@ std::string tick_text(double value);
 struct PanelText {
   std::string title;
   std::string x_label = "x / mm", y_label = "y / mm";
+  Vec2 zero = Vec2::Zero();  ///< where both axes read 0, in the panel's plane [m]
 };
 
 class Panel {
@@ -59,8 +60,8 @@ class Panel {
   void axes(const PanelText& text);
 
  private:
-  void ticks_x();
-  void ticks_y();
+  void ticks_x(double zero);
+  void ticks_y(double zero);
 
   Canvas& canvas_;
   Extent extent_;

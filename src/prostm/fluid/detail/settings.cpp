@@ -13,7 +13,7 @@ template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   v.field({"cells", "", 32, 128, "cells along each edge of the box, a multiple of 16"}, s.cells);
   v.field({"width", "m", 0.05, 5, "edge of the box, which stands on the array"}, s.width);
-  v.field({.name = "solver", .help = "how the pressure is solved for"}, s.solver);
+  v.field({.name = "solver", .help = "solver of the pressure"}, s.solver);
   v.field({"cycles", "", 1, 100, "V-cycles a step"}, s.cycles);
   v.field({"jacobi_sweeps", "", 1, 100'000, "sweeps a step of the paper's solver"},
           s.jacobi_sweeps);
@@ -21,7 +21,7 @@ void list(Settings& s, Visitor& v) {
           s.jacobi_warm);
   v.field({"jet_speed", "", 0, 3, "factor on the speed of the scene's jets"}, s.jet_speed);
   v.field({"buoyancy", "m/s²", 0, 100, "upward acceleration of undiluted smoke"}, s.buoyancy);
-  v.field({"vorticity", "1/s", 0, 100, "strength of vorticity confinement; 0: off"}, s.vorticity);
+  v.field({"vorticity", "1/s", 0, 100, "strength of vorticity confinement; 0: none"}, s.vorticity);
   v.field({"density", "kg/m³", 0.01, 2000, "density of the air"}, s.density);
   v.field({"dissipation", "1/s", 0, 100, "decay rate of the smoke's density"}, s.dissipation);
 }

@@ -43,20 +43,22 @@ void list_track(Settings& s, Visitor& v) {
            "share of a still joint's change that is taken, above 0; "
            "1: no filter"},
           s.filter_position);
-  v.field({"filter_velocity", "", 0, 1, "the same for velocities"}, s.filter_velocity);
+  v.field({"filter_velocity", "", 0, 1, "filter_position for the change of a joint's velocity"},
+          s.filter_velocity);
   v.field({"filter_position_scale", "m", 1e-5, 1, "change at which the filter is half open"},
           s.filter_position_scale);
-  v.field({"filter_velocity_scale", "m/s", 1e-4, 100, "the same for velocities"},
-          s.filter_velocity_scale);
+  v.field(
+      {"filter_velocity_scale", "m/s", 1e-4, 100, "filter_position_scale for a joint's velocity"},
+      s.filter_velocity_scale);
 }
 
 template <class Settings, class Visitor>
 void list_scripted(Settings& s, Visitor& v) {
   constexpr int kSeeds = std::numeric_limits<int>::max();
   v.field({"height", "m", 0.10, 0.60, "height of the hovering palm above the tracker"}, s.height);
-  v.field({"period", "s", 5, 3600, "duration of a cycle"}, s.period);
+  v.field({"period", "s", 5, 3600, "period of the hand's cycle"}, s.period);
   v.field({"jitter", "m", 0, 0.01, "standard deviation of a joint's noise"}, s.jitter);
-  v.field({"seed", "", 0, kSeeds, "seed of that noise"}, s.seed);
+  v.field({"seed", "", 0, kSeeds, "seed of the joints' noise"}, s.seed);
   v.field({.name = "still", .help = "whether the hand hovers and does not move"}, s.still);
 }
 

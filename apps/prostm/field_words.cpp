@@ -1,0 +1,136 @@
+#include "field_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace prostm::app {
+namespace {
+
+constexpr double kHandSpan = 0.250;   // of a large hand with spread fingers, either way [m]
+constexpr double kHandWidth = 200.0;  // a size that fits on a hand, for advice [mm]
+
+int skin_cells(const TargetField& field) {
+  return static_cast<int>(std::count(field.skin.begin(), field.skin.end(), std::uint8_t{1}));
+}
+
+std::string skin_text(const TargetField& field) {
+  const auto cells = static_cast<double>(field.size());
+  const int skin = skin_cells(field);
+  if (static_cast<double>(skin) == cells) return "all skin";
+  return skin == 0 ? "no skin" : fmt::format("{:.0f} % skin", 100.0 * skin / cells);
+}
+
+std::string pressure_text(FieldKind kind, double largest, bool invert) {
+  if (kind == FieldKind::Recording) return fmt::format("{:.3g} Pa", largest);
+  if (kind != FieldKind::Png) return fmt::format("{:.3g} in the file's unit", largest);
+  return fmt::format("{:.3g} of full scale, {} is full scale and {} is no pressure", largest,
+                     invert ? "black" : "white", invert ? "white" : "black");
+}
+
+/// Width and height of the part of the raster that has skin [m].
+Vec2 skin_size(const TargetField& field) {
+  int left = field.cols, right = -1, low = field.rows, high = -1;
+  for (int row = 0; row < field.rows; ++row) {
+    for (int col = 0; col < field.cols; ++col) {
+      if (field.skin[field.index(row, col)] == 0) continue;
+      left = std::min(left, col);
+      right = std::max(right, col);
+      low = std::min(low, row);
+      high = row;
+    }
+  }
+  return field.cell * Vec2(std::max(right - left + 1, 0), std::max(high - low + 1, 0));
+}
+
+/// Whether most cells at the border of the raster carry pressure, as those of white paper do.
+bool presses_on_border(const TargetField& field) {
+  constexpr double kCarries = 0.25;  // of the largest pressure
+  const double least = kCarries * max_pressure(field);
+  int border = 0, pressed = 0;
+  for (int row = 0; row < field.rows; ++row) {
+    for (int col = 0; col < field.cols; ++col) {
+      const bool inside = row > 0 && row + 1 < field.rows && col > 0 && col + 1 < field.cols;
+      if (inside) continue;
+      const double p = field.pressure[field.index(row, col)];
+      ++border;
+      if (p > 0.0 && p >= least) ++pressed;
+    }
+  }
+  return 2 * pressed > border;
+}
+
+/// Whether the pressure is the same on all skin: a flat field then renders it without an error.
+bool is_even(const TargetField& field) {
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.skin[i] != 0) least = std::min(least, field.pressure[i]);
+  }
+  return least >= max_pressure(field);
+}
+
+}  // namespace
+
+std::string field_in_words(const std::string& path, const TargetField& field,
+                           const FieldFileOptions& options) {
+  const FieldKind kind = field_kind(path);
+  const double cell_mm = 1e3 * field.cell;
+  const std::string frame =
+      kind == FieldKind::Recording ? fmt::format(", frame {}", options.frame) : std::string();
+  return fmt::format(
+      "{}{}: {:.4g} × {:.4g} mm, {} × {} cells of {:.4g} mm, {}; largest pressure {}", path, frame,
+      cell_mm * field.cols, cell_mm * field.rows, field.cols, field.rows, cell_mm, skin_text(field),
+      pressure_text(kind, max_pressure(field), options.invert));
+}
+
+std::vector<std::string> field_warnings(const std::string& path, const TargetField& field,
+                                        const FieldFileOptions& options) {
+  std::vector<std::string> warnings;
+  const FieldKind kind = field_kind(path);
+  const Vec2 size = skin_size(field);
+  if (size.maxCoeff() > kHandSpan) {
+    const bool sized_here = kind == FieldKind::Npy || kind == FieldKind::Png;
+    const double width = kHandWidth * field.cols / std::max(field.cols, field.rows);
+    warnings.push_back(fmt::format(
+        "the field is {:.4g} × {:.4g} mm, larger than a hand{}", 1e3 * size.x(), 1e3 * size.y(),
+        sized_here ? fmt::format("; try --width-mm {:.3g}", width) : std::string()));
+  }
+  if (kind == FieldKind::Png && presses_on_border(field)) {
+    warnings.push_back(fmt::format(
+        "most of the picture's border presses on the skin, so it is probably drawn {}",
+        options.invert ? "white on black; try without --invert" : "black on white; try --invert"));
+  }
+  return warnings;
+}
+
+std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played) {
+  const bool stands = !plan.foci.empty();
+  const std::size_t count = stands ? plan.foci.size() : plan.paths.size();
+  const bool one = count == 1;
+  const std::string what =
+      fmt::format("{} {}", count, stands ? (one ? "focus" : "foci") : (one ? "path" : "paths"));
+  const char* render = one ? "renders" : "render";
+  if (is_even(field)) {
+    return fmt::format(
+        "{} {} this even field with an error (RMSE) of {:.2f} of its pressure; 0 is perfect", what,
+        render, played.rmse);
+  }
+  return fmt::format(
+      "{} {} this field with skill {:.2f} (1 is perfect, 0 is no better than an even field)", what,
+      render, played.skill_0);
+}
+
+std::vector<std::string> control_warnings(const Metrics& played,
+                                          const std::vector<Control>& controls) {
+  const auto best = std::max_element(
+      controls.begin(), controls.end(),
+      [](const auto& a, const auto& b) { return a.metrics.skill_0 < b.metrics.skill_0; });
+  if (best == controls.end() || best->metrics.skill_0 <= played.skill_0) return {};
+  return {
+      fmt::format("the plan loses to the control \"{}\", skill {:.2f} against {:.2f}: what is "
+                  "felt will hardly resemble the field",
+                  best->name, played.skill_0, best->metrics.skill_0)};
+}
+
+}  // namespace prostm::app

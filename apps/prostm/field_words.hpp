@@ -1,0 +1,28 @@
+#pragma once
+/// What `prostm plan` says of a field that it has read, and of the plan for it.
+
+#include <string>
+#include <vector>
+
+#include "prostm/io/field_file.hpp"
+#include "prostm/score/score.hpp"
+
+namespace prostm::app {
+
+/// One line about a field as it was understood: size, cells, skin, largest pressure and its unit.
+std::string field_in_words(const std::string& path, const TargetField& field,
+                           const FieldFileOptions& options);
+
+/// A sentence for each sign that the field is not what its author had in mind.
+std::vector<std::string> field_warnings(const std::string& path, const TargetField& field,
+                                        const FieldFileOptions& options);
+
+/// One sentence that judges a plan for people who do not know the metrics. @param played metrics of
+/// what is played of the plan.
+std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played);
+
+/// A sentence about the control that beats the plan, if any does.
+std::vector<std::string> control_warnings(const Metrics& played,
+                                          const std::vector<Control>& controls);
+
+}  // namespace prostm::app

@@ -1,0 +1,133 @@
+#include "usage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/nearest_name.hpp"
+
+namespace prostm::app {
+namespace {
+
+std::vector<std::string> command_names(const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::string unknown_command(const CLI::App& program, const std::string& name) {
+  return fmt::format("there is no command \"{}\"{}", shown_name(name),
+                     did_you_mean(name, command_names(program)));
+}
+
+/// The arguments that nothing takes, options without their values.
+std::vector<std::string> extras_of(const CLI::App& app) {
+  if (app.get_prefix_command()) return {};
+  std::vector<std::string> extras = app.remaining();
+  std::erase(extras, "--");
+  for (std::string& extra : extras) {
+    if (extra.starts_with("--")) extra.resize(std::min(extra.find('='), extra.size()));
+  }
+  return extras;
+}
+
+/// @param page the command as it is typed, e.g. "prostm plan".
+std::string about_extras(const CLI::App& command, const std::string& page,
+                         const std::vector<std::string>& extras) {
+  // a value that is left over belongs to an option that is misspelled
+  const auto is_dashed = [](const std::string& extra) { return extra.starts_with("-"); };
+  const auto option = std::ranges::find_if(extras, is_dashed);
+  const bool is_option = option != extras.end();
+  const std::string& extra = is_option ? *option : extras.front();
+  return fmt::format("{} {} \"{}\"{}", page, is_option ? "has no option" : "does not expect",
+                     shown_name(extra),
+                     did_you_mean(is_option ? extra : "--" + extra, option_names(command)));
+}
+
+/// The kind of value that an option takes, for one that it cannot be.
+std::string wanted(const CLI::Option& option, const std::string& value) {
+  if (option.get_type_name() == "FLOAT") return "a number";
+  const bool is_whole = value.find_first_not_of("+-0123456789") == value.npos;
+  return is_whole ? "a whole number within 32 bits" : "a whole number";
+}
+
+/// The value of an option that there are too many or too few of, or that cannot be converted.
+std::string about_value(const CLI::Option& option, const std::string& name) {
+  if (option.count() > 1)
+    return fmt::format("{} is given {} times; give it once", name, option.count());
+  if (option.count() == 0)
+    return fmt::format("{} needs a value ({})", name, option.get_type_name());
+  const std::string value = option.results().front();
+  return fmt::format("{} is \"{}\"; it must be {}", name, shown_name(value), wanted(option, value));
+}
+
+/// The sentence of the parser with other words in the middle.
+std::string reworded(const std::string& what, std::string_view between, const char* words,
+                     const char* end = "") {
+  const std::size_t at = what.find(between);
+  return what.substr(0, at) + words + what.substr(at + between.size()) + end;
+}
+
+/// The parser's errors begin with the name of an option, some after a few words.
+std::string option_of(const std::string& what) {
+  constexpr std::string_view kBefore = "Could not convert: ";
+  const std::size_t start = what.starts_with(kBefore) ? kBefore.size() : 0;
+  return what.substr(start, what.find_first_of(": ", start) - start);
+}
+
+std::string about_error(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string what = error.what(), name = option_of(what);
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+    return reworded(what, " excludes ", " and ", " exclude each other; leave one of them out");
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr)
+    return reworded(what, " requires ", " needs ");
+  const CLI::Option* option = command.get_option_no_throw(name);
+  if (option == nullptr) return what;
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
+    return fmt::format("{} is missing: {}", name, option->get_description());
+  const bool of_value = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr ||
+                        dynamic_cast<const CLI::ConversionError*>(&error) != nullptr;
+  return of_value ? about_value(*option, name) : what;
+}
+
+}  // namespace
+
+std::string usage_sentence(const CLI::App& program, const CLI::ParseError& error) {
+  const auto parsed = program.get_subcommands();
+  const CLI::App& command = parsed.empty() ? program : *parsed.front();
+  const std::string page = parsed.empty() ? "prostm" : "prostm " + command.get_name();
+  const std::vector<std::string> strays = extras_of(program), extras = extras_of(command);
+  std::string sentence;
+  if (!strays.empty() && !strays.front().starts_with("-")) {
+    sentence = unknown_command(program, strays.front());
+  } else if (!strays.empty()) {
+    sentence = about_extras(program, "prostm", strays);
+  } else {
+    sentence = extras.empty() ? about_error(command, error) : about_extras(command, page, extras);
+  }
+  const char* see = sentence.ends_with('?') ? " See" : "; see";
+  return fmt::format("{}{} {} --help", sentence, see, strays.empty() ? page : "prostm");
+}
+
+std::string help_page(const CLI::App& program, const std::string& command) {
+  // not App::help(), which gives the page of the command that was parsed: this one
+  if (command.empty())
+    return program.get_formatter()->make_help(&program, "prostm", CLI::AppFormatMode::Normal);
+  for (const CLI::App* known : program.get_subcommands({})) {
+    if (known->get_name() == command) return known->help("prostm");
+  }
+  throw InputError(unknown_command(program, command));
+}
+
+}  // namespace prostm::app

@@ -1,0 +1,16 @@
+#pragma once
+/// Recognises a file by its first bytes, for messages about a file of the wrong kind.
+
+#include <string>
+#include <string_view>
+
+namespace prostm {
+
+/// The kind of file that begins with these bytes: "an HDF5 file", "a PNG picture", "an NPY file" or
+/// "JSON"; empty if unknown.
+std::string_view kind_by_content(std::string_view bytes);
+
+/// "is a PNG picture, not JSON", or "is not JSON" if the bytes tell no other kind than `wanted`.
+std::string is_not(std::string_view bytes, std::string_view wanted);
+
+}  // namespace prostm

@@ -1,0 +1,124 @@
+"""prostm plan says how it understood a field, judges its plan in a sentence, and warns of likely mistakes."""
+
+import json
+
+import numpy as np
+import pytest
+
+from pictures import write_grey_png
+from test_commands import blob_field
+
+
+def drawing(side=40):
+    """Two blots of ink on white paper, grey values with the top row first."""
+    y, x = np.mgrid[0:side, 0:side]
+    ink = np.exp(-((x - 13) ** 2 + (y - 15) ** 2) / 30) + np.exp(-((x - 27) ** 2 + (y - 24) ** 2) / 40)
+    return np.round(255 * (1 - np.clip(ink, 0, 1))).astype(np.uint8)
+
+
+def planned(prostm, *arguments):
+    """Lines of prose and the plan."""
+    done = prostm("plan", *arguments, "--json", "-")
+    return done.stderr.splitlines(), json.loads(done.stdout)
+
+
+def warnings_in(lines):
+    return [line.removeprefix("warning: ") for line in lines if line.startswith("warning: ")]
+
+
+def test_what_was_read(prostm, tmp_path):
+    field = blob_field()
+    (tmp_path / "blob.json").write_text(json.dumps(field))
+    lines, plan = planned(prostm, "blob.json")
+    largest = np.max(field["pressure"])
+    assert lines[0] == (f"blob.json: 150 × 120 mm, 30 × 24 cells of 5 mm, all skin; largest pressure {largest:.3g} "
+                        "in the file's unit")
+    assert plan["warnings"] == [] == warnings_in(lines)
+
+    holes = np.array(field["pressure"])
+    holes[:, :15] = np.nan
+    np.save(tmp_path / "half.npy", holes)
+    assert "75 × 60 mm, 30 × 24 cells of 2.5 mm, 50 % skin;" in planned(prostm, "half.npy", "--width-mm", "75")[0][0]
+
+    prostm("capture", "--grid", "32", "--frames", "1", "--out", "a.h5")
+    line = planned(prostm, "a.h5")[0][0]
+    assert line.startswith("a.h5, frame 0: ") and line.endswith(" Pa")
+
+
+def test_a_verdict_comes_before_the_numbers(prostm, tmp_path):
+    (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
+    lines, plan = planned(prostm, "blob.json")
+    skill = plan["metrics"]["skill_0"]
+    assert lines[1] == (f"{len(plan['paths'])} paths render this field with skill {skill:.2f} "
+                        "(1 is perfect, 0 is no better than an even field)")
+    lines, plan = planned(prostm, "blob.json", "--method", "am", "--paths", "1")
+    assert "1 focus renders this field with skill " in "\n".join(lines)
+    np.save(tmp_path / "even.npy", np.full((8, 8), 3.0))
+    lines, plan = planned(prostm, "even.npy", "--cell-mm", "5")
+    assert f"this even field with an error (RMSE) of {plan['metrics']['rmse']:.2f} of its pressure" in lines[1]
+
+
+def test_ink_on_white_paper(prostm, tmp_path):
+    write_grey_png(tmp_path / "ink.png", drawing())
+    lines, plan = planned(prostm, "ink.png", "--width-mm", "120")
+    assert lines[0].endswith("all skin; largest pressure 1 of full scale, white is full scale and black is no pressure")
+    told = warnings_in(lines)
+    assert any("black on white; try --invert" in warning for warning in told) and plan["warnings"] == told
+
+    lines, plan = planned(prostm, "ink.png", "--width-mm", "120", "--invert")
+    assert lines[0] == ("ink.png: 120 × 120 mm, 40 × 40 cells of 3 mm, all skin; largest pressure 1 of full scale, "
+                        "black is full scale and white is no pressure")
+    assert plan["warnings"] == warnings_in(lines) == [] and plan["metrics"]["skill_0"] > 0.5
+
+    # the same as a picture of the other kind, which an inversion spoils
+    write_grey_png(tmp_path / "light.png", 255 - drawing())
+    light = planned(prostm, "light.png", "--width-mm", "120")[1]
+    assert light["paths"] == plan["paths"]
+    spoiled = planned(prostm, "light.png", "--width-mm", "120", "--invert")[1]
+    assert any("try without --invert" in warning for warning in spoiled["warnings"])
+
+
+def test_larger_than_a_hand(prostm, tmp_path):
+    pressure = np.array(blob_field()["pressure"])
+    np.save(tmp_path / "blob.npy", pressure)
+    [warning] = [w for w in planned(prostm, "blob.npy", "--cell-mm", "10")[1]["warnings"] if "hand" in w]
+    assert warning == "the field is 300 × 240 mm, larger than a hand; try --width-mm 200"
+    assert not any("hand" in w for w in planned(prostm, "blob.npy", "--width-mm", "200")[1]["warnings"])
+    # only skin counts
+    pressure[:, 20:] = np.nan
+    np.save(tmp_path / "part.npy", pressure)
+    assert not any("hand" in w for w in planned(prostm, "part.npy", "--cell-mm", "10")[1]["warnings"])
+    large = blob_field()
+    large["cell_mm"] = 10
+    (tmp_path / "large.json").write_text(json.dumps(large))
+    [warning] = [w for w in planned(prostm, "large.json")[1]["warnings"] if "hand" in w]
+    assert warning == "the field is 300 × 240 mm, larger than a hand"
+
+
+@pytest.mark.long
+def test_a_plan_that_loses_to_a_control(prostm, tmp_path):
+    # white paper with a little ink: nothing that a few paths could render
+    write_grey_png(tmp_path / "page.png", drawing(60))
+    lines, plan = planned(prostm, "page.png", "--cell-mm", "10")
+    [loss] = [w for w in plan["warnings"] if "loses" in w]
+    best = max(plan["controls"], key=lambda control: control["metrics"]["skill_0"])
+    assert f'loses to the control "{best["name"]}", skill {plan["metrics"]["skill_0"]:.2f} against ' in loss
+    assert lines.index(f"warning: {loss}") == 1 + lines.index(next(x for x in lines if "with skill" in x))
+
+
+def test_sizes_that_cannot_be(refuses, tmp_path):
+    np.save(tmp_path / "a.npy", np.ones((4, 5)))
+    (tmp_path / "a.json").write_text(json.dumps(blob_field()))
+    refuses("plan", "a.npy", "--cell-mm", "5", "--width-mm", "20", words=["--width-mm and --cell-mm exclude each other"])
+    refuses("plan", "a.npy", "--width-mm", "0", words=["--width-mm 0 over 5 columns"])
+    refuses("plan", "a.npy", "--width-mm", "20", "--invert", words=["a.npy is no picture; leave out --invert"])
+    refuses("plan", "a.json", "--width-mm", "20", words=["says itself how large", "--width-mm"])
+    refuses("plan", "a.npy", words=["--cell-mm", "--width-mm"])
+
+
+def test_field_reads_the_picture_as_plan_did(prostm, tmp_path):
+    write_grey_png(tmp_path / "ink.png", drawing(20))
+    picture = ["ink.png", "--width-mm", "80", "--invert"]
+    prostm("plan", *picture, "--json", "plan.json")
+    done = prostm("field", "plan.json", "--field", *picture, "--json", "-")
+    assert json.loads(done.stdout)["envelope"]["metrics"]["correlation"] > 0.2

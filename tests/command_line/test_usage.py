@@ -1,0 +1,108 @@
+"""A command line that cannot be understood gets one sentence with the nearest name and the right help page."""
+
+import json
+
+import numpy as np
+import pytest
+
+from test_bad_input import changed, hand_lines
+
+
+@pytest.mark.parametrize("arguments, sentence", [
+    (["runn"], 'there is no command "runn"; did you mean "run"? See prostm --help'),
+    (["runn", "--view"], 'there is no command "runn"; did you mean "run"? See prostm --help'),
+    (["--figur", "a.png", "plan", "x.npy"], 'prostm has no option "--figur"; see prostm --help'),
+    (["dance"], 'there is no command "dance"; see prostm --help'),
+    (["help", "plann"], 'there is no command "plann"; did you mean "plan"?'),
+    (["plan", "x.npy", "--figur", "a.png"],
+     'prostm plan has no option "--figur"; did you mean "--figure"? See prostm plan --help'),
+    (["plan", "--figur", "a.png", "x.npy"],
+     'prostm plan has no option "--figur"; did you mean "--figure"? See prostm plan --help'),
+    (["plan", "x.npy", "--figur=a.png"],
+     'prostm plan has no option "--figur"; did you mean "--figure"? See prostm plan --help'),
+    (["capture", "--ot", "x.h5"],
+     'prostm capture has no option "--ot"; did you mean "--out"? See prostm capture --help'),
+    (["run", "--sec", "5"], 'prostm run has no option "--sec"; did you mean "--seconds"? See prostm run --help'),
+    (["run", "--wings"], 'prostm run has no option "--wings"; see prostm run --help'),
+    (["run", "view"], 'prostm run does not expect "view"; did you mean "--view"? See prostm run --help'),
+    (["plan", "a.npy", "b.npy"], 'prostm plan does not expect "b.npy"; see prostm plan --help'),
+    (["plan"], "field is missing: target field (.json, .npy, .png or .h5; docs/files.md); see prostm plan --help"),
+    (["capture"], "--out is missing: the recording (.h5); see prostm capture --help"),
+    (["run", "--seconds"], "--seconds needs a value (FLOAT); see prostm run --help"),
+    (["run", "--seconds", "ten"], '--seconds is "ten"; it must be a number; see prostm run --help'),
+    (["run", "--paths", "2.5"], '--paths is "2.5"; it must be a whole number; see prostm run --help'),
+    (["run", "--seed", "99999999999"],
+     '--seed is "99999999999"; it must be a whole number within 32 bits; see prostm run --help'),
+    (["run", "--seed", "1", "--seed", "2"], "--seed is given 2 times; give it once; see prostm run --help"),
+    (["run", "--realtime", "--stepped"],
+     "--realtime and --stepped exclude each other; leave one of them out; see prostm run --help"),
+    (["run", "--figure-at", "3"], "--figure-at needs --figure; see prostm run --help"),
+    (["plan", "x.npy", "--beside", "y.json"], "--beside needs --figure; see prostm plan --help"),
+    (["field", "plan.json", "--invert"], "--invert needs --field; see prostm field --help"),
+    (["run", "--json", "--view"], "--json needs the name of a file, and --view is an option"),
+    (["run", "--preset", "bst"],
+     '--preset "bst" is unknown: it must be best, fast, paper or paper-valid; did you mean "best"?'),
+    (["run", "--scene", "one-plum"], 'did you mean "one-plume"?'),
+    (["run", "--array", "autd"], 'did you mean "autd3"?'),
+    (["run", "--tracker", "center"], 'did you mean "centre"?'),
+    (["run", "--hand", "scriptd"], 'scriptd cannot be read: there is no such file; did you mean "scripted"?'),
+    (["solve", "foci.json", "--solver", "gspat"], 'did you mean "gs-pat"?'),
+    (["run", "--record", "x.txt"], "x.txt names no recording; it must end in .h5"),
+    (["capture", "--out", "x.json"], "x.json names no recording; it must end in .h5"),
+])
+def test_the_sentence(refuses, tmp_path, arguments, sentence):
+    foci = {"format": "prostm-foci/1", "foci": [{"position_mm": [0, 0, 200], "pressure_pa": 100}]}
+    (tmp_path / "foci.json").write_text(json.dumps(foci))
+    told = refuses(*arguments)
+    assert told == f"prostm: {sentence}" or (sentence.startswith("did") and told.endswith(sentence))
+    assert [path.name for path in tmp_path.iterdir()] == ["foci.json"]
+
+
+def test_help_in_every_way(program, prostm):
+    whole, plan = prostm("--help").stdout, prostm("plan", "--help").stdout
+    for command in ("run", "plan", "settings", "help"):
+        assert f"\n  {command} " in whole
+    assert "Example:" in plan and "--figure" in plan
+    # the name of the program is the path that it was called by, or its own
+    assert prostm("help").stdout.replace("prostm", str(program), 1) == whole.replace("prostm", str(program), 0) or \
+        prostm("help").stdout.splitlines()[2:] == whole.splitlines()[2:]
+    assert prostm("help", "plan").stdout.splitlines()[2:] == plan.splitlines()[2:]
+    alone = prostm(status=2)
+    assert alone.stdout == "" and alone.stderr == prostm("help").stdout
+
+
+@pytest.mark.parametrize("name, what", [
+    ("none.json", "none.json cannot be read: there is no such file"),
+    ("gone/none.json", "gone/none.json cannot be read: there is no folder gone"),
+    ("folder.json", "folder.json is a folder; name a file"),
+])
+def test_why_a_file_cannot_be_read(refuses, tmp_path, name, what):
+    (tmp_path / "folder.json").mkdir()
+    for arguments in (["plan", name], ["run", "--hand", name], ["field", name], ["run", "--settings", name]):
+        assert refuses(*arguments) == f"prostm: {what}"
+
+
+def test_a_file_of_another_kind_is_named(refuses, prostm, tmp_path):
+    prostm("capture", "--grid", "32", "--frames", "1", "--out", "run.h5")
+    np.save(tmp_path / "a.npy", np.ones((3, 3)))
+    (tmp_path / "field.json").write_text(changed())
+    (tmp_path / "text.txt").write_text("1 2 3\n")
+    header, frames = hand_lines()
+    (tmp_path / "me.hands.jsonl").write_text("\n".join(map(json.dumps, [header, *frames])))
+    copies = {"h5.json": "run.h5", "npy.json": "a.npy", "json.npy": "field.json", "npy.png": "a.npy", "npy.h5": "a.npy"}
+    for copy, original in copies.items():
+        (tmp_path / copy).write_bytes((tmp_path / original).read_bytes())
+
+    told = refuses("run", "--hand", "run.h5", words=["a recording of prostm (HDF5), not a hand recording"])
+    assert "hand-frames JSON Lines (.hands.jsonl)" in told and "docs/hands.md" in told
+    refuses("run", "--hand", "text.txt", words=["is not a hand recording", ".hands.jsonl"])
+    refuses("run", "--hand", "a.npy", words=["is an NPY file, not a hand recording"])
+    refuses("plan", "h5.json", words=["is an HDF5 file, not JSON"])
+    refuses("plan", "npy.json", words=["is an NPY file, not JSON"])
+    refuses("plan", "json.npy", "--cell-mm", "5", words=["is JSON, not an NPY file"])
+    refuses("plan", "npy.png", "--cell-mm", "5", words=["is an NPY file, not a PNG picture"])
+    refuses("plan", "npy.h5", words=["is an NPY file, not an HDF5 file"])
+    refuses("bench", "field.json", words=["is JSON, not an HDF5 file"])
+    refuses("field", "a.npy", words=["is an NPY file, not JSON"])
+    refuses("run", "--settings", "field.json", words=["is JSON, not TOML"])
+    refuses("plan", "text.txt", words=[".json, .npy, .png or .h5"])
