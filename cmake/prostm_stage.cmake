@@ -31,7 +31,8 @@ function(prostm_stage name)
   prostm_precompile(prostm_${name} prostm_slow_headers)
 endfunction()
 
-# prostm_test(NAME …): one test program per folder of tests/, from all its *_test.cpp; each case becomes a ctest entry.
+# One test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry. The target prostm_tests
+# builds them all.
 function(prostm_test name)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
   if(PROSTM_SANITIZE STREQUAL "thread" AND DEFINED prostm_threaded_${name})
@@ -41,6 +42,7 @@ function(prostm_test name)
     add_executable(test_${name} ${sources})
     target_link_libraries(test_${name} PRIVATE ${ARGN} prostm_test_support GTest::gmock)
     prostm_precompile(test_${name} test_core ${prostm_slow_headers} <gmock/gmock.h> <gtest/gtest.h>)
+    add_dependencies(prostm_tests test_${name})
     gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
                          PROPERTIES TIMEOUT 900 LABELS "${name}")
   endif()

@@ -25,6 +25,8 @@ class Capture final : public RunObserver {
     return taken_ < frames_ && !interrupt_.requested();
   }
   int taken() const { return taken_; }
+  /// Nothing more comes.
+  void end() { progress_.clear(); }
   const Interrupt& interrupt() const { return interrupt_; }
 
  private:
@@ -54,10 +56,11 @@ int capture_command(const CaptureOptionsGiven& given) {
   options.seconds = 120.0 + 10.0 * given.frames * settings.steps_per_plan() / settings.world_rate;
   Capture capture(recorder, given.frames);
   const RunSummary summary = run(pipeline, settings, options, capture);
+  capture.end();
   if (summary.failure) std::rethrow_exception(summary.failure);
   recorder.close();
   std::FILE* out = prose(given.common.json);
-  fmt::print(out, "{} fields of {}\n", capture.taken(), settings.scene);
+  fmt::print(out, "{} fields of {} had pressure\n", capture.taken(), settings.scene);
   say_written(out, given.out);
   write_json(given.common.json,
              {{"file", given.out}, {"scene", settings.scene}, {"frames", capture.taken()}});

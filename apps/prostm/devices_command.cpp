@@ -2,6 +2,7 @@
 
 #include "common.hpp"
 #include "prostm/device/device_kinds.hpp"
+#include "prostm/track/live/leap_client.hpp"
 #include "prostm/track/live/openxr_hands.hpp"
 
 namespace prostm::app {
@@ -37,8 +38,9 @@ int devices_command(const DevicesOptionsGiven& options) {
        "--hand FILE: .hands.jsonl, or Leap JSON v6; tried with recordings of real hands"},
       {"hand", "page", true, "--hand page --view: mouse, touch or keys"},
       {"hand", "leap", true,
-       "--hand leap://127.0.0.1:6437: where a tracking service or its bridge runs, which was not "
-       "looked for; tried with a server that replays recordings, never with the real thing"},
+       fmt::format("--hand leap://127.0.0.1:6437: not looked for; {}; tried with a server that "
+                   "replays recordings, never with the real thing",
+                   leap_needs())},
       {"hand", "openxr", openxr.empty(),
        (openxr.empty() ? "--hand openxr: a runtime is here" : openxr) +
            "; tried with a runtime that replays recordings, never with a real one"},

@@ -306,6 +306,15 @@ void add_help(CLI::App& app, Work& work) {
   });
 }
 
+void add_check(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand(
+      "check", "whether this machine keeps real time, and with which options; takes 20 s at most");
+  auto o = std::make_shared<CheckOptionsGiven>();
+  add_json(*command, o->files, o->json);
+  command->footer("Example:\n  prostm check");
+  command->callback([o, &work] { work = {&o->files, [o] { return check_command(*o); }}; });
+}
+
 /// Commands of the design that do not exist yet answer with a sentence, not with a usage error.
 void add_unbuilt(CLI::App& app) {
   const std::map<std::string, std::string> commands = {
@@ -338,6 +347,7 @@ int obey(int argc, char** argv) {
   add_devices(app, work);
   add_settings(app, work);
   add_help(app, work);
+  add_check(app, work);
   add_unbuilt(app);
   try {
     if (argc < 2) {

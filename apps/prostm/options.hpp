@@ -89,6 +89,11 @@ struct SettingsOptionsGiven {
   bool toml = false;  ///< print a settings file
 };
 
+struct CheckOptionsGiven {
+  Files files;
+  std::string json;
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument. The files that the options name have been checked.
 int run_command(const RunOptionsGiven& options);
@@ -99,5 +104,6 @@ int solve_command(const SolveOptionsGiven& options);
 int field_command(const FieldOptionsGiven& options);
 int devices_command(const DevicesOptionsGiven& options);
 int settings_command(const SettingsOptionsGiven& options);
+int check_command(const CheckOptionsGiven& options);
 
 }  // namespace prostm::app

@@ -11,16 +11,26 @@
 
 #include "common.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/stage_timer.hpp"
 #include "prostm/emit/played.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/plan/quasi_static.hpp"
+#include "prostm/track/live/tracker_news.hpp"
 #include "run_summary.hpp"
 #include "view.hpp"
 
 namespace prostm::app {
 namespace {
+
+constexpr int kNoFrame = 3;           // exit status: the tracker never sent a frame
+constexpr double kTrackerLook = 0.1;  // [s]
+
+/// Whether a live tracker never sent anything.
+bool never_came(const std::optional<TrackerStatus>& tracker) {
+  return tracker && tracker->frames == 0;
+}
 
 /// Records, keeps the instant nearest to one for the picture, and watches for signals and for a
 /// page's server that fails.
@@ -50,6 +60,7 @@ class Observer final : public RunObserver {
 
   bool on_progress(double time) override {
     say_whether_muted();
+    say_news_of_tracker();
     if (view_ != nullptr) view_->check();
     if (!reported_) progress_.show(time, options_.seconds, "s");
     return !interrupt_.requested();
@@ -70,6 +81,8 @@ class Observer final : public RunObserver {
   }
   /// Says when a calibration mutes the array, and when it ends.
   void follow(std::shared_ptr<const Mute> mute) { mute_ = std::move(mute); }
+  /// Says what becomes of a live tracker.
+  void follow(Pipeline& pipeline) { pipeline_ = &pipeline; }
   /// What is done when the run's seconds are over and it goes on.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
   bool reported() const { return reported_; }
@@ -90,11 +103,24 @@ class Observer final : public RunObserver {
                               : "The calibration is over: the array is not muted any more.");
   }
 
+  void say_news_of_tracker() {
+    const double now = since_start_.seconds();
+    if (pipeline_ == nullptr || now - tracker_looked_ < kTrackerLook) return;
+    tracker_looked_ = now;
+    const auto tracker = pipeline_->world_stage().hands().tracker_status();
+    if (!tracker) return;
+    if (const auto news = tracker_news_.look(*tracker, now)) progress_.say(out_, *news);
+  }
+
   Recorder* recorder_;
   const View* view_;
   std::optional<double> picture_at_;
   const RunOptions& options_;
   std::FILE* out_;
+  Pipeline* pipeline_ = nullptr;
+  StageTimer since_start_;
+  double tracker_looked_ = 0.0;  // [s]
+  TrackerNews tracker_news_;
   double away_ = std::numeric_limits<double>::infinity();
   WorldFrame contact_;
   PlanFrame plan_;
@@ -146,17 +172,6 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   draw_scene(figure, path);
 }
 
-/// A run that was cut short may have nothing to draw.
-void draw_or_say_why(const Observer& observer, const RunSummary& summary,
-                     const PipelineSettings& settings, const GridShape& grid,
-                     const std::string& path, std::FILE* out) {
-  if (observer.has_instant()) return draw_instant(observer, settings, grid, path);
-  const std::string why =
-      "no picture was drawn in " + path + ": no pressure reached a hand during the run";
-  if (!summary.stopped) throw InputError(why);
-  fmt::print(out, "{}\n", why);
-}
-
 /// What the command line asks of a run: the options, and what it changes in the settings.
 RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) {
   RunOptions options;
@@ -168,11 +183,7 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
   device_kind(settings.device);
   settings.simulated_array.realtime = realtime;
   if (given.switch_at) settings.emit.switch_at = from_name<SwitchAt>(*given.switch_at, "--switch");
-  // a clock is running: the planner gets a share of an update, not a number of tries
-  if (realtime && settings.method == Method::ProStm && settings.plan.preset == Preset::Best &&
-      settings.plan.budget == 0.0 && !given.common.budget_ms) {
-    settings.plan.budget = kLiveBudget;
-  }
+  if (realtime && !given.common.budget_ms) set_live_budget(settings);
   settings.side_view = !given.common.figure.empty();
   check_view(given, realtime);
   return options;
@@ -209,10 +220,12 @@ struct Ending {
   const Observer& observer;
   const View* view;
   std::FILE* out;
+  std::vector<std::string> written = {};  ///< files that are whole
 
-  void report(const RunSummary& summary) const {
+  void report(const RunSummary& summary) {
     const std::optional<TrackerStatus> tracker = pipeline.world_stage().hands().tracker_status();
-    nlohmann::ordered_json json = summary_json(summary, settings);
+    const Verdict verdict = verdict_of(summary, settings, tracker);
+    nlohmann::ordered_json json = summary_json(summary, settings, verdict);
     json["hand"] = given.hand;
     json["tracker"] = tracker_json(tracker);
     json["settings"] = settings_to_json(settings_groups(settings));
@@ -221,20 +234,40 @@ struct Ending {
       if (recorder == nullptr || !recorder->open()) return;
       recorder->set_attribute("summary", json.dump());
       recorder->close();
-    });
-    attempts.add([&] { write_json(given.common.json, json); });
-    attempts.add([&] {
-      if (given.common.figure.empty()) return;
-      draw_or_say_why(observer, summary, settings, pipeline.world_stage().world().grid(),
-                      given.common.figure, out);
+      written.push_back(given.record);
     });
     attempts.add([&] {
-      print_summary(out, summary, settings);
-      if (tracker) print_tracker(out, *tracker);
-      flush(out);
+      write_json(given.common.json, json);
+      written.push_back(given.common.json);
+    });
+    attempts.add([&] { draw(summary, never_came(tracker)); });
+    attempts.add([&] {
+      print_summary(out, summary, settings, verdict, tracker);
+      say_files();
     });
     attempts.finish();
     if (given.stay && !summary.stopped) view->announce(out);
+  }
+
+  void say_files() const {
+    for (const std::string& path : written) say_written(out, path);
+    flush(out);
+  }
+
+ private:
+  /// A run that was cut short, or whose tracker never came, may have nothing to draw.
+  void draw(const RunSummary& summary, bool no_hand) {
+    const std::string& path = given.common.figure;
+    if (path.empty()) return;
+    if (observer.has_instant()) {
+      draw_instant(observer, settings, pipeline.world_stage().world().grid(), path);
+      written.push_back(path);
+      return;
+    }
+    const std::string why =
+        "no picture was drawn in " + path + ": no pressure reached a hand during the run";
+    if (!summary.stopped && !no_hand) throw InputError(why);
+    fmt::print(out, "{}\n", why);
   }
 };
 
@@ -265,15 +298,22 @@ int run_command(const RunOptionsGiven& given) {
   std::FILE* out = prose(given.common.json);
   Observer observer(recorder.get(), view.get(), picture_at, options, out);
   observer.follow(mute);
-  const Ending ending{given, settings, pipeline, recorder.get(), observer, view.get(), out};
+  observer.follow(pipeline);
+  Ending ending{given, settings, pipeline, recorder.get(), observer, view.get(), out};
   observer.on_report([&ending](const RunSummary& summary) { ending.report(summary); });
   const RunSummary summary = run(pipeline, settings, options, observer);
   observer.end();
   // at once, whatever becomes of the files
   const int failed = summary.failure ? tell(summary.failure) : 0;
-  if (observer.reported()) return failed;
-  ending.report(summary);
-  return failed != 0 ? failed : observer.interrupt().status();
+  const bool stayed = observer.reported();
+  if (stayed) {
+    ending.say_files();
+  } else {
+    ending.report(summary);
+  }
+  if (failed != 0) return failed;
+  if (!stayed && observer.interrupt().requested()) return observer.interrupt().status();
+  return never_came(pipeline.world_stage().hands().tracker_status()) ? kNoFrame : 0;
 }
 
 }  // namespace prostm::app

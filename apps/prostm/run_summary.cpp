@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 
 #include "common.hpp"
 #include "prostm/io/quantity_json.hpp"
@@ -10,31 +10,127 @@
 namespace prostm::app {
 namespace {
 
-void print_paths(std::FILE* out, const RunSummary& s) {
-  fmt::print(out,
-             "paths: longest {:.1f} mm in the plane, {:.1f} mm on the skin; {} too long, {} "
-             "crossings; largest focus step {:.3f} mm\n",
-             s.max_path_length * 1e3, s.max_skin_length * 1e3, s.long_paths, s.crossings,
-             s.emit.max_focus_step * 1e3);
+/// A line of the counts: of which stage, and what.
+void print_row(std::FILE* out, const char* stage, const std::string& text) {
+  fmt::print(out, "  {:<8} {}\n", stage, text);
 }
 
-void print_times(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
-  const auto row = [&](const std::string& name, const Summary& t) {
-    fmt::print(out, "  {:<14} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f}\n", name, t.mean * 1e3,
-               t.p50 * 1e3, t.p99 * 1e3, t.max * 1e3);
-  };
+double percent(std::int64_t part, std::int64_t all) {
+  return all > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(all) : 0.0;
+}
+
+void print_paths(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
+  print_row(
+      out, "paths",
+      fmt::format("longest {:.1f} mm in the plane and {:.1f} mm on the skin; {} too long, {} "
+                  "crossings",
+                  s.max_path_length * 1e3, s.max_skin_length * 1e3, s.long_paths, s.crossings));
+  print_row(out, "laps",
+            fmt::format("{:.1f} % completed; --switch {}", 100.0 * laps_completed(s.emit),
+                        name_of(settings.emit.switch_at)));
+}
+
+void print_foci(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
+  print_row(out, "foci",
+            fmt::format("at most {}, {} at {:g} Hz; {} beyond the focal points", settings.am.foci,
+                        name_of(settings.emit.am_waveform), settings.emit.am_frequency,
+                        s.emit.dropped_paths));
+}
+
+void print_output(std::FILE* out, const RunSummary& s) {
+  const EmitStats& e = s.emit;
+  print_row(out, "samples",
+            fmt::format("{} of all focal points; {:.1f} % at full scale ({:.3g} Pa), {:.1f} % "
+                        "weakened by the power limit; largest step {:.3f} mm",
+                        e.samples, percent(e.saturated, e.samples), s.full_scale_pressure,
+                        percent(e.limited, e.samples), e.max_focus_step * 1e3));
+  print_row(out, "array",
+            fmt::format("{} blocks; {} missed (nothing to play), {} late (covered by the queue "
+                        "unless missed); queue of {} blocks at the end",
+                        s.device.blocks, s.device.missed_blocks, s.device.late_blocks,
+                        s.device.queue_blocks));
+  if (s.limited_samples > 0)
+    print_row(out, "array", fmt::format("{} samples outside its limits", s.limited_samples));
+}
+
+void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
+  fmt::print(out, "\nThe run: {}, {:.1f} s{}\n", settings.scene, s.seconds,
+             s.stopped ? ", cut short" : "");
+  print_row(out, "smoke",
+            fmt::format("{} steps, {} skipped; {:.2g} of the divergence left on the mean",
+                        s.world_steps, s.skipped_world_steps, s.mean_divergence));
+  print_row(out, "plans",
+            fmt::format("{}, and {} updates without pressure on a hand; {} targets skipped",
+                        s.plans, s.empty_updates, s.skipped_updates));
+  if (settings.method == Method::Am) {
+    print_foci(out, s, settings);
+  } else {
+    print_paths(out, s, settings);
+  }
+  print_output(out, s);
+  const ContactStats& c = s.contact_stats;
+  print_row(out, "hand",
+            fmt::format("{:.1f} % of its joints outside the smoke's box; {:.0f} % of its skin too "
+                        "steep to press on",
+                        percent(c.joints_outside, c.joints), 100.0 * steep_share(c)));
+  if (s.unobserved > 0) print_row(out, "record", fmt::format("{} updates missing", s.unobserved));
+}
+
+void print_tracker(std::FILE* out, const TrackerStatus& tracker) {
+  print_row(out, "tracker",
+            fmt::format("{} frames, {} dropped, {} repeated, {} reconnects; hands not taken: {} "
+                        "unsure, {} frozen; at the end {}connected",
+                        tracker.frames, tracker.dropped, tracker.repeated, tracker.reconnects,
+                        tracker.unsure, tracker.frozen, tracker.connected ? "" : "not "));
+}
+
+/// Of a table of times: heading and rows.
+void print_heading(std::FILE* out) {
   fmt::print(out, "  [ms]               mean      p50      p99      max\n");
-  row("latency", s.latency);
+}
+void print_times(std::FILE* out, const std::string& name, const Summary& t,
+                 const std::string& meaning) {
+  fmt::print(out, "  {:<14} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f}  {}\n", name, t.mean * 1e3,
+             t.p50 * 1e3, t.p99 * 1e3, t.max * 1e3, meaning);
+}
+
+/// What each part of a latency is spent on, by LatencyPart.
+constexpr std::array<const char*, kLatencyParts> kPartMeanings = {
+    "the frame waits for the next step",
+    "the step begins late",
+    "the hand is filtered and drawn on the grid",
+    "the smoke meets the hand; the rest of its step was done before",
+    "the target is made",
+    "the planner wakes up",
+    "the plan is made",
+    "it is laid on the skin",
+    "the array asks for a block (negative: late)",
+    "the lap that is being drawn ends",
+    "the array plays what was queued before"};
+
+void print_latency(std::FILE* out, const RunSummary& s) {
+  if (s.latency.n == 0) return;
+  fmt::print(out,
+             "\nLatency, from the tracker's frame to the first sample planned from it: of {} plans "
+             "that were played\n",
+             s.latency.n);
+  print_heading(out);
+  print_times(out, "latency", s.latency, "the sum of these parts:");
   for (int part = 0; part < kLatencyParts; ++part) {
-    row(fmt::format("  {}", latency_part_name(part)),
-        s.latency_parts[static_cast<std::size_t>(part)]);
+    const auto i = static_cast<std::size_t>(part);
+    print_times(out, fmt::format("  {}", latency_part_name(part)), s.latency_parts[i],
+                kPartMeanings[i]);
   }
-  row("redraw", s.redraw);
-  if (settings.method == Method::ProStm) {
-    fmt::print(out, "  laps completed {:.1f} %, switches: {}\n", 100.0 * laps_completed(s.emit),
-               name_of(settings.emit.switch_at));
+  print_times(out, "redraw", s.redraw, "until 90 % of the new paths were drawn");
+}
+
+void print_stages(std::FILE* out, const RunSummary& s) {
+  fmt::print(out, "\nWork, how long a stage computed each time it ran, waiting left out\n");
+  print_heading(out);
+  for (const StageSummary& stage : stage_summaries()) {
+    const Summary& times = s.*stage.times;
+    print_times(out, stage.name, times, fmt::format("{} times", times.n));
   }
-  for (const StageSummary& stage : stage_summaries()) row(stage.name, s.*stage.times);
 }
 
 nlohmann::ordered_json parts_json(const std::array<Summary, kLatencyParts>& parts) {
@@ -45,11 +141,20 @@ nlohmann::ordered_json parts_json(const std::array<Summary, kLatencyParts>& part
   return json;
 }
 
+nlohmann::ordered_json verdict_json(const Verdict& verdict) {
+  nlohmann::ordered_json held = nullptr;
+  if (verdict.held) held = *verdict.held;
+  return {{"held", held}, {"sentences", verdict.sentences}};
+}
+
 }  // namespace
 
-nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings& settings) {
+nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings& settings,
+                                    const Verdict& verdict) {
   nlohmann::ordered_json json = {
       {"format", "prostm-run/1"},
+      {"verdict", verdict_json(verdict)},
+      {"mode", name_of(s.mode)},
       {"scene", settings.scene},
       {"method", name_of(settings.method)},
       {"switch_at", name_of(settings.emit.switch_at)},
@@ -68,51 +173,13 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
   return json;
 }
 
-void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
-  fmt::print(out,
-             "{}: {:.1f} s, {} fluid steps ({} skipped), {} plans ({} updates without pressure, {} "
-             "skipped)\n",
-             settings.scene, s.seconds, s.world_steps, s.skipped_world_steps, s.plans,
-             s.empty_updates, s.skipped_updates);
-  fmt::print(out, "device: {} blocks, {} late, {} missed, queue of {} blocks\n", s.device.blocks,
-             s.device.late_blocks, s.device.missed_blocks, s.device.queue_blocks);
-  if (s.limited_samples > 0) {
-    fmt::print(out, "device: {} samples were outside its limits and cut down\n", s.limited_samples);
-  }
-  if (settings.method == Method::Am) {
-    fmt::print(out,
-               "foci: at most {}, {} at {:g} Hz; largest step of one that sounds {:.3f} mm, {} "
-               "beyond the focal points\n",
-               settings.am.foci, name_of(settings.emit.am_waveform), settings.emit.am_frequency,
-               s.emit.max_focus_step * 1e3, s.emit.dropped_paths);
-  } else {
-    print_paths(out, s);
-  }
-  fmt::print(out, "drive: full scale {:.3f} Pa, {} of {} samples saturated, {} power-limited\n",
-             s.full_scale_pressure, s.emit.saturated, s.emit.samples, s.emit.limited);
-  fmt::print(out, "fluid: {:.2g} of the divergence left on the mean\n", s.mean_divergence);
-  if (s.contact_stats.joints_outside > 0) {
-    fmt::print(
-        out,
-        "hand: {} joint positions were outside the smoke's box; the skin there has no target\n",
-        s.contact_stats.joints_outside);
-  }
-  if (s.contact_stats.steep_cells > 0) {
-    fmt::print(out,
-               "hand: {:.0f} % of its skin was too steep for the array to press on, and not "
-               "planned\n",
-               100.0 * steep_share(s.contact_stats));
-  }
-  if (s.unobserved > 0) fmt::print(out, "recording: {} updates were missed\n", s.unobserved);
-  print_times(out, s, settings);
-}
-
-void print_tracker(std::FILE* out, const TrackerStatus& tracker) {
-  fmt::print(out,
-             "tracker: {} ({} frames, {} dropped, {} repeated, {} reconnects; hands not taken: {} "
-             "unsure, {} frozen)\n",
-             tracker.sentence, tracker.frames, tracker.dropped, tracker.repeated,
-             tracker.reconnects, tracker.unsure, tracker.frozen);
+void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& settings,
+                   const Verdict& verdict, const std::optional<TrackerStatus>& tracker) {
+  for (const std::string& sentence : verdict.sentences) fmt::print(out, "{}\n", sentence);
+  print_counts(out, s, settings);
+  if (tracker) print_tracker(out, *tracker);
+  print_latency(out, s);
+  print_stages(out, s);
 }
 
 nlohmann::ordered_json tracker_json(const std::optional<TrackerStatus>& tracker) {

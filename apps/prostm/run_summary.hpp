@@ -3,17 +3,19 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "prostm/pipeline/runner.hpp"
+#include "prostm/pipeline/verdict.hpp"
 
 namespace prostm::app {
 
 /// prostm-run/1, see docs/running.md.
-nlohmann::ordered_json summary_json(const RunSummary& summary, const PipelineSettings& settings);
+nlohmann::ordered_json summary_json(const RunSummary& summary, const PipelineSettings& settings,
+                                    const Verdict& verdict);
 
-/// The same in words.
-void print_summary(std::FILE* out, const RunSummary& summary, const PipelineSettings& settings);
-void print_tracker(std::FILE* out, const TrackerStatus& tracker);
+/// The verdict, then the same numbers under headings. @param tracker of hands tracked live.
+void print_summary(std::FILE* out, const RunSummary& summary, const PipelineSettings& settings,
+                   const Verdict& verdict, const std::optional<TrackerStatus>& tracker);
 
 /// "tracker" of prostm-run/1: null for hands that are not tracked live.
 nlohmann::ordered_json tracker_json(const std::optional<TrackerStatus>& tracker);

@@ -38,7 +38,7 @@ def test_a_signal_ends_a_run_whole(program, tmp_path, name, status):
     running.send_signal(getattr(signal, name))
     out, errors = running.communicate(timeout=60)
     assert running.returncode == status and errors == ""
-    assert "fluid steps" in out
+    assert "The run: one-plume" in out
     summary = json.loads((tmp_path / "run.json").read_text())
     assert summary["stopped"] is True and summary["failure"] is None and summary["seconds"] < 60
     with h5py.File(tmp_path / "run.h5") as h5:
@@ -75,7 +75,7 @@ def test_a_full_disk_ends_a_run(program, tmp_path, pace):
     assert running.returncode == 2
     lines = errors.splitlines()
     assert len(lines) == 1 and lines[0].startswith("prostm: run.h5 cannot be written (File too large); ")
-    assert "fluid steps" in out
+    assert "The run: one-plume" in out
     summary = json.loads((tmp_path / "run.json").read_text())
     assert summary["stopped"] is True and "prostm: " + summary["failure"] == lines[0]
     assert not (tmp_path / "run.h5").exists()

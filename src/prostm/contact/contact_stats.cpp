@@ -11,7 +11,7 @@ double steep_share(const ContactStats& s) {
 
 namespace {
 
-constexpr std::array<Quantity<ContactStats>, 5> kStats{{
+constexpr std::array<Quantity<ContactStats>, 6> kStats{{
     {.name = "skin_cells",
      .unit = "",
      .help = "Target cells with skin, over all updates.",
@@ -31,6 +31,10 @@ constexpr std::array<Quantity<ContactStats>, 5> kStats{{
      .help = "Share of the hands' skin that is too steep.",
      .value = &steep_share,
      .better = Better::Less},
+    {.name = "joints",
+     .unit = "",
+     .help = "Joint positions of the hands, over all updates.",
+     .value = &ContactStats::joints},
     {.name = "joints_outside",
      .unit = "",
      .help = "Joint positions outside the box.",

@@ -87,6 +87,7 @@ ContactStats SkinContact::extract(const PressureSource& source, const HandRaster
           (q.array() >= 0.0).all() && q.x() <= grid_.nx && q.y() <= grid_.ny && q.z() <= grid_.nz;
       stats.joints_outside += inside ? 0 : 1;
     }
+    stats.joints += static_cast<std::int64_t>(hand.position.size());
   }
 
   out.time = hands.time;

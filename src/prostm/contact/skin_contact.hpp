@@ -31,10 +31,11 @@ struct ContactSettings {
 
 struct ContactStats {
   std::int64_t skin_cells = 0;   ///< raster cells with skin, over all patches
-  double skin_area = 0.0;        ///< area of these, each weighted by its fade [m²]
-  std::int64_t steep_cells = 0;  ///< cells without a target: too steep for the array
-  /// joints that lie outside the grid: no pressure is known there
-  std::int64_t joints_outside = 0;
+  double skin_area = 0.0;        ///< of these, each counted as it has faded [m²]
+  std::int64_t steep_cells = 0;  ///< cells whose skin is too steep for the array: no target's
+  std::int64_t joints = 0;       ///< of the hands
+  std::int64_t joints_outside =
+      0;  ///< joints that lie outside the grid: no pressure is known there
 };
 /// Share of the skin's cells that are too steep; 0 without skin.
 double steep_share(const ContactStats& stats);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "prostm/device/detail/thread_priority.hpp"
+#include "prostm/device/thread_priority.hpp"
 
 namespace prostm {
 namespace {

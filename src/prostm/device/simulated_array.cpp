@@ -13,7 +13,7 @@
 #include "prostm/core/require.hpp"
 #include "prostm/device/detail/block_clock.hpp"
 #include "prostm/device/detail/segment_player.hpp"
-#include "prostm/device/detail/thread_priority.hpp"
+#include "prostm/device/thread_priority.hpp"
 
 namespace prostm {
 namespace {

@@ -23,6 +23,10 @@ double plan_rate(const RunSummary& s) {
 constexpr std::array kStats{
     Quantity<RunSummary>{
         .name = "seconds", .unit = "s", .help = "Of run time.", .value = &RunSummary::seconds},
+    Quantity<RunSummary>{.name = "took_seconds",
+                         .unit = "s",
+                         .help = "By the clock, pauses included.",
+                         .value = &RunSummary::took},
     count("world_steps", &RunSummary::world_steps, "Steps of the world."),
     count("skipped_world_steps", &RunSummary::skipped_world_steps,
           "Steps let go because the machine was more than one behind.", Better::Less),

@@ -22,6 +22,7 @@ class Run {
       : pipeline_(pipeline),
         observer_(observer),
         pace_(settings, options),
+        mode_(options.mode),
         pause_kept_(options.pause_kept),
         stall_time_(settings.emit.stall_time),
         world_(pipeline, pace_, shared_),
@@ -97,6 +98,8 @@ class Run {
   Pipeline& pipeline_;
   RunObserver& observer_;
   const RunPace pace_;
+  const RunMode mode_;
+  const StageTimer since_start_;
   const double pause_kept_, stall_time_;  // [s]
   RunShared shared_;
   WorldSide world_;
@@ -190,6 +193,8 @@ void Run::keep_the_pause(bool watched) {
 
 RunSummary Run::summary() {
   RunSummary s;
+  s.mode = mode_;
+  s.took = since_start_.seconds();
   plans_.follow();
   world_.log().write(s);
   plans_.log().write(s);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "prostm/core/distribution.hpp"
+#include "prostm/core/names.hpp"
 #include "prostm/core/quantity.hpp"
 #include "prostm/pipeline/latency.hpp"
 #include "prostm/pipeline/pipeline.hpp"
@@ -22,6 +23,9 @@ enum class RunMode : std::uint8_t {
   Stepped  ///< Pipeline::step on the caller's thread; the same plans as AsFastAsPossible, to the
            ///< bit
 };
+template <>
+inline constexpr std::array<std::string_view, 3> kNames<RunMode> = {
+    "realtime", "as-fast-as-possible", "stepped"};
 
 struct RunOptions {
   double seconds = 60.0;  ///< of run time
@@ -37,7 +41,9 @@ struct RunOptions {
 
 /// The numbers of a run; times in seconds, lengths in metres.
 struct RunSummary {
+  RunMode mode = RunMode::RealTime;
   double seconds = 0;    ///< of run time, shorter than asked when stopped
+  double took = 0;       ///< by the clock, pauses included
   bool stopped = false;  ///< by the observer, or by what failed
   /// What ended the run, null where nothing failed: what an observer, the hands, a stage or the
   /// device's end threw. Of several the first.

@@ -53,6 +53,11 @@ double PipelineSettings::sigma() const {
   return method == Method::Am ? am.sigma : plan.sigma;
 }
 
+void set_live_budget(PipelineSettings& settings) {
+  const bool is_best = settings.method == Method::ProStm && settings.plan.preset == Preset::Best;
+  if (is_best && settings.plan.budget == 0.0) settings.plan.budget = kLiveBudget;
+}
+
 PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate) {
   PlanSettings plan = settings.plan;
   plan.rise_time = 1.0 / (largest_slew(settings.emit.fade_time, emission_rate) * emission_rate);

@@ -64,6 +64,10 @@ struct PipelineSettings {
   void visit(SettingsWriter& v);
 };
 
+/// Gives plans of preset best their time in real time, where no budget was chosen: a clock is
+/// running, so the planner gets a share of an update, not a number of tries.
+void set_live_budget(PipelineSettings& settings);
+
 /// The planner's settings with what an emission of so many samples a second can play, (P18).
 PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate);
 /// The same with the widths that `array_width` asks for: those of `plan`, or (A22) of `transducers`

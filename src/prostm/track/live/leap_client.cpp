@@ -105,9 +105,10 @@ class LeapTracker final : public LiveTracker {
       case Link::Connecting:
         return "connecting to " + name_;
       case Link::Absent:
-        return "nothing answers at " + name_ + "; is the tracking service or its bridge running?";
+        return "nothing answers at " + name_ + "; " + std::string(leap_needs());
       case Link::Foreign:
-        return "the server at " + name_ + " does not serve /v6.json";
+        return "the program that answers at " + name_ + " does not serve /v6.json; " +
+               std::string(leap_needs());
       case Link::Lost:
         return "the connection to " + name_ + " was lost; trying again";
       case Link::Connected:
@@ -221,6 +222,11 @@ class LeapTracker final : public LiveTracker {
 };
 
 }  // namespace
+
+std::string_view leap_needs() {
+  return "a Leap Motion service up to version 4 must run there, or Ultraleap's tracking service "
+         "with its bridge UltraleapTrackingWebSocket, usually at port 6437";
+}
 
 LeapAddress leap_address(const std::string& text) {
   const auto wrong = [&](const char* what) {

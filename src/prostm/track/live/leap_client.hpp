@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "prostm/track/live/live_tracker.hpp"
 
@@ -14,7 +15,10 @@ struct LeapAddress {
   std::uint16_t port = 6437;
 };
 
-/// Reads `leap://HOST:PORT`; without `:PORT` the port is 6437; IPv6 addresses stand in brackets.
+/// Says which program must run where a tracker is to be reached.
+std::string_view leap_needs();
+
+/// Reads `leap://HOST:PORT`; without `:PORT` it is 6437, IPv6 addresses stand in brackets.
 /// @throws InputError with a sentence.
 LeapAddress leap_address(const std::string& text);
 

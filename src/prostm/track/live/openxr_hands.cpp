@@ -58,8 +58,10 @@ void require_extensions() {
   const XrResult result = xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr);
   if (XR_FAILED(result)) {
     throw InputError(
-        "there is no OpenXR runtime here; install one and make it the active one, or name its "
-        "manifest in XR_RUNTIME_JSON");
+        "there is no OpenXR runtime here; install one with hand tracking, such as Monado (Debian's "
+        "monado-service and libopenxr1-monado), and make it the active one, or name its manifest "
+        "in "
+        "XR_RUNTIME_JSON");
   }
   XrExtensionProperties blank{};
   blank.type = XR_TYPE_EXTENSION_PROPERTIES;
@@ -312,7 +314,7 @@ class Session {
 
 class OpenXrTracker final : public LiveTracker {
  public:
-  OpenXrTracker() : session_(std::make_unique<Session>()), thread_([this] { run(); }) {}
+  OpenXrTracker() : thread_([this] { run(); }) {}
   ~OpenXrTracker() override {
     stop_.store(true);
     thread_.join();
@@ -326,7 +328,7 @@ class OpenXrTracker final : public LiveTracker {
     status.connected = connected();
     status.frames = frames_.load(std::memory_order_relaxed);
     status.dropped = dropped_.load(std::memory_order_relaxed);
-    status.reconnects = reconnects_.load(std::memory_order_relaxed);
+    status.reconnects = std::max<std::int64_t>(sessions_.load(std::memory_order_relaxed) - 1, 0);
     if (status.connected) {
       status.sentence = "the OpenXR session is running";
     } else {
@@ -372,7 +374,8 @@ class OpenXrTracker final : public LiveTracker {
   void open() {
     try {
       session_ = std::make_unique<Session>();
-      reconnects_.fetch_add(1, std::memory_order_relaxed);
+      sessions_.fetch_add(1, std::memory_order_relaxed);
+      say({});
     } catch (const InputError& error) {
       say(error.what());
     }
@@ -383,12 +386,12 @@ class OpenXrTracker final : public LiveTracker {
     problem_ = problem;
   }
 
-  std::unique_ptr<Session> session_;  // for the tracker's thread alone, once that runs
+  std::unique_ptr<Session> session_;  // of the tracker's thread
   HandFrame frame_;
   SpscRing<HandFrame> ring_{kFramesKept};
   std::atomic<bool> stop_{false}, connected_{false};
-  std::atomic<std::int64_t> frames_{0}, dropped_{0}, reconnects_{0};
-  mutable std::mutex problem_mutex_;  // planner and emitter never wait for it
+  std::atomic<std::int64_t> frames_{0}, dropped_{0}, sessions_{0};
+  mutable std::mutex problem_mutex_;  // neither who plans nor who emits ever waits for it
   std::string problem_;
 
   std::thread thread_;  // constructed last: it uses all of the above

@@ -1,4 +1,4 @@
-#include "prostm/device/detail/thread_priority.hpp"
+#include "prostm/device/thread_priority.hpp"
 
 #if defined(__linux__)
 #include <pthread.h>
@@ -38,18 +38,21 @@ void ask_for_short_slices() noexcept {
 }  // namespace
 #endif
 
-void raise_thread_priority() noexcept {
+bool raise_thread_priority() noexcept {
+  bool is_realtime = false;
 #if defined(__linux__)
   constexpr int kRealTime = 10;  // above ordinary threads, below what the system itself runs
   constexpr int kNice = -11;
   sched_param parameter{};
   parameter.sched_priority = kRealTime;
-  if (pthread_setschedparam(pthread_self(), SCHED_RR, &parameter) != 0) {
+  is_realtime = pthread_setschedparam(pthread_self(), SCHED_RR, &parameter) == 0;
+  if (!is_realtime) {
     setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
     ask_for_short_slices();
   }
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // [ns]; the default is 50 µs
 #endif
+  return is_realtime;
 }
 
 }  // namespace prostm

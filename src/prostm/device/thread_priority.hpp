@@ -6,7 +6,7 @@ namespace prostm {
 /// For the calling thread: round-robin real-time scheduling where the system allows it, else a
 /// higher priority where it allows that, and short time slices; and wake-ups without slack.
 /// Whatever is refused is left as it is: an unprivileged process keeps the default scheduling, and
-/// the queue of blocks must cover for it.
-void raise_thread_priority() noexcept;
+/// the queue of blocks must cover for it. @return whether real-time scheduling was allowed.
+bool raise_thread_priority() noexcept;
 
 }  // namespace prostm

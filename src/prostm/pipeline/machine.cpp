@@ -1,0 +1,59 @@
+#include "prostm/pipeline/machine.hpp"
+
+// as the kernels are compiled
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#endif
+#include <hwy/highway.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/device/thread_priority.hpp"
+
+namespace prostm {
+namespace {
+
+/// The value of "model name", as Linux tells it on x86.
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != line.npos) return line.substr(colon + 2);
+  }
+  return {};
+}
+
+/// Of the targets that the kernels were compiled for, the best that the processor has: Highway
+/// gives better targets lower bits.
+std::string vector_target() {
+  const auto usable = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(usable & -usable);
+}
+
+}  // namespace
+
+Machine look_at_machine(double seconds) {
+  constexpr std::chrono::milliseconds kSleep{1};
+  Machine machine;
+  machine.cpu = cpu_model();
+  machine.cores = static_cast<int>(std::thread::hardware_concurrency());
+  machine.vectors = vector_target();
+  Distribution late;
+  std::jthread sleeper([&] {
+    machine.realtime_priority = raise_thread_priority();
+    const StageTimer whole;
+    while (whole.seconds() < seconds) {
+      const StageTimer timer;
+      std::this_thread::sleep_for(kSleep);
+      late.add(timer.seconds() - 1e-3);
+    }
+  });
+  sleeper.join();
+  machine.sleep_late = late.summary();
+  return machine;
+}
+
+}  // namespace prostm

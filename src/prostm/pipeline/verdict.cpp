@@ -1,0 +1,245 @@
+#include "prostm/pipeline/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace prostm {
+namespace {
+
+constexpr std::size_t kMostSentences = 4;  // that a newcomer reads in ten seconds
+
+// A missing step stops the smoke for 20 ms, a missing plan lets the paths go round once or twice
+// more. One in a hundred is a hiccup every two seconds or less.
+constexpr double kLeastDone = 0.99;
+// A missed block is a millisecond of silence: one each second.
+constexpr double kMostMissed = 1e-3;
+// Of the time that there is. The rest is for other stages, for the threads to wake up, and for what
+// else runs.
+constexpr double kBusy = 0.8;
+constexpr double kComfortable = 0.6;  // the same for a setting that is recommended
+constexpr int kLeastCells = 32, kCellsStep = 16;
+
+// Shares above which something is told. The scripted hand comes in from outside the box and tilts,
+// and the strongest pressure of a scene may pass full scale at times: the scenes as they are stay
+// below these.
+constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5;
+// Of a tracker's frames.
+constexpr double kMostDropped = 0.01;
+
+/// @param of_none what it is where there is nothing to have a share of.
+double share(std::int64_t part, std::int64_t all, double of_none = 0.0) {
+  return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : of_none;
+}
+std::int64_t slots(const RunSummary& s) {
+  return s.world_steps + s.skipped_world_steps;
+}
+
+/// The largest grid below `cells` whose step, now `time` [s], fits well into `due` [s]; 0 where
+/// none does. The work grows with the number of cells.
+int smaller_grid(int cells, double time, double due) {
+  for (int n = cells - kCellsStep; n >= kLeastCells; n -= kCellsStep) {
+    const double edge = static_cast<double>(n) / cells;
+    if (time * edge * edge * edge <= kComfortable * due) return n;
+  }
+  return 0;
+}
+
+/// The most likely reason why steps or plans are missing, and what to do. @pre a step was made.
+std::string reason(const RunSummary& s, const PipelineSettings& settings) {
+  const double due = 1.0 / settings.world_rate;
+  const double steps_per_plan = settings.steps_per_plan();
+  // what one thread does one after the other
+  const double step = s.track.p50 + s.hand.p50 + s.world.p50 + s.contact.p50 / steps_per_plan;
+  if (step > kBusy * due) {
+    const int grid = smaller_grid(settings.fluid.cells, step, due);
+    return fmt::format(
+        "a step of the smoke took {:.1f} ms at the median, of the {:.0f} ms there are: {}close "
+        "what "
+        "else runs",
+        1e3 * step, 1e3 * due, grid > 0 ? fmt::format("use --grid {}, or ", grid) : "");
+  }
+  const double plan = s.plan.p50 + s.lift.p50, between = due * steps_per_plan;
+  if (plan > kBusy * between) {
+    const bool is_slow = settings.method == Method::ProStm && settings.plan.preset != Preset::Fast;
+    return fmt::format("a plan took {:.1f} ms at the median, of the {:.0f} ms there are: use {}",
+                       1e3 * plan, 1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
+  }
+  return fmt::format(
+      "a step of the smoke took {:.1f} ms at the median, of the {:.0f} ms there are, and up to "
+      "{:.0f} ms: another program takes the processor now and then; close what else runs, or try a "
+      "smaller --grid",
+      1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
+}
+
+double samples_a_millisecond(const PipelineSettings& settings) {
+  return 1e-3 * device_kind(settings.device).info(settings.device_setup()).sample_rate;
+}
+
+void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict& out) {
+  const HeldRate world = world_rate(s, settings), plans = plan_rate(s, settings);
+  const bool in_time = world.held() && plans.held();
+  out.held = in_time && samples_held(s);
+  const std::string rates = fmt::format("smoke {:.1f} of {:.0f} Hz, plans {:.1f} of {:.0f} Hz",
+                                        world.done, world.due, plans.done, plans.due);
+  const std::string missed =
+      fmt::format("{} of {} blocks", s.device.missed_blocks, s.device.blocks);
+  if (*out.held) {
+    out.sentences.push_back(fmt::format(
+        "The rates were held: {}, {:g} samples a millisecond{}.", rates,
+        samples_a_millisecond(settings),
+        s.device.missed_blocks > 0 ? fmt::format(" ({} missed, hardly to be felt)", missed) : ""));
+    return;
+  }
+  if (!in_time) {
+    out.sentences.push_back(
+        fmt::format("The rates were not held: {}; {}.", rates, reason(s, settings)));
+  }
+  if (samples_held(s)) return;
+  out.sentences.push_back(fmt::format(
+      "{}he array missed {} and was silent for so many milliseconds, which is felt as gaps: its "
+      "thread woke too late. Allow it real-time priority (ulimit -r 10), or close what else runs.",
+      in_time ? fmt::format("The rates were held but for the samples: {}; t", rates) : "T",
+      missed));
+}
+
+void judge_pace(const RunSummary& s, Verdict& out) {
+  const bool is_faster = s.took < s.seconds;
+  const double ratio = is_faster ? s.seconds / std::max(s.took, 1e-9) : s.took / s.seconds;
+  out.sentences.push_back(fmt::format(
+      "{:.1f} s of the scene were computed in {:.1f} s, {:.1f} times {} than real time; without a "
+      "clock there are no rates to hold.",
+      s.seconds, s.took, ratio, is_faster ? "faster" : "slower"));
+}
+
+void judge_tracker(const TrackerStatus& tracker, std::vector<std::string>& out) {
+  const double refused = share(tracker.dropped + tracker.repeated, tracker.frames);
+  if (tracker.frames == 0) {
+    out.push_back(fmt::format("No frame of a hand ever came: {}.", tracker.sentence));
+  } else if (!tracker.connected) {
+    out.push_back(
+        fmt::format("The tracker was lost and not there at the end: {}.", tracker.sentence));
+  } else if (tracker.reconnects > 0) {
+    out.push_back(
+        fmt::format("The tracker was lost {} times and came back; without it no hand is "
+                    "there and nothing is felt.",
+                    tracker.reconnects));
+  } else if (refused > kMostDropped) {
+    out.push_back(fmt::format("{:.0f} % of the tracker's {} frames were not taken: {}.",
+                              100.0 * refused, tracker.frames, tracker.sentence));
+  }
+}
+
+void judge_contact(const ContactStats& contact, bool felt, std::vector<std::string>& out) {
+  const double outside = share(contact.joints_outside, contact.joints);
+  constexpr const char* kRemedy = "hold it above the array, or check --tracker";
+  if (!felt && contact.joints == 0) {
+    out.emplace_back("No hand was in sight, so nothing was felt.");
+  } else if (!felt && contact.skin_cells == 0) {
+    out.push_back(fmt::format(
+        "The hand never faced the array in the smoke's box, so nothing was felt: {}.", kRemedy));
+  } else if (!felt) {
+    out.emplace_back("No pressure reached the hand, so nothing was felt.");
+  } else if (outside > kMostOutside) {
+    out.push_back(
+        fmt::format("{:.0f} % of the hand's joints were outside the smoke's box, where nothing is "
+                    "felt: {}.",
+                    100.0 * outside, kRemedy));
+  }
+  const double steep = steep_share(contact);
+  if (steep > kMostSteep) {
+    out.push_back(
+        fmt::format("{:.0f} % of the hand's skin was too steep for the array to press on: turn the "
+                    "palm towards it.",
+                    100.0 * steep));
+  }
+}
+
+void judge_output(const RunSummary& s, std::vector<std::string>& out) {
+  const double saturated = share(s.emit.saturated, s.emit.samples),
+               limited = share(s.emit.limited, s.emit.samples);
+  if (saturated > kMostSaturated) {
+    out.push_back(fmt::format(
+        "{:.0f} % of the samples were at full scale, {:.3g} Pa: stronger pressure feels "
+        "no stronger. Raise full_scale_pressure in [emit] (--settings).",
+        100.0 * saturated, s.full_scale_pressure));
+  }
+  if (limited > kMostLimited) {
+    out.push_back(fmt::format(
+        "{:.0f} % of the samples were weakened by the power limit: raise power_limit in "
+        "[emit] (--settings), or use fewer --paths.",
+        100.0 * limited));
+  }
+  if (s.unobserved > 0) {
+    out.push_back(
+        fmt::format("{} updates are missing in the recording or for the picture: writing was too "
+                    "slow. Record to a faster disk.",
+                    s.unobserved));
+  }
+}
+
+/// What should never be.
+void judge_faults(const RunSummary& s, std::vector<std::string>& out) {
+  if (s.world_resets > 0) {
+    out.push_back(fmt::format(
+        "The smoke went wrong {} times and began anew at rest: what was felt then means "
+        "nothing.",
+        s.world_resets));
+  }
+  if (s.limited_samples > 0) {
+    out.push_back(fmt::format(
+        "{} samples were outside the device's limits and were cut down: a stage before it is at "
+        "fault.",
+        s.limited_samples));
+  }
+}
+
+}  // namespace
+
+bool HeldRate::held() const {
+  return done >= kLeastDone * due;
+}
+
+HeldRate world_rate(const RunSummary& s, const PipelineSettings& settings) {
+  const double due = settings.world_rate;
+  return {due * share(s.world_steps, slots(s), 1.0), due};
+}
+
+/// Targets come with every so many steps that are made: a skipped step takes its share along.
+HeldRate plan_rate(const RunSummary& s, const PipelineSettings& settings) {
+  const std::int64_t made = s.plans + s.empty_updates;
+  const double due = settings.world_rate / settings.steps_per_plan();
+  return {due * share(made, made + s.skipped_updates, 1.0) * share(s.world_steps, slots(s), 1.0),
+          due};
+}
+
+bool samples_held(const RunSummary& s) {
+  return share(s.device.missed_blocks, s.device.blocks) <= kMostMissed;
+}
+
+Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
+                   const std::optional<TrackerStatus>& tracker) {
+  Verdict verdict;
+  if (s.world_steps == 0 || !(s.seconds > 0.0)) {
+    verdict.sentences.emplace_back("The run ended before its first step.");
+    return verdict;
+  }
+  if (s.mode == RunMode::RealTime) {
+    judge_rates(s, settings, verdict);
+  } else {
+    judge_pace(s, verdict);
+  }
+  std::vector<std::string> unusual;
+  judge_faults(s, unusual);
+  if (tracker) judge_tracker(*tracker, unusual);
+  if (!tracker || tracker->frames > 0) judge_contact(s.contact_stats, s.plans > 0, unusual);
+  judge_output(s, unusual);
+  if (unusual.empty() && verdict.held.value_or(true))
+    verdict.sentences.emplace_back("Nothing was unusual.");
+  const std::size_t room = kMostSentences - verdict.sentences.size();
+  unusual.resize(std::min(unusual.size(), room));
+  verdict.sentences.insert(verdict.sentences.end(), unusual.begin(), unusual.end());
+  return verdict;
+}
+
+}  // namespace prostm

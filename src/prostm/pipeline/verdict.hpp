@@ -1,0 +1,36 @@
+#pragma once
+/// A run judged in a few sentences: whether its rates were held, and what was unusual.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "prostm/pipeline/runner.hpp"
+
+namespace prostm {
+
+struct Verdict {
+  /// Whether smoke, plans and samples kept their rates. Nothing without a clock: no rate is due.
+  std::optional<bool> held;
+  /// One to four, the most important first: the rates and why they were not held, then what was
+  /// unusual, with a remedy where one is known.
+  std::vector<std::string> sentences;
+};
+
+/// @param settings that the run began with.  @param tracker of hands that are tracked live.
+Verdict verdict_of(const RunSummary& summary, const PipelineSettings& settings,
+                   const std::optional<TrackerStatus>& tracker = {});
+
+/// How often something was done, and how often it was due [Hz].
+struct HeldRate {
+  double done = 0.0, due = 0.0;
+  /// Whether at most one in a hundred is missing.
+  bool held() const;
+};
+HeldRate world_rate(const RunSummary& summary, const PipelineSettings& settings);
+HeldRate plan_rate(const RunSummary& summary, const PipelineSettings& settings);
+
+/// Whether the array lacked samples for at most a thousandth of the time.
+bool samples_held(const RunSummary& summary);
+
+}  // namespace prostm

@@ -1,0 +1,230 @@
+"""What a run says: its verdict first, where its files are, what becomes of its tracker; and what prostm check finds."""
+
+import base64
+import hashlib
+import json
+import os
+import pty
+import re
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+import pytest
+
+from conftest import wait_for
+
+SMALL = ["run", "--grid", "32"]
+
+
+def start(program, folder, *arguments, **options):
+    return subprocess.Popen([str(program), *map(str, arguments)], cwd=folder, text=True, stdin=subprocess.DEVNULL,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+
+
+def test_the_verdict_stands_before_the_numbers(prostm, tmp_path):
+    done = prostm(*SMALL, "--stepped", "--seconds", "4", "--json", "run.json")
+    lines = done.stdout.splitlines()
+    verdict = json.loads((tmp_path / "run.json").read_text())["verdict"]
+    assert verdict["held"] is None and 1 <= len(verdict["sentences"]) <= 4
+    assert lines[:len(verdict["sentences"]) + 1] == [*verdict["sentences"], ""]
+    assert re.match(r"4\.0 s of the scene were computed in \d+\.\d s, \d+\.\d times (fas|slow)", lines[0])
+    for heading in ["The run: one-plume, 4.0 s", "Latency, from ", "Work, how long "]:
+        assert any(line.startswith(heading) for line in lines)
+
+
+def test_in_real_time_the_verdict_is_of_the_rates(prostm, tmp_path):
+    prostm(*SMALL, "--seconds", "2", "--json", "run.json")
+    summary = json.loads((tmp_path / "run.json").read_text())
+    share = summary["world_steps"] / (summary["world_steps"] + summary["skipped_world_steps"])
+    assert summary["mode"] == "realtime" and summary["took_seconds"] == pytest.approx(2.0, abs=0.5)
+    assert isinstance(summary["verdict"]["held"], bool)
+    if share < 0.99:
+        assert summary["verdict"]["held"] is False
+    assert "of 50 Hz, plans" in summary["verdict"]["sentences"][0]
+
+
+def test_every_file_is_said_once_and_standard_output_is_none(prostm, tmp_path):
+    done = prostm(*SMALL, "--stepped", "--seconds", "6", "--record", "r.h5", "--figure", "r.png", "--json", "r.json")
+    assert re.findall(r"^wrote (.*)$", done.stdout, re.M) == ["r.h5", "r.json", "r.png"]
+    done = prostm(*SMALL, "--stepped", "--seconds", "1", "--record", "s.h5", "--json", "-")
+    json.loads(done.stdout)
+    assert re.findall(r"^wrote (.*)$", done.stderr, re.M) == ["s.h5"]
+    done = prostm("capture", "--grid", "32", "--frames", "2", "--out", "c.h5", "--json", "c.json")
+    assert re.findall(r"^wrote (.*)$", done.stdout, re.M) == ["c.h5", "c.json"]
+    assert all((tmp_path / name).exists() for name in ["r.h5", "r.json", "r.png", "s.h5", "c.h5", "c.json"])
+
+
+def test_a_run_that_is_cut_short_says_where_its_files_are(program, tmp_path):
+    running = start(program, tmp_path, *SMALL, "--seconds", "600", "--record", "r.h5", "--json", "r.json")
+    wait_for((tmp_path / "r.h5.part.h5").exists)
+    time.sleep(1.0)
+    running.send_signal(signal.SIGINT)
+    out, _ = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert out.splitlines()[-2:] == ["wrote r.h5", "wrote r.json"] and "cut short" in out
+
+
+def test_a_run_that_stayed_says_at_its_end_where_its_files_are(program, tmp_path):
+    running = start(program, tmp_path, *SMALL, "--seconds", "1", "--view", "--view-port", "0", "--stay", "--json", "r.json")
+    wait_for((tmp_path / "r.json").exists)
+    time.sleep(0.5)
+    running.send_signal(signal.SIGINT)
+    out, _ = running.communicate(timeout=60)
+    assert running.returncode == 0
+    assert out.splitlines()[-1] == "wrote r.json" and out.count("wrote r.json") == 2
+
+
+def on_a_terminal(program, folder, *arguments):
+    """What a terminal shows of a command, escape sequences included."""
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen([str(program), *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs)
+    os.close(theirs)
+    shown = b""
+    try:
+        while part := os.read(ours, 65536):
+            shown += part
+    except OSError:  # the other end is closed
+        pass
+    assert process.wait(timeout=60) == 0
+    os.close(ours)
+    return shown.decode()
+
+
+@pytest.mark.parametrize("arguments, first_word", [
+    ([*SMALL, "--as-fast-as-possible", "--seconds", "60"], "60.0 s of the scene"),
+    (["capture", "--grid", "32", "--frames", "200", "--out", "c.h5"], "200 fields"),
+])
+def test_the_progress_line_is_gone_before_anything_else_is_printed(program, tmp_path, arguments, first_word):
+    shown = on_a_terminal(program, tmp_path, *arguments)
+    line = next(line for line in shown.split("\n") if first_word in line)
+    assert "\r\x1b[K" in line, "no progress was shown"
+    assert line.split("\r\x1b[K")[-1].startswith(first_word)
+
+
+def free_port():
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def test_a_tracker_that_never_comes_is_told_at_once_and_in_the_exit_status(program, tmp_path):
+    port = free_port()
+    running = start(program, tmp_path, *SMALL, "--hand", f"leap://127.0.0.1:{port}", "--seconds", "4", "--json", "r.json",
+                    "--record", "r.h5", "--figure", "r.png")
+    begun = time.monotonic()
+    line = running.stdout.readline()
+    assert time.monotonic() - begun < 3.0
+    for words in [f"No tracker yet: nothing answers at leap://127.0.0.1:{port}; ", "UltraleapTrackingWebSocket", "6437",
+                  "tries again"]:
+        assert words in line
+    out, errors = running.communicate(timeout=60)
+    assert running.returncode == 3 and errors == ""
+    assert out.count("No tracker yet") == 0 and "No frame of a hand ever came: " in out
+    summary = json.loads((tmp_path / "r.json").read_text())
+    assert summary["tracker"]["frames"] == 0 and summary["seconds"] == pytest.approx(4.0, abs=0.1)
+    assert (tmp_path / "r.h5").exists() and "no picture was drawn in r.png" in out
+
+
+def test_an_openxr_runtime_that_is_missing_is_told_alike(prostm, monkeypatch, tmp_path):
+    monkeypatch.setenv("XR_RUNTIME_JSON", str(tmp_path / "none.json"))
+    out = prostm(*SMALL, "--hand", "openxr", "--seconds", "2", status=3).stdout
+    assert out.startswith("No tracker yet: there is no OpenXR runtime here; install one")
+    assert "XR_RUNTIME_JSON" in out.splitlines()[0]
+
+
+class LeapStandIn:
+    """A service that accepts one connection after another and sends frames without hands, until it is closed."""
+
+    def __init__(self, port):
+        self.listener = socket.create_server(("127.0.0.1", port))
+        self.sockets, self.over = [], False
+        self.thread = threading.Thread(target=self.serve)
+        self.thread.start()
+
+    def serve(self):
+        while not self.over:
+            try:
+                client, _ = self.listener.accept()
+            except OSError:
+                return
+            self.sockets.append(client)
+            try:
+                self.talk(client)
+            except OSError:
+                pass
+
+    def talk(self, client):
+        asked = client.recv(4096).decode()
+        key = re.search(r"Sec-WebSocket-Key: (\S+)", asked).group(1)
+        accept = base64.b64encode(hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode()).digest()).decode()
+        client.sendall(f"HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                       f"Sec-WebSocket-Accept: {accept}\r\n\r\n".encode())
+        stamp = 0
+        while not self.over:
+            stamp += 10_000
+            text = json.dumps({"id": stamp, "timestamp": stamp, "hands": [], "pointables": []}).encode()
+            client.sendall(bytes([0x81, len(text)]) + text)
+            time.sleep(0.01)
+
+    def close(self):
+        self.over = True
+        for one in [self.listener, *self.sockets]:
+            try:
+                one.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
+            one.close()
+        self.thread.join()
+
+
+def test_a_tracker_that_comes_and_goes_is_told_once_each(program, tmp_path):
+    port = free_port()
+    running = start(program, tmp_path, *SMALL, "--hand", f"leap://127.0.0.1:{port}", "--seconds", "600", "--json", "r.json")
+    try:
+        assert running.stdout.readline().startswith("No tracker yet: ")
+        service = LeapStandIn(port)
+        assert running.stdout.readline().startswith("The tracker is there: connected to leap://")
+        service.close()
+        assert running.stdout.readline().startswith("The tracker is lost: ")
+        service = LeapStandIn(port)
+        assert running.stdout.readline().startswith("The tracker is back: ")
+        service.close()
+    finally:
+        running.send_signal(signal.SIGINT)
+        out, _ = running.communicate(timeout=60)
+    assert running.returncode == 130
+    sentences = json.loads((tmp_path / "r.json").read_text())["verdict"]["sentences"]
+    assert any(sentence.startswith("The tracker was lost") for sentence in sentences), out
+
+
+@pytest.mark.realtime
+def test_check_says_within_20_s_what_this_machine_holds(program, tmp_path):
+    begun = time.monotonic()
+    running = start(program, tmp_path, "check", "--json", "check.json")
+    out, errors = running.communicate(timeout=60)
+    assert time.monotonic() - begun < 21.0 and errors == ""
+    check = json.loads((tmp_path / "check.json").read_text())
+    assert check["format"] == "prostm-check/1"
+    assert running.returncode == (0 if check["defaults_hold"] else 1)
+    trials = check["trials"]
+    assert (trials[0]["grid"], trials[0]["preset"]) == (64, "best")
+    assert [trial["held"] for trial in trials[:-1]] == [False] * (len(trials) - 1)
+    assert check["use"] == ({key: trials[-1][key] for key in ("grid", "preset")} if trials[-1]["held"] else None)
+    assert check["defaults_hold"] is trials[0]["held"]
+    assert check["cores"] >= 1 and check["vectors"] and check["sleep_late_ms"]["n"] > 100
+    for sentence in check["sentences"]:
+        assert sentence in out.splitlines()
+    assert out.splitlines()[-1] == "wrote check.json"
+
+
+def test_check_ends_by_a_signal(program, tmp_path):
+    running = start(program, tmp_path, "check", "--json", "check.json")
+    assert "cores" in running.stdout.readline()
+    running.send_signal(signal.SIGINT)
+    out, errors = running.communicate(timeout=20)
+    assert running.returncode == 130 and errors == ""
+    assert out.splitlines()[-1] == "Stopped before the answer was known."
+    assert not (tmp_path / "check.json").exists()

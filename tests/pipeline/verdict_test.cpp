@@ -1,0 +1,251 @@
+/// What runs of every kind are judged to be, from made-up summaries.
+
+#include "prostm/pipeline/verdict.hpp"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace prostm {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+
+/// A minute in which nothing went wrong.
+RunSummary good() {
+  RunSummary s;
+  s.seconds = s.took = 60.0;
+  s.world_steps = 3000;
+  s.plans = 1200;
+  s.empty_updates = 300;
+  s.device.blocks = 60'000;
+  s.emit.samples = 9'600'000;
+  s.contact_stats.joints = 39'000;
+  s.contact_stats.skin_cells = 200'000;
+  s.full_scale_pressure = 0.224;
+  s.track.p50 = 1e-4;
+  s.hand.p50 = 1e-3;
+  s.world.p50 = s.world.max = 9e-3;
+  s.contact.p50 = 1e-3;
+  s.plan.p50 = 2e-3;
+  return s;
+}
+Verdict judged(const std::function<void(RunSummary&)>& change,
+               const std::optional<TrackerStatus>& tracker = {}) {
+  RunSummary s = good();
+  change(s);
+  return verdict_of(s, {}, tracker);
+}
+std::vector<std::string> said(const std::function<void(RunSummary&)>& change) {
+  return judged(change).sentences;
+}
+
+TEST(Verdict, AGoodRunIsToldInTwoSentences) {
+  const Verdict verdict = judged([](RunSummary&) {});
+  EXPECT_EQ(verdict.held, true);
+  EXPECT_THAT(verdict.sentences,
+              ElementsAre("The rates were held: smoke 50.0 of 50 Hz, plans 25.0 of 25 Hz, 40 "
+                          "samples a millisecond.",
+                          "Nothing was unusual."));
+}
+
+TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {
+  const Verdict verdict = judged([](RunSummary& s) {
+    s.world_steps = 2610;
+    s.skipped_world_steps = 390;
+    s.plans = 1005;
+    s.world.p50 = 21.4e-3;
+  });
+  EXPECT_EQ(verdict.held, false);
+  EXPECT_THAT(verdict.sentences,
+              ElementsAre("The rates were not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz; a "
+                          "step of the smoke took 23.0 ms at the median, of the 20 ms there are: "
+                          "use --grid 48, or close what else runs."));
+  // 63 ms fit with none
+  EXPECT_THAT(said([](RunSummary& s) {
+                s.world_steps = 1000;
+                s.skipped_world_steps = 2000;
+                s.world.p50 = 200e-3;
+              }).front(),
+              AllOf(HasSubstr("there are: close what else runs"), Not(HasSubstr("--grid"))));
+}
+
+TEST(Verdict, OneStepInAHundredMayBeMissing) {
+  const auto with_skipped = [](std::int64_t skipped) {
+    return judged([&](RunSummary& s) {
+      s.world_steps -= skipped;
+      s.skipped_world_steps = skipped;
+      s.plans -= skipped / 2;
+    });
+  };
+  EXPECT_EQ(with_skipped(30).held, true);
+  EXPECT_EQ(with_skipped(32).held, false);
+  EXPECT_THAT(with_skipped(32).sentences.front(), HasSubstr("another program takes the processor"));
+}
+
+TEST(Verdict, ASlowPlannerIsNamed) {
+  const auto slow = [](RunSummary& s) {
+    s.plans = 700;
+    s.skipped_updates = 500;
+    s.plan.p50 = 58e-3;
+  };
+  EXPECT_EQ(judged(slow).held, false);
+  EXPECT_THAT(said(slow).front(),
+              AllOf(HasSubstr("plans 16.7 of 25 Hz"), HasSubstr("a plan took 58.0 ms"),
+                    HasSubstr("of the 40 ms there are: use --preset fast")));
+  PipelineSettings fast;
+  fast.plan.preset = Preset::Fast;
+  RunSummary s = good();
+  slow(s);
+  EXPECT_THAT(verdict_of(s, fast).sentences.front(), HasSubstr("use fewer --paths"));
+}
+
+TEST(Verdict, MissedBlocksAreToldAsWhatIsFelt) {
+  const Verdict few = judged([](RunSummary& s) { s.device.missed_blocks = 3; });
+  EXPECT_EQ(few.held, true);
+  EXPECT_THAT(few.sentences.front(), HasSubstr("(3 of 60000 blocks missed, hardly to be felt)"));
+  const Verdict many = judged([](RunSummary& s) { s.device.missed_blocks = 475; });
+  EXPECT_EQ(many.held, false);
+  EXPECT_THAT(many.sentences,
+              ElementsAre(AllOf(StartsWith("The rates were held but for the samples: smoke 50.0"),
+                                HasSubstr("missed 475 of 60000 blocks and was silent"),
+                                HasSubstr("ulimit -r 10"))));
+  EXPECT_THAT(said([](RunSummary& s) {
+                s.device.missed_blocks = 475;
+                s.world_steps = 2000;
+                s.skipped_world_steps = 1000;
+              }),
+              ElementsAre(StartsWith("The rates were not held: "),
+                          StartsWith("The array missed 475 of 60000 blocks")));
+}
+
+TEST(Verdict, LateBlocksThatTheQueueCoveredAreNotUnusual) {
+  EXPECT_EQ(said([](RunSummary& s) { s.device.late_blocks = 214; }), said([](RunSummary&) {}));
+}
+
+TEST(Verdict, WithoutAClockThePaceIsTold) {
+  const auto fast = judged([](RunSummary& s) {
+    s.mode = RunMode::AsFastAsPossible;
+    s.took = 12.0;
+    s.skipped_world_steps = 0;
+  });
+  EXPECT_FALSE(fast.held);
+  EXPECT_THAT(fast.sentences,
+              ElementsAre("60.0 s of the scene were computed in 12.0 s, 5.0 times faster than real "
+                          "time; without a clock there are no rates to hold.",
+                          "Nothing was unusual."));
+  EXPECT_THAT(said([](RunSummary& s) {
+                s.mode = RunMode::Stepped;
+                s.took = 90.0;
+              }).front(),
+              HasSubstr("computed in 90.0 s, 1.5 times slower than real time"));
+}
+
+TEST(Verdict, ARunWithoutAStepSaysSo) {
+  EXPECT_THAT(verdict_of({}, {}).sentences, ElementsAre("The run ended before its first step."));
+}
+
+TEST(Verdict, WhatIsUnusualIsToldWithItsRemedy) {
+  const std::pair<std::function<void(RunSummary&)>, const char*> cases[] = {
+      {[](RunSummary& s) { s.emit.saturated = 4'800'000; },
+       "50 % of the samples were at full scale, 0.224 Pa: stronger pressure feels no stronger. "
+       "Raise full_scale_pressure in [emit] (--settings)."},
+      {[](RunSummary& s) { s.emit.limited = 1'920'000; },
+       "20 % of the samples were weakened by the power limit: raise power_limit in [emit] "
+       "(--settings), or use fewer --paths."},
+      {[](RunSummary& s) { s.contact_stats.joints_outside = 19'500; },
+       "50 % of the hand's joints were outside the smoke's box, where nothing is felt: hold it "
+       "above the array, or check --tracker."},
+      {[](RunSummary& s) { s.contact_stats.steep_cells = 300'000; },
+       "60 % of the hand's skin was too steep for the array to press on: turn the palm towards "
+       "it."},
+      {[](RunSummary& s) { s.unobserved = 12; },
+       "12 updates are missing in the recording or for the picture: writing was too slow. Record "
+       "to a faster disk."},
+      {[](RunSummary& s) { s.world_resets = 2; },
+       "The smoke went wrong 2 times and began anew at rest: what was felt then means nothing."},
+      {[](RunSummary& s) { s.limited_samples = 7; },
+       "7 samples were outside the device's limits and were cut down: a stage before it is at "
+       "fault."},
+  };
+  for (const auto& [change, sentence] : cases) {
+    const Verdict verdict = judged(change);
+    EXPECT_EQ(verdict.held, true);
+    EXPECT_THAT(verdict.sentences, ElementsAre(StartsWith("The rates were held: "), sentence));
+  }
+}
+
+TEST(Verdict, ARunWithoutContactSaysWhy) {
+  const auto nothing_felt = [](auto change) {
+    return said([&](RunSummary& s) {
+      s.plans = 0;
+      s.empty_updates = 1500;
+      change(s);
+    });
+  };
+  EXPECT_THAT(nothing_felt([](RunSummary& s) { s.contact_stats = {}; }).back(),
+              "No hand was in sight, so nothing was felt.");
+  EXPECT_THAT(
+      nothing_felt([](RunSummary& s) {
+        s.contact_stats.skin_cells = 0;
+        s.contact_stats.joints_outside = s.contact_stats.joints;
+      }),
+      ElementsAre(StartsWith("The rates were held"),
+                  StartsWith("The hand never faced the array in the smoke's box, so nothing "
+                             "was felt: hold it above the array")));
+  EXPECT_THAT(nothing_felt([](RunSummary&) {}).back(),
+              "No pressure reached the hand, so nothing was felt.");
+}
+
+TEST(Verdict, ATrackerIsJudged) {
+  const auto of = [](const std::function<void(TrackerStatus&)>& change) {
+    TrackerStatus tracker;
+    tracker.connected = true;
+    tracker.frames = 6000;
+    tracker.sentence = "connected to leap://127.0.0.1:6437";
+    change(tracker);
+    return judged([](RunSummary&) {}, tracker).sentences;
+  };
+  EXPECT_THAT(of([](TrackerStatus&) {}).back(), "Nothing was unusual.");
+  EXPECT_THAT(of([](TrackerStatus& t) { t.reconnects = 2; }).back(),
+              StartsWith("The tracker was lost 2 times and came back"));
+  EXPECT_THAT(of([](TrackerStatus& t) { t.dropped = 300; }).back(),
+              "5 % of the tracker's 6000 frames were not taken: connected to "
+              "leap://127.0.0.1:6437.");
+  EXPECT_THAT(of([](TrackerStatus& t) { t.connected = false; }).back(),
+              StartsWith("The tracker was lost and not there at the end: "));
+  // of what follows from that nothing more is told
+  RunSummary s = good();
+  s.plans = 0;
+  s.contact_stats = {};
+  TrackerStatus absent;
+  absent.sentence = "nothing answers";
+  EXPECT_THAT(verdict_of(s, {}, absent).sentences,
+              ElementsAre(StartsWith("The rates were held"),
+                          "No frame of a hand ever came: nothing answers."));
+}
+
+TEST(Verdict, HasFourSentencesAtMostTheMostImportantFirst) {
+  const auto all = said([](RunSummary& s) {
+    s.device.missed_blocks = 475;
+    s.world_steps = 2000;
+    s.skipped_world_steps = 1000;
+    s.unobserved = 12;
+    s.emit.saturated = s.emit.samples;
+    s.contact_stats.joints_outside = s.contact_stats.joints / 2;
+    s.world_resets = 1;
+  });
+  EXPECT_THAT(all,
+              ElementsAre(StartsWith("The rates were not held"), StartsWith("The array missed"),
+                          StartsWith("The smoke went wrong"), HasSubstr("of the hand's joints")));
+}
+
+}  // namespace
+}  // namespace prostm
