@@ -26,7 +26,7 @@ class Nothing final : public ViewSource {
     frame.hand_count = 1;
     ++news.fields;
   }
-  std::string hello() override { return "{}"; }
+  std::string hello(std::uint32_t) override { return "{}"; }
   bool refresh_state(std::string& state) override {
     state = "{}";
     return true;

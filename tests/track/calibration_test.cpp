@@ -107,6 +107,7 @@ TEST(Calibration, RefusesWhatGivesNoPose) {
   const Pose X_DT = random_pose(random);
   auto points = pairs(X_DT, 2, 0.0, random);
   EXPECT_THAT(refusal(points), testing::HasSubstr("there are 2 calibration points"));
+  EXPECT_THAT(refusal({points[0]}), testing::HasSubstr("there is 1 calibration point;"));
   EXPECT_THAT(refusal({}), testing::HasSubstr("needs at least 3"));
   points.clear();
   for (int i = 0; i < 5; ++i) {

@@ -86,7 +86,7 @@ TEST(Live, WhatIsTurnedIsSeenInThePlan) {
   EXPECT_EQ(control(state, "speed").at("enabled"), false);
   EXPECT_TRUE(plan_becomes(page, [](PlanSeen p) { return p.count == 2 && p.kind == 1; }));
   set(page, "scene", "four-plumes");
-  state_with(page, "plumes", 4.0);
+  state_with(page, "scene", "four-plumes");
   const RunSummary summary = run.stop();
   EXPECT_GE(summary.device.queue_blocks, 3);
   EXPECT_LE(summary.device.queue_blocks, 10);

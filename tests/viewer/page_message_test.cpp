@@ -58,16 +58,19 @@ TEST(PageMessage, HandIsInMetresAndRadians) {
   EXPECT_DOUBLE_EQ(hand.roll, -kPi / 4);
   EXPECT_EQ(hand.closure, 0.25);
   EXPECT_TRUE(hand.left);
+  EXPECT_FALSE(hand.take);
   EXPECT_TRUE(read<HandMessage>(R"({"type":"hand","release":true})").release);
 }
 
-TEST(PageMessage, CalibrationAndRate) {
+TEST(PageMessage, CalibrationMuteAndRate) {
   using Do = CalibrationMessage::Do;
   EXPECT_EQ(read<CalibrationMessage>(R"({"type":"calibration","do":"begin"})").what, Do::Begin);
   const auto take = read<CalibrationMessage>(R"({"type":"calibration","do":"take","mark":2})");
   EXPECT_EQ(take.what, Do::Take);
   EXPECT_EQ(take.mark, 2);
   EXPECT_EQ(read<CalibrationMessage>(R"({"type":"calibration","do":"cancel"})").what, Do::Cancel);
+  EXPECT_TRUE(read<MuteMessage>(R"({"type":"mute","on":true})").on);
+  EXPECT_FALSE(read<MuteMessage>(R"({"type":"mute","on":false})").on);
   EXPECT_EQ(read<RateMessage>(R"({"type":"rate","hz":60})").rate, 60.0);
 }
 
@@ -82,7 +85,7 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {std::string(4097, ' '), "4096 bytes"},
       {"{}", "lacks \"type\""},
       {R"({"type":7})", "\"type\" must be a text"},
-      {R"({"type":"reset"})", "set, transport, hand, calibration or rate"},
+      {R"({"type":"reset"})", "set, transport, hand, calibration, mute or rate"},
       {R"({"type":"set","value":1})", "lacks \"id\""},
       {R"({"type":"set","id":"gain"})", "lacks \"value\""},
       {R"({"type":"set","id":"gain","value":null})", "\"value\" must be a number"},
@@ -102,6 +105,9 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {R"({"type":"calibration","do":"take"})", "lacks \"mark\""},
       {R"({"type":"calibration","do":"take","mark":0.5})", "whole number"},
       {R"({"type":"calibration","do":"take","mark":-1})", "between 0 and 100"},
+      {R"({"type":"hand","take":1})", "\"take\" must be true or false"},
+      {R"({"type":"mute"})", "lacks \"on\""},
+      {R"({"type":"mute","on":1})", "\"on\" must be true or false"},
       {R"({"type":"rate","hz":0})", "between 1 and 60"},
       {R"({"type":"rate","hz":"fast"})", "between 1 and 60"}};
   for (const auto& [text, expected] : cases) {

@@ -43,7 +43,7 @@ class StandIn final : public ViewSource {
     if (new_smoke) ++news.smoke;
     if (news.fields == 0) ++news.fields;
   }
-  std::string hello() override { return R"({"type":"hello","version":1})"; }
+  std::string hello(std::uint32_t) override { return R"({"type":"hello","version":1})"; }
   bool refresh_state(std::string& state) override {
     const int version = state_version;
     if (version == told_) return false;

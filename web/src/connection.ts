@@ -9,7 +9,7 @@ export interface Listeners {
   frame(frame: Frame): void;
   hello(hello: Hello): void;
   state(state: State): void;
-  error(sentence: string): void;
+  error(sentence: string, control?: string): void;
   /// what to tell whoever looks at the page; "" when all is well
   link(link: Link, sentence: string): void;
 }
@@ -25,6 +25,7 @@ export class Connection {
   opened = 0; // connections, since the page was opened
   private socket: WebSocket | null = null;
   private wait = kFirstWait;
+  private rate = 30;
 
   constructor(private readonly address: string, private readonly listeners: Listeners) {}
 
@@ -48,7 +49,8 @@ export class Connection {
       if (this.socket !== socket) return;
       this.socket = null;
       const seconds = this.wait / 1000;
-      this.listeners.link("lost", `The program does not answer; what you see has stopped. Trying again ${seconds < 1 ? "at once" : `in ${seconds} s`}…`);
+      const again = seconds < 1 ? "at once" : `in ${seconds} s`;
+      this.listeners.link("lost", `The program does not answer; what you see has stopped. Trying again ${again}…`);
       window.setTimeout(() => this.open(), this.wait);
       this.wait = Math.min(kLongestWait, 2 * this.wait);
     };
@@ -63,8 +65,14 @@ export class Connection {
     return true;
   }
 
+  /// Frames that this page wants while somebody sees it [Hz].
+  setRate(hz: number): void {
+    if (hz === this.rate) return;
+    this.rate = hz;
+    this.sendRate();
+  }
   /// A page that nobody sees asks for little.
-  sendRate(): void { this.send({ type: "rate", hz: document.hidden ? 1 : 30 }); }
+  sendRate(): void { this.send({ type: "rate", hz: document.hidden ? 1 : this.rate }); }
 
   private readFrame(decoder: Decoder, data: ArrayBuffer): void {
     try {
@@ -88,7 +96,7 @@ export class Connection {
       this.state = message;
       this.listeners.state(message);
     } else if (message?.type === "error") {
-      this.listeners.error(message.sentence);
+      this.listeners.error(message.sentence, message.id);
     }
   }
 }

@@ -3,7 +3,9 @@
 type Child = Node | string;
 type Attributes = Record<string, string | number | boolean | undefined>;
 
-export function make<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+export function make<K extends keyof HTMLElementTagNameMap>(
+  tag: K, attributes: Attributes = {}, ...children: Child[]
+): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === undefined || value === false) continue;
@@ -20,15 +22,9 @@ export function find<T extends HTMLElement>(id: string): T {
   return element as T;
 }
 
-export function fixed(value: number, digits: number): string {
-  return Number.isFinite(value) ? value.toFixed(digits) : "–";
-}
-
-/// With as many digits as say something.
-export function short(value: number): string {
-  if (!Number.isFinite(value)) return "–";
-  const size = Math.abs(value);
-  return value.toFixed(size >= 100 || Number.isInteger(value) ? 0 : size >= 10 ? 1 : 2);
+/// Puts a text where another one stands; the same text is left alone, so that nothing is read aloud twice.
+export function setText(element: Element, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
 }
 
 export const reducedMotion = window.matchMedia("(prefers-reduced-motion: reduce)");

@@ -1,30 +1,51 @@
+import { Address, changedSettings } from "./address";
 import { CalibrationGuide } from "./controls/calibration";
+import { caption } from "./controls/caption";
 import { Capture } from "./controls/capture";
 import { Controls } from "./controls/controls";
+import { Folds } from "./controls/folds";
+import { Help } from "./controls/help";
+import { listen } from "./controls/keys";
 import { Looks } from "./controls/looks";
+import { OutputSign } from "./controls/output_sign";
 import { PageHand } from "./controls/page_hand";
+import { PictureSettings } from "./controls/picture_settings";
+import { Pointer } from "./controls/point";
+import { SettingsSender } from "./controls/settings_sender";
+import { Share } from "./controls/share";
 import { Transport } from "./controls/transport";
-import { Connection } from "./connection";
-import { find, make, reducedMotion } from "./dom";
+import { Connection, type Link } from "./connection";
+import { find, reducedMotion, setText } from "./dom";
+import { Drawing } from "./drawing";
 import { Legend } from "./panels/legend";
+import { showNoHand } from "./panels/no_hand";
 import { Numbers } from "./panels/numbers";
 import { Planes } from "./panels/planes";
+import { RateWatch } from "./panels/rates";
 import { Strips } from "./panels/strips";
-import { kViews } from "./scene/camera";
-import { kFieldModes, type FieldMode } from "./scene/field_maps";
+import { Things } from "./panels/things";
 import { View } from "./scene/view";
 import "./inspection";
-import type { PageMessage } from "./messages";
-import "./style.css";
+import type { Hello, PageMessage, State } from "./messages";
+import "./styles/base.css";
+import "./styles/layout.css";
+import "./styles/controls.css";
+import "./styles/stage.css";
+import "./styles/panels.css";
 import type { Frame } from "./wire";
 
+const address = new Address();
 const view = new View(find<HTMLCanvasElement>("view"));
-const planes = new Planes();
+const planes = new Planes(address);
 const legend = new Legend();
-const strips = new Strips();
+const strips = new Strips(address);
 const numbers = new Numbers();
+const things = new Things();
+const rates = new RateWatch();
+const help = new Help();
+const pointer = new Pointer(view);
 
-// what went wrong, said where it can be seen, for a while
+// what somebody has to know, said where it can be seen, for a while
 const notice = find("notice");
 let noticeTimer: number | undefined;
 function say(sentence: string): void {
@@ -34,145 +55,126 @@ function say(sentence: string): void {
 }
 
 const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`, {
-  frame: (frame) => {
-    if (still) return;
-    shown = frame;
-    dirty = true;
-    strips.add(frame, performance.now() / 1000);
-  },
-  hello: (hello) => {
-    view.array.set(hello);
-    view.array.setDark(looks.dark);
-    pageHand.setBox(hello);
-    find("about").textContent = `prostm ${hello.prostm} · device ${hello.device}, ${hello.array.transducers_mm.length} transducers`;
-  },
-  state: (state) => {
-    controls.show(state.controls);
-    transport.show(state);
-    guide.show(state);
-  },
-  error: (sentence) => {
-    if (!guide.showError(sentence) && !controls.showError(sentence)) say(sentence);
-  },
-  link: (link, sentence) => {
-    document.documentElement.dataset.link = link;
-    find("link").textContent = sentence;
+  frame: takeFrame, hello: takeHello, state: takeState, link: takeLink,
+  error: (sentence, control) => {
+    if (!guide.showError(sentence) && !controls.showError(sentence, control)) say(sentence);
   },
 });
-
-const controls = new Controls((id, value) => connection.send({ type: "set", id, value }));
 const sendOther = (message: PageMessage): void => {
   controls.forget();
   connection.send(message);
 };
+const settings = new SettingsSender((id, value) => connection.send({ type: "set", id, value }));
+const controls = new Controls((id, value) => settings.set(id, value), new Folds(address));
+const share = new Share({ state: () => connection.state, set: (id, value) => settings.set(id, value), say }, address);
 const transport = new Transport(sendOther);
+const output = new OutputSign(sendOther);
 const guide = new CalibrationGuide(sendOther, (calibration) => view.array.setCalibration(calibration));
-const pageHand = new PageHand(view, sendOther);
-const looks = new Looks((dark) => {
+const pageHand = new PageHand(view, sendOther, say);
+const looks = new Looks(address, (dark) => {
   view.setDark(dark);
   planes.setDark(dark);
   strips.setDark(dark);
-  dirty = true;
+  drawing.again();
+});
+const picture = new PictureSettings(view, address, () => {
+  drawing.begin();
+  drawing.again();
+});
+const drawing = new Drawing(view, {
+  panels, strips: (now, due) => strips.draw(now / 1000, due),
+  mode: () => picture.mode, held: () => missed === "", rate: (hz) => connection.setRate(hz),
 });
 new Capture({
-  canvas: view.canvas,
-  render: () => view.renderWell(),
-  caption: () => {
-    const { state } = connection;
-    const frame = shown;
-    const turned = (state?.controls ?? []).map((c) => `${c.label} ${c.kind === "choice" ? (c.choices.find((x) => x.value === c.value)?.label ?? c.value) : c.kind === "switch" ? (c.value ? "on" : "off") : `${c.value}${c.unit ? ` ${c.unit}` : ""}`}`);
-    return [`prostm at ${frame === null ? "–" : frame.run.time.toFixed(2)} s`, frame === null ? "" : Numbers.caption(frame), turned.join("  ·  ")];
-  },
+  canvas: view.canvas, render: () => view.renderWell(),
+  caption: () => caption(drawing.shown, connection.state, planes.scale.end, new Date()),
 }, say);
 
-// what the picture shows
-const slowest = [1, 2, 5, 10, 20, 50, 100];
-const slow = find<HTMLInputElement>("slow-motion");
-function setSlowMotion(): void {
-  const factor = slowest[Number(slow.value)] ?? 50;
-  view.paths.slowdown = factor;
-  const words = factor === 1 ? "as played" : `1/${factor} of the speed`;
-  find("slow-motion-value").textContent = factor === 1 ? "1/1" : `1/${factor}`;
-  slow.setAttribute("aria-valuetext", words);
-  slow.style.setProperty("--share", `${(100 * Number(slow.value)) / (slowest.length - 1)}%`);
+let missed = ""; // why the run does not keep its rates
+function takeFrame(frame: Frame): void {
+  if (drawing.still) return;
+  const now = performance.now() / 1000;
+  drawing.show(frame);
+  strips.add(frame, now);
+  rates.add(frame, now);
+  output.frame(frame);
+  if (connection.state === null) return;
+  missed = rates.sentence(connection.state.rates, now, view.software && find("picture").dataset.drawn === "true");
 }
-slow.addEventListener("input", setSlowMotion);
-let fieldMode: FieldMode = "rendered";
-function setField(mode: FieldMode): void {
-  fieldMode = mode;
-  view.setField(mode);
-  legend.show(mode, planes.scale, looks.dark);
+
+function takeHello(hello: Hello): void {
+  view.setHello(hello);
+  view.array.setDark(looks.dark);
+  pageHand.setBox(hello);
+  things.setHello(hello);
+  const { length } = hello.array.transducers_mm;
+  setText(find("about"), `prostm ${hello.prostm} · device ${hello.device}, ${length} transducers`);
 }
-const fieldNames: Record<FieldMode, string> = { target: "Target", rendered: "Rendered", difference: "Difference", none: "None" };
-for (const mode of [...kFieldModes.slice(1), kFieldModes[0]] as FieldMode[]) {
-  const radio = make("input", { type: "radio", name: "skin-field", id: `skin-${mode}`, value: mode, checked: mode === fieldMode });
-  radio.addEventListener("change", () => radio.checked && setField(mode));
-  find("skin-field").append(radio, make("label", { for: `skin-${mode}` }, fieldNames[mode]));
+
+function takeState(state: State): void {
+  const page = connection.hello?.page ?? 0;
+  controls.show(state.controls);
+  transport.show(state, page);
+  guide.show(state);
+  pageHand.show(state.transport.hand_page, page);
+  // the address follows the program, once it is known what an address that was opened asked for
+  if (share.show(state)) address.set({ settings: changedSettings(state.controls) });
 }
-for (const { id, label } of kViews) {
-  const button = make("button", { type: "button", "data-view": id }, label);
-  button.addEventListener("click", () => view.eye.go(id));
-  find("views").append(button);
+
+function takeLink(link: Link, sentence: string): void {
+  document.documentElement.dataset.link = link;
+  setText(find("link"), sentence);
+  const lost = link !== "open";
+  for (const part of document.querySelectorAll<HTMLFieldSetElement>("fieldset.program")) part.disabled = lost;
+  if (!lost) return;
+  settings.forget();
+  rates.forget();
+  missed = "";
+  controls.lost();
+  output.lost();
+  pageHand.lost();
 }
-const through = find<HTMLInputElement>("see-through");
-through.addEventListener("change", () => view.hands.setOpacity(through.checked ? 0.62 : 1));
-const smoky = find<HTMLInputElement>("show-smoke");
-smoky.addEventListener("change", () => (view.showSmoke = smoky.checked));
+
+/// Draws what is new beside the picture.
+function panels(frame: Frame, now: number): void {
+  planes.draw(frame, now);
+  view.maps.setMax(planes.scale.end);
+  legend.show(picture.field, planes.scale.end, looks.dark);
+  things.show(frame, { mode: picture.field, smoke: view.showSmoke, pageHand: pageHand.active });
+  numbers.show(frame);
+  transport.frame(frame);
+  showNoHand(frame, connection.state);
+  setText(find("rates"), missed);
+  address.set({ eye: view.eye.place });
+  pointer.update(false);
+}
 
 view.canvas.addEventListener("keydown", (event) => {
   if (pageHand.key(event) || view.eye.key(event)) event.preventDefault();
 });
-document.addEventListener("keydown", (event) => {
-  if (event.key === "Escape") pageHand.release();
-  const typing = event.target instanceof HTMLElement && event.target.closest("input, select, button, summary, dialog") !== null;
-  if (event.key === " " && !typing) {
-    event.preventDefault();
-    transport.toggle();
-  }
+listen({
+  help: () => help.toggle(), mute: () => output.toggle(), freeze: () => strips.toggle(), play: () => transport.toggle(),
+  letGo: () => pageHand.release(),
 });
 document.addEventListener("visibilitychange", () => connection.sendRate());
 reducedMotion.addEventListener("change", () => (view.eye.smooth = !reducedMotion.matches));
-
-// pictures follow the screen; panels are drawn when there is something new, strips a few times a second
-let shown: Frame | null = null, dirty = true, pictures = 0, before = 0, stripsAt = 0;
-function draw(now: number): void {
-  window.requestAnimationFrame(draw);
-  if (!view.ready(now)) return;
-  const dt = before === 0 ? 0 : (now - before) / 1000;
-  before = now;
-  const frame = shown;
-  if (frame !== null && dirty) {
-    dirty = false;
-    view.maps.setMax(planes.measure(frame, now));
-    view.setFrame(frame);
-    planes.draw(frame);
-    legend.show(fieldMode, planes.scale, looks.dark);
-    numbers.show(frame);
-    transport.frame(frame);
-  }
-  if (now - stripsAt > 150 && frame !== null && !still) {
-    stripsAt = now;
-    strips.draw(now / 1000);
-  }
-  view.render(dt);
-  ++pictures;
-}
+find("lock-scale").addEventListener("click", () => drawing.again());
+find("draw-anyway").addEventListener("click", () => picture.setMode("on"));
 
 // for pictures of the page: #still holds it as it is, and draws every pixel of that
-let still = false;
-window.addEventListener("hashchange", () => {
-  still = location.hash === "#still";
+function holdStill(): void {
+  const still = new URLSearchParams(location.hash.slice(1)).has("still");
+  if (still === drawing.still) return;
+  drawing.still = still;
+  address.set({ still: still || undefined });
   view.setUnhurried(still);
-});
+  drawing.again();
+}
+window.addEventListener("hashchange", holdStill);
 
-slow.value = reducedMotion.matches ? String(slowest.length - 1) : "5";
-setSlowMotion();
 view.eye.smooth = !reducedMotion.matches;
-setField(fieldMode);
-view.hands.setOpacity(0.62);
 looks.apply();
 connection.open();
-window.requestAnimationFrame(draw);
 
 window.prostm = {
   get frame() { return connection.frame; },
@@ -180,7 +182,7 @@ window.prostm = {
   get frames() { return connection.frames; },
   get refused() { return connection.refused; },
   get connections() { return connection.opened; },
-  get pictures() { return pictures; },
+  get pictures() { return drawing.pictures; },
   get speed() { return view.speed; },
   get dark() { return looks.dark; },
 };

@@ -3,6 +3,7 @@
 export interface Hello {
   type: "hello";
   version: number;
+  page: number; // which one this is, for hand_page
   prostm: string;
   device: string;
   numbers: string[];
@@ -21,11 +22,13 @@ interface ControlBase {
 export interface ChoiceControl extends ControlBase {
   kind: "choice";
   value: string;
+  default: string; // as the run began
   choices: { value: string; label: string }[];
 }
 export interface NumberControl extends ControlBase {
   kind: "number";
   value: number;
+  default: number;
   min: number;
   max: number;
   step: number;
@@ -33,7 +36,9 @@ export interface NumberControl extends ControlBase {
 export interface SwitchControl extends ControlBase {
   kind: "switch";
   value: boolean;
+  default: boolean;
 }
+export type Value = string | number | boolean;
 export type Control = ChoiceControl | NumberControl | SwitchControl;
 
 export interface Transport {
@@ -41,6 +46,12 @@ export interface Transport {
   recording: null | { length_s: number; seekable: boolean };
   source: string;
   base: string;
+  hand_page: number | null; // the page that holds the page's hand
+}
+/// What the settings ask for.
+export interface Rates {
+  world_hz: number;
+  plan_hz: number;
 }
 export interface Tracker {
   connected: boolean;
@@ -69,11 +80,14 @@ export interface State {
   type: "state";
   controls: Control[];
   transport: Transport;
+  rates: Rates;
+  settings: string; // those that differ from their defaults, as TOML
   tracker: Tracker | null;
   calibration: Calibration | null;
 }
 export interface ErrorMessage {
   type: "error";
+  id?: string; // of the control that could not be set
   sentence: string;
 }
 export type ServerMessage = Hello | State | ErrorMessage;
@@ -87,10 +101,11 @@ export interface HandPose {
   side: "left" | "right";
 }
 export type PageMessage =
-  | { type: "set"; id: string; value: string | number | boolean }
+  | { type: "set"; id: string; value: Value }
   | { type: "transport"; do: "play" | "pause" | "step" }
   | { type: "transport"; do: "seek"; time_s: number }
-  | ({ type: "hand" } & HandPose)
+  | ({ type: "hand"; take?: true } & HandPose)
+  | { type: "mute"; on: boolean }
   | { type: "hand"; release: true }
   | { type: "calibration"; do: "begin" | "solve" | "save" | "cancel" }
   | { type: "calibration"; do: "take"; mark: number }
@@ -102,17 +117,23 @@ const isPoint = (x: unknown): boolean => Array.isArray(x) && x.length === 3 && x
 const isText = (x: unknown): x is string => typeof x === "string";
 
 function isControl(x: unknown): boolean {
-  if (!isObject(x) || !isText(x.id) || !isText(x.group) || !isText(x.label) || typeof x.enabled !== "boolean") return false;
+  if (!isObject(x) || ![x.id, x.group, x.label].every(isText) || typeof x.enabled !== "boolean") return false;
   if (x.kind === "choice") {
-    return isText(x.value) && Array.isArray(x.choices) && x.choices.every((c) => isObject(c) && isText(c.value) && isText(c.label));
+    const isChoice = (c: unknown) => isObject(c) && isText(c.value) && isText(c.label);
+    return isText(x.value) && isText(x.default) && Array.isArray(x.choices) && x.choices.every(isChoice);
   }
-  if (x.kind === "number") return [x.value, x.min, x.max, x.step].every((v) => Number.isFinite(v));
-  return x.kind === "switch" && typeof x.value === "boolean";
+  if (x.kind === "number") return [x.value, x.default, x.min, x.max, x.step].every((v) => Number.isFinite(v));
+  return x.kind === "switch" && typeof x.value === "boolean" && typeof x.default === "boolean";
 }
 
 function isTransport(x: unknown): boolean {
   if (!isObject(x) || typeof x.playing !== "boolean" || !isText(x.source) || !isText(x.base)) return false;
+  if (x.hand_page !== null && !Number.isFinite(x.hand_page)) return false;
   return x.recording === null || (isObject(x.recording) && Number.isFinite(x.recording.length_s));
+}
+
+function isRates(x: unknown): boolean {
+  return isObject(x) && [x.world_hz, x.plan_hz].every((v) => typeof v === "number" && v > 0);
 }
 
 function isCalibration(x: unknown): boolean {
@@ -132,16 +153,19 @@ export function parseMessage(text: string): ServerMessage | null {
   let known = false;
   if (message.type === "hello") {
     const { array, box_mm: box } = message;
-    known = isText(message.device) && Array.isArray(message.numbers) && message.numbers.every(isText) &&
-      isObject(array) && isText(array.name) && Array.isArray(array.transducers_mm) && array.transducers_mm.every(isPoint) &&
+    known = isText(message.device) && Number.isFinite(message.page) &&
+      Array.isArray(message.numbers) && message.numbers.every(isText) && isObject(array) && isText(array.name) &&
+      Array.isArray(array.transducers_mm) && array.transducers_mm.every(isPoint) &&
       isObject(box) && isPoint(box.origin) && Number.isFinite(box.edge);
   } else if (message.type === "state") {
     message.tracker ??= null;
     message.calibration ??= null;
     known = Array.isArray(message.controls) && message.controls.every(isControl) && isTransport(message.transport) &&
-      (message.calibration === null || isCalibration(message.calibration)) && (message.tracker === null || isObject(message.tracker));
+      isRates(message.rates) && isText(message.settings) &&
+      (message.calibration === null || isCalibration(message.calibration)) &&
+      (message.tracker === null || isObject(message.tracker));
   } else if (message.type === "error") {
-    known = isText(message.sentence);
+    known = isText(message.sentence) && (message.id === undefined || isText(message.id));
   }
   return known ? (message as unknown as ServerMessage) : null;
 }

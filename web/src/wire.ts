@@ -25,6 +25,8 @@ export interface Run {
   pageHand: boolean;
   handInSight: boolean;
   fading: boolean;
+  muted: boolean; // by a page
+  calibrating: boolean; // which mutes it too
 }
 
 export interface Hand {
@@ -148,7 +150,11 @@ function readRun(reader: Reader): Run {
     planUpdates: reader.u32(),
   };
   const flags = reader.u32();
-  return { ...run, paused: (flags & 1) !== 0, pageHand: (flags & 2) !== 0, handInSight: (flags & 4) !== 0, fading: (flags & 8) !== 0 };
+  const flag = (bit: number) => (flags & bit) !== 0;
+  return {
+    ...run, paused: flag(1), pageHand: flag(2), handInSight: flag(4), fading: flag(8), muted: flag(16),
+    calibrating: flag(32),
+  };
 }
 
 function readHand(reader: Reader): Hand {

@@ -9,7 +9,8 @@ namespace prostm {
 /// Reason for silencing the output.
 enum class MuteReason : std::uint32_t {
   Calibration = 1U,  ///< a finger is going to touch the transducers
-  NoHand = 2U        ///< the last step of a run in real time found no hand
+  NoHand = 2U,       ///< the last step of a run in real time found no hand
+  Person = 4U        ///< somebody who looks at the run asked for silence
 };
 
 /// Set by any thread, obeyed by an emitter at its next block. Nobody waits.

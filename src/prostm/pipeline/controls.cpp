@@ -30,9 +30,6 @@ std::vector<ControlChoice> scene_choices() {
 }
 
 const std::vector<ControlChoice> kScenes = scene_choices();
-// the same scenes by their plumes
-constexpr std::string_view kScenesByPlumes[] = {"still-air", "one-plume", "two-plumes",
-                                                "three-plumes", "four-plumes"};
 const auto kMethods = choices_of<Method, 2>({"PRO-STM", "AM"});
 const auto kPresets = choices_of<Preset, 4>({"Paper", "Paper, made valid", "Best", "Fast"});
 const auto kSwitches = choices_of<SwitchAt, 2>({"At lap ends", "At once"});
@@ -77,12 +74,6 @@ bool has_source(const LiveSettings& s, std::size_t place) {
 }
 
 // ---- what more than one line has to do ----
-
-double plumes(const LiveSettings& s) {
-  const auto* const found =
-      std::find(std::begin(kScenesByPlumes), std::end(kScenesByPlumes), s.pipeline.scene);
-  return found == std::end(kScenesByPlumes) ? 0.0 : static_cast<double>(found - kScenesByPlumes);
-}
 
 /// A clock runs: preset best gets a share of an update, and no other preset takes a budget.
 void set_preset(LiveSettings& s, double value) {
@@ -155,12 +146,6 @@ std::vector<RunControl> make_controls() {
       [](const S& s) { return place(kScenes, s.pipeline.scene); },
       [](S& s, double v) { s.pipeline.scene = chosen(kScenes, v); }, always,
       "The smoke that the hand is held into, with the pressure that counts as full output there.");
-  number(
-      "Smoke", "plumes", "Plumes", "", 0, 4, 1, plumes,
-      [](S& s, double v) {
-        s.pipeline.scene = std::string(kScenesByPlumes[static_cast<std::size_t>(v)]);
-      },
-      always, "The scene by its plumes: 0 is still air, 1 a wide plume, more are thin ones.");
   number(
       "Smoke", "jet_speed", "Emitter", "×", 0, 2, 0.05,
       [](const S& s) { return s.pipeline.fluid.jet_speed; },

@@ -89,6 +89,7 @@ void Snapshots::smoke(const World& world) {
 void Snapshots::plan(const WorldFrame& contact, const PlanFrame& plan, double latency) {
   PlanSnapshot& s = plan_.draft();
   s.id = plan.id;
+  s.step = contact.step;
   s.planned = plan.status == PlanStatus::Planned;
   s.target = contact.target;
   s.plan = plan.plan;

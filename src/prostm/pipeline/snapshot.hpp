@@ -43,6 +43,7 @@ struct StepSnapshot {
 /// One plan update.
 struct PlanSnapshot {
   std::int64_t id = 0;
+  std::int64_t step = 0;  ///< of the world, whose target was planned
   bool planned = false;
   TargetFrame target;
   Plan plan;

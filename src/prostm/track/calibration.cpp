@@ -64,9 +64,11 @@ Calibration with(const Eigen::Matrix3d& R, std::span<const PointPair> points, co
 
 Calibration calibrate(std::span<const PointPair> points) {
   if (points.size() < 3) {
-    throw std::invalid_argument(fmt::format(
-        "there are {} calibration points; a pose needs at least 3 that are not on one line",
-        points.size()));
+    const bool one = points.size() == 1;
+    throw std::invalid_argument(
+        fmt::format("there {} {} calibration point{}; a pose needs at least 3 that are not on one "
+                    "line",
+                    one ? "is" : "are", points.size(), one ? "" : "s"));
   }
   const Means means = means_of(points);
   if (const double spread = spread_beside_line(points, means); !(spread >= kLeastSpread)) {

@@ -30,6 +30,12 @@ std::string text(const Json& json, const char* name) {
   return value.get<std::string>();
 }
 
+bool truth(const Json& json, const char* name) {
+  const Json& value = member(json, name);
+  if (!value.is_boolean()) throw Wrong(fmt::format("\"{}\" must be true or false", name));
+  return value.get<bool>();
+}
+
 double checked(const Json& value, const char* name, double low, double high) {
   const double number = value.is_number() ? value.get<double>() : std::nan("");
   if (!(number >= low && number <= high))
@@ -77,11 +83,9 @@ TransportMessage read_transport(const Json& json) {
 
 HandMessage read_hand(const Json& json) {
   HandMessage m;
-  if (const auto release = json.find("release"); release != json.end()) {
-    if (!release->is_boolean()) throw Wrong("\"release\" must be true or false");
-    m.release = release->get<bool>();
-    if (m.release) return m;
-  }
+  if (json.contains("release")) m.release = truth(json, "release");
+  if (m.release) return m;
+  if (json.contains("take")) m.take = truth(json, "take");
   const Json& palm = member(json, "palm_mm");
   if (!palm.is_array() || palm.size() != 3)
     throw Wrong("\"palm_mm\" must be a list of three numbers");
@@ -111,8 +115,8 @@ CalibrationMessage read_calibration(const Json& json) {
 }
 
 PageMessage read(const Json& json) {
-  enum class Type { Set, Transport, Hand, Calibration, Rate };
-  switch (choice<Type>(json, "type", {"set", "transport", "hand", "calibration", "rate"})) {
+  enum class Type { Set, Transport, Hand, Calibration, Mute, Rate };
+  switch (choice<Type>(json, "type", {"set", "transport", "hand", "calibration", "mute", "rate"})) {
     case Type::Set:
       return read_set(json);
     case Type::Transport:
@@ -121,6 +125,8 @@ PageMessage read(const Json& json) {
       return read_hand(json);
     case Type::Calibration:
       return read_calibration(json);
+    case Type::Mute:
+      return MuteMessage{truth(json, "on")};
     case Type::Rate:
       break;
   }

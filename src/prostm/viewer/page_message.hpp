@@ -26,6 +26,7 @@ struct TransportMessage {
 /// The page's hand. Angles are 0 for a palm down with the fingers along +y.
 struct HandMessage {
   bool release = false;                       ///< it lets go, and nothing else counts
+  bool take = false;                          ///< takes the hand from another page that holds it
   double palm[3] = {};                        ///< in D [m], each within 0.5 m
   double yaw = 0.0, pitch = 0.0, roll = 0.0;  ///< [rad]
   double closure = 0.0;                       ///< 0 open to 1 closed
@@ -37,12 +38,17 @@ struct CalibrationMessage {
   std::optional<int> mark;  ///< of Take, from 0
 };
 
+/// Silences the output until a page asks for it again.
+struct MuteMessage {
+  bool on = true;
+};
+
 struct RateMessage {
   double rate = kPageRate;  ///< [Hz], kMinPageRate to kMaxPageRate
 };
 
-using PageMessage =
-    std::variant<SetMessage, TransportMessage, HandMessage, CalibrationMessage, RateMessage>;
+using PageMessage = std::variant<SetMessage, TransportMessage, HandMessage, CalibrationMessage,
+                                 MuteMessage, RateMessage>;
 
 /// Reads one message; never throws for what is in it. @return false, with one sentence in `problem`
 /// that says what would be right, for what is none.

@@ -4,115 +4,54 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/viewer/detail/command_queue.hpp"
 #include "prostm/viewer/detail/frame_maker.hpp"
+#include "prostm/viewer/detail/settings_text.hpp"
+#include "prostm/viewer/detail/state_json.hpp"
 
 namespace prostm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using viewer::Json;
 
 constexpr const char* kNoTracker = "only hands of a tracker have a pose that can be found";
-
-Json millimetres(const Vec3& p) {
-  return {1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()};
-}
-
-std::string text(std::string_view view) {
-  return std::string(view);
-}
-
-Json control_json(const RunControl& control, const LiveSettings& settings) {
-  Json json = {
-      {"id", text(control.id)}, {"group", text(control.group)}, {"label", text(control.label)}};
-  const double value = control.get(settings);
-  switch (control.kind) {
-    case ControlKind::Switch:
-      json["kind"] = "switch";
-      json["value"] = value != 0.0;
-      break;
-    case ControlKind::Number:
-      json["kind"] = "number";
-      json["value"] = value;
-      json["min"] = control.low;
-      json["max"] = control.high;
-      json["step"] = control.step;
-      break;
-    case ControlKind::Choice:
-      json["kind"] = "choice";
-      json["value"] = text(control.choices[static_cast<std::size_t>(value)].value);
-      json["choices"] = Json::array();
-      for (std::size_t i = 0; i < control.choices.size(); ++i) {
-        if (control.available != nullptr && !control.available(settings, i)) continue;
-        json["choices"].push_back(
-            {{"value", text(control.choices[i].value)}, {"label", text(control.choices[i].label)}});
-      }
-  }
-  json["help"] = text(control.help);
-  if (!control.unit.empty()) json["unit"] = text(control.unit);
-  json["enabled"] = control.enabled(settings);
-  return json;
-}
-
-Json transport_json(const LiveState& state, bool page_hand) {
-  Json json = {{"playing", state.playing}, {"recording", nullptr}};
-  if (state.recording_length > 0.0)
-    json["recording"] = {{"length_s", state.recording_length}, {"seekable", true}};
-  json["source"] = page_hand ? "page" : state.settings.source;
-  json["base"] = state.settings.source;
-  return json;
-}
-
-Json tracker_json(const std::optional<TrackerStatus>& tracker) {
-  if (!tracker) return nullptr;
-  return {{"connected", tracker->connected}, {"sentence", tracker->sentence},
-          {"frames", tracker->frames},       {"dropped", tracker->dropped},
-          {"repeated", tracker->repeated},   {"unsure", tracker->unsure},
-          {"frozen", tracker->frozen}};
-}
-
-Json calibration_json(const std::optional<CalibrationGuide>& steps, bool saved,
-                      const std::string& file, bool muted) {
-  if (!steps) return nullptr;
-  Json json = {{"marks", Json::array()}, {"residual_mm", nullptr}};
-  for (const CalibrationMark& mark : steps->marks()) {
-    Json one = {{"name", mark.name},
-                {"p_mm", millimetres(mark.p_D)},
-                {"taken", mark.taken},
-                {"spread_mm", nullptr}};
-    if (mark.taken) one["spread_mm"] = 1e3 * mark.spread;
-    json["marks"].push_back(one);
-  }
-  if (steps->result()) json["residual_mm"] = 1e3 * steps->result()->rms;
-  json["file"] = file;
-  json["saved"] = saved;
-  json["sentence"] = steps->sentence();
-  json["muted"] = muted;
-  return json;
-}
 
 }  // namespace
 
 struct PipelineView::Impl {
-  Impl(LiveLink& l, ViewHello h) : link(l), hello(std::move(h)), frames(l.snapshots) {}
+  Impl(LiveLink& l, ViewHello h)
+      : link(l),
+        hello(std::move(h)),
+        start(l.settings),
+        frames(l.snapshots, *l.mute),
+        commands(l.control) {}
 
   LiveLink& link;
   const ViewHello hello;
+  const LiveSettings start;  // of the run
   viewer::FrameMaker frames;
+  viewer::CommandQueue commands;
   std::uint32_t hand_holder = 0;  // the page that holds the hand, 0: none
   bool known = false;             // the run has begun
-  bool page_hand = false;         // as told
+  bool page_hand = false;         // as told, as is the next
+  std::uint32_t told_holder = 0;
   std::optional<CalibrationGuide> calibration;
   std::uint32_t calibrator = 0;       // the page that it listened to last, 0: that one is gone
   Pose pose_kept = Pose::Identity();  // of the tracker: when it began, or what was saved since
   bool calibration_saved = false, calibration_changed = false;
 
-  std::string ask(const LiveCommand& command) const {
-    return link.control.ask(command) ? "" : "the run is busy with what was asked before; try again";
+  std::string ask(const LiveCommand& command) {
+    const bool takes = commands.add(command, viewer::CommandQueue::Clock::now());
+    return takes ? "" : "the run is busy with what was asked before; try again";
   }
   std::string take(std::uint32_t page, const SetMessage& m);
   std::string take(std::uint32_t page, const TransportMessage& m);
   std::string take(std::uint32_t page, const HandMessage& m);
   std::string take(std::uint32_t page, const CalibrationMessage& m);
+  std::string take(std::uint32_t, const MuteMessage& m) {
+    link.mute->set(MuteReason::Person, m.on);
+    return {};
+  }
   std::string begin_calibration();
   std::string take_mark(int mark);
   std::string solve_calibration(std::uint32_t page);
@@ -164,6 +103,8 @@ std::string PipelineView::Impl::take(std::uint32_t page, const HandMessage& m) {
     if (page == hand_holder) link.page_hand->release();
     return {};
   }
+  const bool anothers = hand_holder != 0 && hand_holder != page && link.snapshots.run().page_hand;
+  if (anothers && !m.take) return "another page moves the hand now; switch it on here to take it";
   hand_holder = page;
   PagePose pose;
   pose.p_D = {m.palm[0], m.palm[1], m.palm[2]};
@@ -267,17 +208,19 @@ void PipelineView::refresh(ViewFrame& frame, ViewNews& news) {
   impl_->look_at_finger();
 }
 
-std::string PipelineView::hello() {
+std::string PipelineView::hello(std::uint32_t page) {
   const ViewHello& h = impl_->hello;
   Json transducers = Json::array();
-  for (const Vec3& p : h.transducers) transducers.push_back(millimetres(p));
-  return Json{{"type", "hello"},
-              {"version", kWireVersion},
-              {"prostm", h.version},
-              {"device", h.device},
-              {"numbers", view_number_names()},
-              {"array", {{"name", h.array}, {"transducers_mm", transducers}}},
-              {"box_mm", {{"origin", millimetres(h.box_corner)}, {"edge", 1e3 * h.box_edge}}}}
+  for (const Vec3& p : h.transducers) transducers.push_back(viewer::millimetres(p));
+  return Json{
+      {"type", "hello"},
+      {"version", kWireVersion},
+      {"page", page},
+      {"prostm", h.version},
+      {"device", h.device},
+      {"numbers", view_number_names()},
+      {"array", {{"name", h.array}, {"transducers_mm", transducers}}},
+      {"box_mm", {{"origin", viewer::millimetres(h.box_corner)}, {"edge", 1e3 * h.box_edge}}}}
       .dump();
 }
 
@@ -286,20 +229,27 @@ bool PipelineView::refresh_state(std::string& out) {
   // nobody is left to end it
   if (i.calibration && i.calibrator == 0 && i.end_calibration(0).empty())
     i.calibration_changed = true;
+  const auto now = viewer::CommandQueue::Clock::now();
   const bool fresh = i.link.control.refresh();
+  if (fresh) i.commands.answered(now);
+  i.commands.hand_over(now);
   const bool page_hand = i.link.snapshots.run().page_hand;
   i.known = i.known || fresh;  // before the run begins there is nothing to tell
-  if (!i.known || (!fresh && page_hand == i.page_hand && !i.calibration_changed)) return false;
+  const bool same_hand = page_hand == i.page_hand && i.hand_holder == i.told_holder;
+  if (!i.known || (!fresh && same_hand && !i.calibration_changed)) return false;
   i.calibration_changed = false;
   i.page_hand = page_hand;
+  i.told_holder = i.hand_holder;
   const LiveState& state = i.link.control.state();
-  Json json = {{"type", "state"}, {"controls", Json::array()}};
-  for (const RunControl& control : run_controls())
-    json["controls"].push_back(control_json(control, state.settings));
-  json["transport"] = transport_json(state, page_hand);
-  json["tracker"] = tracker_json(state.tracker);
-  json["calibration"] = calibration_json(i.calibration, i.calibration_saved, i.link.pose_file,
-                                         i.link.mute->on(MuteReason::Calibration));
+  const Json json = {
+      {"type", "state"},
+      {"controls", viewer::controls_json(state.settings, i.start)},
+      {"transport", viewer::transport_json(state, page_hand, i.hand_holder)},
+      {"rates", viewer::rates_json(state.settings.pipeline)},
+      {"settings", viewer::changed_settings(state.settings.pipeline)},
+      {"tracker", viewer::tracker_json(state.tracker)},
+      {"calibration", viewer::calibration_json(i.calibration, i.calibration_saved, i.link.pose_file,
+                                               i.link.mute->on(MuteReason::Calibration))}};
   out = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   return true;
 }
@@ -317,7 +267,10 @@ bool PipelineView::next_refusal(std::uint32_t& page, std::string& sentence) {
 }
 
 void PipelineView::forget(std::uint32_t page) {
-  if (page == impl_->hand_holder) impl_->link.page_hand->release();
+  if (page == impl_->hand_holder) {
+    impl_->link.page_hand->release();
+    impl_->hand_holder = 0;
+  }
   if (page == impl_->calibrator) impl_->calibrator = 0;
 }
 

@@ -29,7 +29,7 @@ class PipelineView final : public ViewSource {
 
   void watch(bool somebody) override;
   void refresh(ViewFrame& frame, ViewNews& news) override;
-  std::string hello() override;
+  std::string hello(std::uint32_t page) override;
   bool refresh_state(std::string& state) override;
   std::string take(std::uint32_t page, const PageMessage& message) override;
   bool next_refusal(std::uint32_t& page, std::string& sentence) override;

@@ -25,7 +25,7 @@ class ViewSource {
   virtual void refresh(ViewFrame& frame, ViewNews& news) = 0;
 
   /// The message that a page gets first.
-  virtual std::string hello() = 0;
+  virtual std::string hello(std::uint32_t page) = 0;
   /// Puts the newest state message into `state` where it has changed since the last call; true if
   /// so. The first call finds one.
   virtual bool refresh_state(std::string& state) = 0;

@@ -62,7 +62,9 @@ enum ViewFlag : std::uint32_t {
   kViewPaused = 1,
   kViewPageHand = 2,  ///< the page's hand is in charge
   kViewHandInSight = 4,
-  kViewFading = 8  ///< output fades for want of plans
+  kViewFading = 8,        ///< output fades for want of plans
+  kViewMuted = 16,        ///< a page has muted the output
+  kViewCalibrating = 32,  ///< a calibration mutes the output
 };
 
 struct ViewRun {

@@ -1,7 +1,8 @@
 /// The guided step that finds where the tracker is: touch marks on the array, solve, look at the residual, save.
 
-import { find, make, short } from "../dom";
+import { find, make } from "../dom";
 import type { Calibration, PageMessage, State } from "../messages";
+import { short } from "../text";
 
 export class CalibrationGuide {
   private readonly dialog = find<HTMLDialogElement>("calibration");

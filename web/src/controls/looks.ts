@@ -1,40 +1,26 @@
-/// Theme and size of type, kept in this browser.
+/// Theme and size of type, kept in this browser and in the address.
 
+import { kThemes, type Address, type Theme } from "../address";
 import { find } from "../dom";
-
-const kThemes = ["system", "light", "dark"] as const;
-type Theme = (typeof kThemes)[number];
-
-function remembered(key: string): string | null {
-  try {
-    return localStorage.getItem(key);
-  } catch {
-    return null; // storage may be forbidden; then nothing is kept
-  }
-}
-function remember(key: string, value: string): void {
-  try {
-    localStorage.setItem(key, value);
-  } catch {
-    // as above
-  }
-}
+import { remember, remembered } from "../stored";
 
 export class Looks {
   private readonly prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
   private readonly theme = find<HTMLSelectElement>("theme");
   private readonly large = find<HTMLInputElement>("large-type");
 
-  constructor(private readonly changed: (dark: boolean) => void) {
-    const kept = remembered("prostm-theme");
+  constructor(address: Address, private readonly changed: (dark: boolean) => void) {
+    const kept = address.state.theme ?? remembered("theme");
     this.theme.value = kThemes.includes(kept as Theme) ? String(kept) : "system";
-    this.large.checked = remembered("prostm-large") === "true";
+    this.large.checked = address.state.large ?? remembered("large") === "true";
     this.theme.addEventListener("change", () => {
-      remember("prostm-theme", this.theme.value);
+      remember("theme", this.theme.value);
+      address.set({ theme: this.theme.value as Theme });
       this.apply();
     });
     this.large.addEventListener("change", () => {
-      remember("prostm-large", String(this.large.checked));
+      remember("large", String(this.large.checked));
+      address.set({ large: this.large.checked });
       this.apply();
     });
     this.prefersDark.addEventListener("change", () => this.apply());

@@ -19,8 +19,12 @@ export class PageHand {
   private at = { x: 0, y: 0 };
   private sent = 0;
   private waiting = false;
+  private held = false; // the program has said so
 
-  constructor(private readonly view: View, private readonly send: (message: PageMessage) => void) {
+  constructor(
+    private readonly view: View, private readonly send: (message: PageMessage) => void,
+    private readonly say: (sentence: string) => void,
+  ) {
     const { canvas } = view;
     this.toggleBox.addEventListener("change", () => (this.toggleBox.checked ? this.take() : this.release()));
     canvas.addEventListener("pointerdown", (e) => {
@@ -29,10 +33,13 @@ export class PageHand {
       this.at = { x: e.clientX, y: e.clientY };
     });
     canvas.addEventListener("pointermove", (e) => e.pointerId === this.dragging && this.drag(e));
-    for (const end of ["pointerup", "pointercancel"] as const) canvas.addEventListener(end, (e) => e.pointerId === this.dragging && (this.dragging = null));
+    for (const end of ["pointerup", "pointercancel"] as const) {
+      canvas.addEventListener(end, (e) => e.pointerId === this.dragging && (this.dragging = null));
+    }
     canvas.addEventListener("wheel", (e) => {
       e.preventDefault();
-      if (this.active) this.change((p) => (p.palm_mm[2] -= Math.sign(e.deltaY) * Math.min(8, Math.abs(e.deltaY) / 12)));
+      const up = -Math.sign(e.deltaY) * Math.min(8, Math.abs(e.deltaY) / 12); // [mm]
+      if (this.active) this.change((p) => (p.palm_mm[2] += up));
       else view.eye.zoom(Math.exp(Math.max(-60, Math.min(60, e.deltaY)) * 0.002));
     }, { passive: false });
     window.setInterval(() => this.active && performance.now() - this.sent >= kAlive && this.tell(), kAlive / 2);
@@ -46,6 +53,7 @@ export class PageHand {
 
   take(): void {
     this.active = true;
+    this.held = false;
     this.view.eye.primaryTaken = true;
     this.toggleBox.checked = true;
     this.help.hidden = false;
@@ -54,13 +62,32 @@ export class PageHand {
   }
   release(): void {
     if (!this.active) return;
-    this.active = false;
+    this.end();
+    this.send({ type: "hand", release: true });
+  }
+
+  /// Who holds the hand, as the program says, and which page this one is.
+  show(holder: number | null, page: number): void {
+    if (!this.active) return;
+    if (holder === page) {
+      this.held = true;
+    } else if (this.held && holder !== null) {
+      this.end();
+      this.say("Another page has taken the hand; switch it on here to take it back.");
+    }
+  }
+  /// The program is gone, and the hand with it.
+  lost(): void {
+    if (this.active) this.end();
+  }
+
+  private end(): void {
+    this.active = this.held = false;
     this.view.eye.primaryTaken = false;
     this.toggleBox.checked = false;
     this.help.hidden = true;
     this.dragging = null;
     this.view.array.setPlumb(null);
-    this.send({ type: "hand", release: true });
   }
 
   /// @return whether the key is one of the hand's.
@@ -72,10 +99,13 @@ export class PageHand {
     }
     const step = event.shiftKey ? 1 : 5; // [mm], and [degrees]
     const keys: Record<string, (p: HandPose) => void> = {
-      ArrowLeft: (p) => (p.palm_mm[0] -= step), ArrowRight: (p) => (p.palm_mm[0] += step), ArrowDown: (p) => (p.palm_mm[1] -= step), ArrowUp: (p) => (p.palm_mm[1] += step),
+      ArrowLeft: (p) => (p.palm_mm[0] -= step), ArrowRight: (p) => (p.palm_mm[0] += step),
+      ArrowDown: (p) => (p.palm_mm[1] -= step), ArrowUp: (p) => (p.palm_mm[1] += step),
       PageUp: (p) => (p.palm_mm[2] += step), PageDown: (p) => (p.palm_mm[2] -= step),
-      q: (p) => (p.yaw_deg += step), e: (p) => (p.yaw_deg -= step), w: (p) => (p.pitch_deg += step), s: (p) => (p.pitch_deg -= step),
-      a: (p) => (p.roll_deg -= step), d: (p) => (p.roll_deg += step), c: (p) => (p.closure += 0.02 * step), o: (p) => (p.closure -= 0.02 * step),
+      q: (p) => (p.yaw_deg += step), e: (p) => (p.yaw_deg -= step),
+      w: (p) => (p.pitch_deg += step), s: (p) => (p.pitch_deg -= step),
+      a: (p) => (p.roll_deg -= step), d: (p) => (p.roll_deg += step),
+      c: (p) => (p.closure += 0.02 * step), o: (p) => (p.closure -= 0.02 * step),
       l: (p) => (p.side = p.side === "left" ? "right" : "left"),
     };
     const change = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -88,7 +118,8 @@ export class PageHand {
   private drag(event: PointerEvent): void {
     const camera = this.view.eye.camera;
     const palm = new Vector3(...this.pose.palm_mm).divideScalar(1000);
-    const metres = (2 * camera.position.distanceTo(palm) * Math.tan((camera.fov * Math.PI) / 360)) / (this.view.canvas.clientHeight || 1);
+    const height = 2 * camera.position.distanceTo(palm) * Math.tan((camera.fov * Math.PI) / 360); // of the picture [m]
+    const metres = height / (this.view.canvas.clientHeight || 1);
     const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0).setZ(0).normalize();
     const away = new Vector3(0, 0, 1).cross(right);
     const dx = (event.clientX - this.at.x) * metres * 1000, dy = (this.at.y - event.clientY) * metres * 1000;
@@ -104,7 +135,10 @@ export class PageHand {
     how(pose);
     const turn = (a: number) => Math.max(-180, Math.min(180, a));
     for (let i = 0; i < 3; ++i) pose.palm_mm[i] = Math.max(this.low[i]!, Math.min(this.high[i]!, pose.palm_mm[i]!));
-    Object.assign(pose, { yaw_deg: turn(pose.yaw_deg), pitch_deg: turn(pose.pitch_deg), roll_deg: turn(pose.roll_deg), closure: Math.max(0, Math.min(1, pose.closure)) });
+    Object.assign(pose, {
+      yaw_deg: turn(pose.yaw_deg), pitch_deg: turn(pose.pitch_deg), roll_deg: turn(pose.roll_deg),
+      closure: Math.max(0, Math.min(1, pose.closure)),
+    });
     this.view.array.setPlumb(new Vector3(...pose.palm_mm).divideScalar(1000));
     if (this.waiting) return;
     const later = this.sent + kEvery - performance.now();
@@ -118,9 +152,10 @@ export class PageHand {
   private tell(): void {
     this.sent = performance.now();
     const rounded = (x: number) => Math.round(100 * x) / 100;
-    const { pose } = this;
+    const { pose } = this, [x, y, z] = pose.palm_mm;
     this.send({
-      type: "hand", palm_mm: [rounded(pose.palm_mm[0]), rounded(pose.palm_mm[1]), rounded(pose.palm_mm[2])], yaw_deg: pose.yaw_deg, pitch_deg: pose.pitch_deg, roll_deg: pose.roll_deg,
+      type: "hand", ...(this.held ? {} : { take: true as const }), palm_mm: [rounded(x), rounded(y), rounded(z)],
+      yaw_deg: pose.yaw_deg, pitch_deg: pose.pitch_deg, roll_deg: pose.roll_deg,
       closure: rounded(pose.closure), side: pose.side,
     });
   }

@@ -1,10 +1,13 @@
 /// What the colours on the skin in the picture mean.
 
 import { kDifferenceTables, kFieldTable } from "../colours";
-import { find, make, short } from "../dom";
+import { find, make } from "../dom";
 import type { FieldMode } from "../scene/field_maps";
+import { short } from "../text";
 
-const kTitles: Record<FieldMode, string> = { target: "Target pressure", rendered: "Rendered pressure", difference: "Rendered less target", none: "" };
+const kTitles: Record<FieldMode, string> = {
+  target: "Target pressure", rendered: "Rendered pressure", difference: "Rendered less target", none: "",
+};
 
 export function paintBar(canvas: HTMLCanvasElement, table: Uint8ClampedArray): void {
   canvas.getContext("2d")?.putImageData(new ImageData(new Uint8ClampedArray(table), 256, 1), 0, 0);

@@ -1,48 +1,57 @@
-/// The field of each hand flattened to its plane: target, what is rendered, and their difference, in one scale, with the paths.
+/// The field of each hand flattened to its plane: target, rendered, and their difference, in one scale, with the paths.
 
+import type { Address } from "../address";
 import { css, kDifferenceTables, kFieldTable, pathColour } from "../colours";
-import { find, make, short } from "../dom";
-import { paintBar } from "./legend";
+import { find, make, setText } from "../dom";
+import { short } from "../text";
 import type { Frame, Patch, Path } from "../wire";
+import { cellWords, say } from "./hover";
+import { paintBar } from "./legend";
+import { layOut, under, type Placed } from "./plane_layout";
+import { PressureScale } from "./scale";
 
 type Kind = "target" | "rendered" | "difference";
 const kKinds: { kind: Kind; title: string }[] = [
-  { kind: "target", title: "Target" },
-  { kind: "rendered", title: "Reconstruction" },
+  { kind: "target", title: "Target" }, { kind: "rendered", title: "Rendered" },
   { kind: "difference", title: "Difference" },
 ];
-
-/// The least of 1, 1.5, 2, 3, 4, 5, 6, 8 × 10ⁿ that is not less than x.
-export function roundedUp(x: number): number {
-  if (!(x > 0)) return 1;
-  const power = 10 ** Math.floor(Math.log10(x));
-  return power * ([1, 1.5, 2, 3, 4, 5, 6, 8].find((step) => step * power >= x * (1 - 1e-9)) ?? 10);
-}
+const kBar = { class: "bar", width: 256, height: 1, role: "img" };
 
 export class Planes {
   private readonly canvases: { kind: Kind; canvas: HTMLCanvasElement }[];
   private readonly image = document.createElement("canvas");
-  private readonly bar = make("canvas", { class: "bar", width: 256, height: 1, role: "img", "aria-label": "Colours of pressure, from 0 at the left" });
-  private readonly differenceBar = make("canvas", { class: "bar", width: 256, height: 1, role: "img", "aria-label": "Colours of the difference, from too little at the left to too much at the right" });
-  private readonly most = make("span");
-  private readonly least = make("span");
-  private readonly more = make("span");
+  private readonly bar = make("canvas", { ...kBar, "aria-label": "Colours of pressure, from 0 at the left" });
+  private readonly differenceBar = make("canvas", {
+    ...kBar, "aria-label": "Colours of the difference, from too little at the left to too much at the right",
+  });
+  private readonly ends = { most: make("span"), least: make("span"), more: make("span") };
+  private readonly lock = find<HTMLButtonElement>("lock-scale");
   private dark = false;
-  private smallest = 0; // before this time the scale does not shrink [ms]
-  /// the pressure at the end of the scale [Pa]
-  scale = 1;
+  private frame: Frame | null = null;
+  private pointer: { canvas: HTMLCanvasElement; x: number; y: number } | null = null;
+  readonly scale = new PressureScale();
 
-  constructor() {
+  constructor(private readonly address: Address) {
     const row = find("planes");
     this.canvases = kKinds.map(({ kind, title }) => {
-      const canvas = make("canvas", { "data-kind": kind, role: "img", "aria-label": `${title} of the pressure in the plane of each hand` });
+      const label = `${title} of the pressure in the plane of each hand`;
+      const canvas = make("canvas", { "data-kind": kind, role: "img", "aria-label": label });
       row.append(make("figure", {}, make("figcaption", {}, title), canvas));
+      canvas.addEventListener("pointermove", (e) => this.point({ canvas, x: e.clientX, y: e.clientY }));
+      canvas.addEventListener("pointerleave", () => this.point(null));
       return { kind, canvas };
     });
     find("scales").append(
-      make("div", { class: "scale" }, make("span", {}, "0"), this.bar, this.most),
-      make("div", { class: "scale" }, this.least, this.differenceBar, this.more),
+      make("div", { class: "scale" }, make("span", {}, "0"), this.bar, this.ends.most),
+      make("div", { class: "scale" }, this.ends.least, this.differenceBar, this.ends.more),
     );
+    this.scale.locked = address.state.scale ?? null;
+    this.lock.addEventListener("click", () => {
+      this.scale.locked = this.scale.locked === null ? this.scale.end : null;
+      this.address.set({ scale: this.scale.locked ?? undefined });
+      this.showScale();
+    });
+    this.showScale();
   }
 
   setDark(dark: boolean): void {
@@ -52,26 +61,20 @@ export class Planes {
   }
   private get differences(): Uint8ClampedArray { return this.dark ? kDifferenceTables.dark : kDifferenceTables.light; }
 
-  /// One end for target and rendered of all hands; it grows at once, and shrinks after some seconds.
-  measure(frame: Frame, now: number): number {
-    let most = 0;
-    for (const p of frame.field) {
-      let top = 0;
-      for (let i = 0; i < p.target.length; ++i) if (p.skin[i]) top = Math.max(top, p.target[i]!, p.rendered[i]!);
-      most = Math.max(most, (top / 65535) * p.scale);
-    }
-    const wanted = roundedUp(most);
-    if (wanted >= this.scale || most === 0) this.smallest = now + 4000;
-    if (wanted > this.scale || (most > 0 && now > this.smallest)) this.scale = wanted;
-    this.most.textContent = `${short(this.scale)} Pa`;
-    this.least.textContent = `−${short(this.scale)}`;
-    this.more.textContent = `+${short(this.scale)} Pa`;
-    return this.scale;
+  private showScale(): void {
+    const end = short(this.scale.end), locked = this.scale.locked !== null;
+    setText(this.ends.most, `${end} Pa`);
+    setText(this.ends.least, `−${end}`);
+    setText(this.ends.more, `+${end} Pa`);
+    setText(this.lock, locked ? `Locked at ${end} Pa` : `Lock at ${end} Pa`);
+    this.lock.setAttribute("aria-pressed", String(locked));
   }
 
-  draw(frame: Frame): void {
-    const hands = Math.max(1, frame.field.length);
-    find("planes").dataset.hands = String(Math.min(2, hands));
+  draw(frame: Frame, now: number): void {
+    this.frame = frame;
+    this.scale.measure(frame, now);
+    this.showScale();
+    find("planes").dataset.hands = String(Math.min(2, Math.max(1, frame.field.length)));
     for (const { kind, canvas } of this.canvases) {
       const ratio = Math.min(2, window.devicePixelRatio || 1);
       const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
@@ -79,26 +82,43 @@ export class Planes {
       const context = canvas.getContext("2d");
       if (context === null || width === 0) continue;
       context.clearRect(0, 0, width, height);
-      // all hands in the same millimetres
-      const extent = Math.max(0.2, ...frame.field.map((p) => Math.ceil((Math.max(p.rows, (p.cols * height) / hands / width) * p.cell + 0.008) / 0.02) * 0.02));
-      const pixels = height / hands / extent; // a metre
-      frame.field.forEach((patch, k) => {
-        context.save();
-        context.beginPath();
-        context.rect(0, (k * height) / hands, width, height / hands);
-        context.clip();
-        const middle = [patch.centre[0] + ((patch.cols - 1) / 2) * patch.cell, patch.centre[1] + ((patch.rows - 1) / 2) * patch.cell] as const;
-        const x = (p: number) => width / 2 + (p - middle[0]) * pixels;
-        const y = (p: number) => ((k + 0.5) * height) / hands - (p - middle[1]) * pixels;
-        this.paint(patch, kind);
-        context.imageSmoothingEnabled = false;
-        const half = patch.cell / 2;
-        context.drawImage(this.image, x(patch.centre[0] - half), y(patch.centre[1] + (patch.rows - 1) * patch.cell + half), patch.cols * patch.cell * pixels, patch.rows * patch.cell * pixels);
-        frame.plan.forEach((path, i) => path.patch === k && this.drawPath(context, path, i, x, y, ratio));
-        context.restore();
-      });
-      if (kind === "target") this.drawScaleBar(context, pixels, height, ratio);
+      const placed = layOut(frame.field, width, height);
+      placed.forEach((place, k) => this.drawHand(context, kind, place, frame.plan, k, ratio));
+      if (kind === "target") this.drawScaleBar(context, placed[0]?.pixels ?? height / 0.2, height, ratio);
     }
+    this.point(this.pointer);
+  }
+
+  private drawHand(
+    context: CanvasRenderingContext2D, kind: Kind, place: Placed, plan: Path[], k: number, ratio: number,
+  ): void {
+    const { patch, pixels, x, y } = place;
+    context.save();
+    context.beginPath();
+    context.rect(0, place.top, context.canvas.width, place.height);
+    context.clip();
+    this.paint(patch, kind);
+    context.imageSmoothingEnabled = false;
+    const half = patch.cell / 2;
+    const left = x(patch.centre[0] - half), top = y(patch.centre[1] + (patch.rows - 1) * patch.cell + half);
+    context.drawImage(this.image, left, top, patch.cols * patch.cell * pixels, patch.rows * patch.cell * pixels);
+    plan.forEach((path, i) => path.patch === k && this.drawPath(context, path, i, place, ratio));
+    context.restore();
+  }
+
+  /// Says what is under the pointer.
+  private point(pointer: Planes["pointer"]): void {
+    if (pointer === null && this.pointer === null) return;
+    this.pointer = pointer;
+    if (pointer === null || this.frame === null) return say([], 0, 0);
+    const { canvas } = pointer, box = canvas.getBoundingClientRect();
+    const scale = canvas.width / (box.width || 1);
+    const placed = layOut(this.frame.field, canvas.width, canvas.height);
+    const there = under(placed, (pointer.x - box.left) * scale, (pointer.y - box.top) * scale);
+    if (there === null) return say([], 0, 0);
+    const mm = (metres: number) => (1000 * metres).toFixed(0);
+    const place = `x ${mm(there.x)}, y ${mm(there.y)} mm in the plane`;
+    say([...cellWords(there.patch, there.cell), place], pointer.x, pointer.y);
   }
 
   /// The cells of a patch into this.image, the row of the largest y first.
@@ -109,7 +129,7 @@ export class Planes {
     if (context === null) return;
     const pixels = context.createImageData(cols, rows);
     const colours = kind === "difference" ? this.differences : kFieldTable;
-    const unit = patch.scale / 65535 / this.scale;
+    const unit = patch.scale / 65535 / this.scale.end;
     for (let j = 0; j < rows; ++j) for (let i = 0; i < cols; ++i) {
       const c = j * cols + i;
       if (patch.skin[c] === 0) continue;
@@ -121,7 +141,7 @@ export class Planes {
     context.putImageData(pixels, 0, 0);
   }
 
-  private drawPath(context: CanvasRenderingContext2D, path: Path, i: number, x: (p: number) => number, y: (p: number) => number, ratio: number): void {
+  private drawPath(context: CanvasRenderingContext2D, path: Path, i: number, { x, y }: Placed, ratio: number): void {
     context.beginPath();
     if (path.kind === "focus") context.arc(x(path.points[0]!), y(path.points[1]!), 4 * ratio, 0, 2 * Math.PI);
     else for (let n = 0; n < path.count; ++n) context.lineTo(x(path.points[6 * n]!), y(path.points[6 * n + 1]!));

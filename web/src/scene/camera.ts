@@ -10,8 +10,18 @@ export interface Place {
 }
 const degrees = Math.PI / 180;
 
-export const kViews: { id: string; label: string; azimuth: number; elevation: number; distance: number; z: number }[] = [
-  { id: "front", label: "Front", azimuth: -32, elevation: 38, distance: 0.7, z: 0.125 },
+interface NamedView {
+  id: string;
+  label: string;
+  azimuth: number; // [degrees]
+  elevation: number;
+  distance: number; // [m]
+  z: number; // of what it looks at [m]
+}
+const kHome: NamedView = { id: "home", label: "Oblique", azimuth: -32, elevation: 38, distance: 0.7, z: 0.125 };
+export const kViews: NamedView[] = [
+  kHome,
+  { id: "front", label: "Front", azimuth: 0, elevation: 3, distance: 0.78, z: 0.165 },
   { id: "side", label: "Side", azimuth: 90, elevation: 3, distance: 0.78, z: 0.165 },
   { id: "above", label: "Above", azimuth: 0, elevation: 86, distance: 0.72, z: 0.16 },
   { id: "below", label: "Palm", azimuth: -18, elevation: -34, distance: 0.46, z: 0.2 },
@@ -29,19 +39,40 @@ export class OrbitCamera {
 
   constructor(private readonly element: HTMLElement) {
     this.camera.up.set(0, 0, 1);
-    this.wanted = this.placeOf("front");
-    this.now = this.placeOf("front");
+    this.wanted = this.placeOf("home");
+    this.now = this.placeOf("home");
     element.addEventListener("pointerdown", (e) => this.down(e));
     element.addEventListener("pointermove", (e) => this.move(e));
-    for (const end of ["pointerup", "pointercancel"] as const) element.addEventListener(end, (e) => this.pointers.delete(e.pointerId));
+    for (const end of ["pointerup", "pointercancel"] as const) {
+      element.addEventListener(end, (e) => this.pointers.delete(e.pointerId));
+    }
     element.addEventListener("contextmenu", (e) => e.preventDefault());
   }
 
   private placeOf(id: string): Place {
-    const view = kViews.find((v) => v.id === id) ?? kViews[0]!;
-    return { azimuth: view.azimuth * degrees, elevation: view.elevation * degrees, distance: view.distance, target: new Vector3(0, 0, view.z) };
+    const { azimuth, elevation, distance, z } = kViews.find((v) => v.id === id) ?? kHome;
+    return { azimuth: azimuth * degrees, elevation: elevation * degrees, distance, target: new Vector3(0, 0, z) };
   }
   go(view: string): void { this.wanted = this.placeOf(view); }
+
+  /// Where it goes: azimuth, elevation [degrees], distance, x, y, z of what it looks at [mm]; undefined at home.
+  get place(): number[] | undefined {
+    const numbers = ({ azimuth, elevation, distance, target }: Place) =>
+      [azimuth / degrees, elevation / degrees, 1000 * distance, ...target.toArray().map((v) => 1000 * v)];
+    const here = numbers(this.wanted), home = numbers(this.placeOf("home"));
+    return here.some((v, i) => Math.abs(v - home[i]!) > 0.05) ? here : undefined;
+  }
+  set place(numbers: number[] | undefined) {
+    this.wanted = this.placeOf("home");
+    const [azimuth, elevation, distance, x, y, z] = numbers ?? [];
+    if (azimuth === undefined || elevation === undefined || distance === undefined) return;
+    this.wanted.azimuth = azimuth * degrees;
+    this.wanted.elevation = 0;
+    this.turn(0, elevation * degrees);
+    this.wanted.distance = distance / 1000;
+    this.zoom(1);
+    this.wanted.target.set((x ?? 0) / 1000, (y ?? 0) / 1000, (z ?? 0) / 1000).clampScalar(-0.5, 0.8);
+  }
 
   turn(azimuth: number, elevation: number): void {
     this.wanted.azimuth += azimuth;
@@ -51,8 +82,8 @@ export class OrbitCamera {
   /// By shares of the height of the picture.
   pan(right: number, up: number): void {
     const scale = 2 * this.wanted.distance * Math.tan((this.camera.fov * degrees) / 2);
-    const x = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), y = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
-    this.wanted.target.addScaledVector(x, right * scale).addScaledVector(y, up * scale);
+    const axis = (column: number) => new Vector3().setFromMatrixColumn(this.camera.matrixWorld, column);
+    this.wanted.target.addScaledVector(axis(0), right * scale).addScaledVector(axis(1), up * scale);
     this.wanted.target.clampScalar(-0.5, 0.8);
   }
 
@@ -69,7 +100,8 @@ export class OrbitCamera {
     if (others.length > 0) {
       // two fingers: apart is nearer, together they push
       const other = others[0]!;
-      const before = Math.hypot(pointer.x - other.x, pointer.y - other.y), after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
+      const before = Math.hypot(pointer.x - other.x, pointer.y - other.y);
+      const after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
       this.zoom(before / Math.max(1, after));
       this.pan(-dx / (2 * height), dy / (2 * height));
     } else if (this.primaryTaken && pointer.button === 0) {
@@ -92,7 +124,7 @@ export class OrbitCamera {
     else if (event.key === "ArrowDown") this.turn(0, -step);
     else if (event.key === "+" || event.key === "=") this.zoom(0.9);
     else if (event.key === "-") this.zoom(1 / 0.9);
-    else if (event.key === "Home" || event.key === "0") this.go("front");
+    else if (event.key === "Home" || event.key === "0") this.go("home");
     else return false;
     return true;
   }

@@ -35,6 +35,17 @@ export function boneLengths(hand: Hand): number[] {
   return lengths;
 }
 
+/// From the wrist to the tip of the middle finger along its joints, however it is bent [mm].
+export function handLength(hand: Hand): number {
+  const joints = [kWrist, 11, 12, 13, 14, 15];
+  let length = 0;
+  for (let i = 1; i < joints.length; ++i) {
+    const a = 8 * joints[i - 1]!, b = 8 * joints[i]!;
+    length += Math.hypot(...[0, 1, 2].map((k) => hand.joints[b + k]! - hand.joints[a + k]!));
+  }
+  return 1000 * length;
+}
+
 export function restHand(hand: Hand): RestHand {
   const toPalm = jointFrame(hand, kPalm).invert();
   const frame: Matrix4[] = [];

@@ -1,47 +1,36 @@
-/// The picture in three dimensions: array and box behind, hands and paths before them, smoke between and around, put together at the end.
+/// The picture in three dimensions: array and box behind, hands and paths before them, smoke between and around.
 
 import {
-  BufferGeometry, Color, DepthTexture, DirectionalLight, Float32BufferAttribute, GLSL3, HalfFloatType, HemisphereLight, LinearFilter, Matrix4, Mesh, OrthographicCamera, Raycaster, RawShaderMaterial,
-  Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget, type Texture,
+  BufferGeometry, Color, DepthTexture, DirectionalLight, Float32BufferAttribute, GLSL3, HalfFloatType, HemisphereLight,
+  LinearFilter, Matrix4, Mesh, OrthographicCamera, Raycaster, RawShaderMaterial, Scene, UnsignedIntType, Vector2, Vector3,
+  WebGLRenderer, WebGLRenderTarget, type Texture,
 } from "three";
+import type { Hello } from "../messages";
 import type { Frame } from "../wire";
 import { ArrayModel } from "./array_model";
 import { OrbitCamera } from "./camera";
 import { FieldMaps, type FieldMode } from "./field_maps";
 import { Hands } from "./hands";
+import { Labels } from "./labels";
+import { Pace } from "./pace";
 import { Paths } from "./paths";
+import { pick, type Hit } from "./pick";
+import { Ruler } from "./ruler";
 import { kScreenVertex, SmokeVolume } from "./smoke";
-
-const kTogether = /* glsl */ `
-precision highp float;
-in vec2 uv;
-out vec4 colour;
-uniform sampler2D back, backDepth, hand, handDepth, before, behind;
-uniform vec3 middleColour, outerColour;
-uniform float aspect, smoke;
-vec3 encoded(vec3 x) { return mix(12.92 * x, 1.055 * pow(max(x, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, x)); }
-float noise(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715)))); }
-void main() {
-  float r = length((uv - vec2(0.5, 0.54)) * vec2(aspect, 1.0));
-  vec3 c = mix(middleColour, outerColour, smoothstep(0.0, 0.85, r));
-  vec4 b = texture(back, uv), h = texture(hand, uv);
-  // seen from under the array, the hand shows through it
-  if (texture(backDepth, uv).r < texture(handDepth, uv).r) h *= 0.8;
-  c = c * (1.0 - b.a) + b.rgb;
-  if (smoke > 0.0) { vec4 s = texture(behind, uv); c = c * (1.0 - s.a) + s.rgb; }
-  c = c * (1.0 - h.a) + h.rgb;
-  // smoke before the hand veils it a little, and never hides what is on it
-  if (smoke > 0.0) { vec4 s = texture(before, uv) * mix(1.0, 0.45, clamp(h.a, 0.0, 1.0)); c = c * (1.0 - s.a) + s.rgb; }
-  colour = vec4(encoded(c) + (noise(gl_FragCoord.xy) - 0.5) / 255.0, 1.0);
-}`;
+import { kTogether } from "./together";
 
 function target(samples: number): WebGLRenderTarget {
-  const made = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples, minFilter: LinearFilter, magFilter: LinearFilter });
+  const linear = { minFilter: LinearFilter, magFilter: LinearFilter } as const;
+  const made = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples, ...linear });
   made.depthTexture = new DepthTexture(1, 1, UnsignedIntType);
   return made;
 }
 
-const kSoftwareInterval = 80; // between pictures that the processor draws [ms]
+/// By what a picture costs: the least and the most share of the screen's pixels along a side, and the time of a picture from
+/// which there are to be fewer, and up to which more [ms].
+const kQuality = {
+  graphics: { least: 0.6, most: 1, slow: 66, fast: 30 }, processor: { least: 0.35, most: 0.8, slow: 90, fast: 45 },
+};
 
 export interface Speed {
   framesPerSecond: number;
@@ -56,6 +45,8 @@ export class View {
   readonly hands = new Hands(this.maps);
   readonly paths = new Paths();
   readonly smoke = new SmokeVolume();
+  readonly ruler = new Ruler();
+  readonly pace: Pace;
   readonly speed: Speed = { framesPerSecond: 0, pixelRatio: 1 };
 
   private readonly backScene = new Scene();
@@ -71,10 +62,12 @@ export class View {
   private fieldSequence = -1;
   private quality = 1; // share of the screen's pixels along a side
   private steps = 56;
-  private slow = 0; // [s], smoothed time of a frame
-  private readonly software: boolean;
+  private readonly labels = new Labels();
+  private field: Frame["field"] = [];
+  readonly software: boolean; // the processor draws
   private fence: WebGLSync | null = null;
   private drawn = -Infinity; // when a picture was last allowed [ms]
+  private begun = 0; // when it was begun [ms]
   showSmoke = true;
 
   private unhurried = false;
@@ -86,20 +79,25 @@ export class View {
     const info = gl.getExtension("WEBGL_debug_renderer_info");
     const name = info === null ? "" : String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
     this.software = /swiftshader|llvmpipe|software/i.test(name);
+    this.pace = new Pace(this.software);
     if (this.software) this.setQuality(0.6);
     const samples = this.software ? 0 : 4;
     this.backTarget = target(samples);
     this.handTarget = target(samples);
-    this.smokeTarget = new WebGLRenderTarget(1, 1, { type: HalfFloatType, count: 2, depthBuffer: false, minFilter: LinearFilter, magFilter: LinearFilter });
+    this.smokeTarget = new WebGLRenderTarget(1, 1, {
+      type: HalfFloatType, count: 2, depthBuffer: false, minFilter: LinearFilter, magFilter: LinearFilter,
+    });
     this.smoke.material.uniforms.backDepth!.value = this.backTarget.depthTexture;
     this.smoke.material.uniforms.handDepth!.value = this.handTarget.depthTexture;
     const image = (t: Texture | null | undefined) => ({ value: t ?? null });
     this.together = new RawShaderMaterial({
       glslVersion: GLSL3, vertexShader: kScreenVertex, fragmentShader: kTogether, depthTest: false, depthWrite: false,
       uniforms: {
-        back: image(this.backTarget.texture), backDepth: image(this.backTarget.depthTexture), hand: image(this.handTarget.texture), handDepth: image(this.handTarget.depthTexture),
+        back: image(this.backTarget.texture), backDepth: image(this.backTarget.depthTexture),
+        hand: image(this.handTarget.texture), handDepth: image(this.handTarget.depthTexture),
         before: image(this.smokeTarget.textures[0]), behind: image(this.smokeTarget.textures[1]),
-        middleColour: { value: new Color() }, outerColour: { value: new Color() }, aspect: { value: 1 }, smoke: { value: 0 },
+        middleColour: { value: new Color() }, outerColour: { value: new Color() },
+        aspect: { value: 1 }, smoke: { value: 0 },
       },
     });
 
@@ -108,13 +106,20 @@ export class View {
     this.screenScene.add(this.screen);
     const key = new DirectionalLight("#ffffff", 1.9);
     key.position.set(-0.45, -0.55, 0.85);
-    this.backScene.add(this.array.group, key, new HemisphereLight("#ffffff", "#8090a8", 1.1));
+    this.backScene.add(this.array.group, this.ruler.group, key, new HemisphereLight("#ffffff", "#8090a8", 1.1));
     this.handScene.add(this.hands.group, this.paths.group);
     this.eye = new OrbitCamera(canvas);
   }
 
+  setHello(hello: Hello): void {
+    this.array.set(hello);
+    this.ruler.set(hello);
+  }
+
   setFrame(frame: Frame): void {
     this.hands.set(frame.hands);
+    this.ruler.setHand(frame.hands[0]);
+    this.field = frame.field;
     this.paths.set(frame.plan);
     if (frame.smoke !== null && frame.smokeSequence !== this.smokeSequence) this.smoke.set(frame.smoke);
     if (frame.fieldSequence !== this.fieldSequence) this.maps.set(frame.field);
@@ -125,44 +130,42 @@ export class View {
   setField(mode: FieldMode): void { this.maps.setMode(mode); }
 
   setDark(dark: boolean): void {
-    for (const part of [this.array, this.hands, this.paths, this.smoke, this.maps]) part.setDark(dark);
+    for (const part of [this.array, this.ruler, this.hands, this.paths, this.smoke, this.maps]) part.setDark(dark);
     (this.together.uniforms.middleColour!.value as Color).set(dark ? "#16202f" : "#ffffff");
     (this.together.uniforms.outerColour!.value as Color).set(dark ? "#080c13" : "#e3e9f1");
   }
 
-  /// Where the ray through a place of the picture meets the horizontal plane at height z, in D [m].
-  pointAt(clientX: number, clientY: number, z: number): Vector3 | null {
+  /// The skin that is seen at a place of the page, as the program computes with it.
+  skinAt(clientX: number, clientY: number): Hit | null {
     const box = this.canvas.getBoundingClientRect();
-    const at = new Vector2((2 * (clientX - box.left)) / box.width - 1, 1 - (2 * (clientY - box.top)) / box.height);
-    const ray = new Raycaster();
-    ray.setFromCamera(at, this.eye.camera);
-    const { origin, direction } = ray.ray;
-    const t = (z - origin.z) / direction.z;
-    return Number.isFinite(t) && t > 0 ? origin.clone().addScaledVector(direction, t) : null;
+    const x = (2 * (clientX - box.left)) / box.width - 1, y = 1 - (2 * (clientY - box.top)) / box.height;
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2(x, y), this.eye.camera);
+    return pick(this.field, caster.ray.origin, caster.ray.direction);
   }
 
-  /// Whether the next picture may be drawn: where pictures take long, no others are heaped upon them, and where the processor draws
-  /// them it has other things to do, the run itself among them.
-  ready(now: number): boolean {
-    if (this.software && !this.unhurried && now - this.drawn < kSoftwareInterval) return false;
-    if (this.fence === null) return this.allow(now);
-    const gl = this.renderer.getContext() as WebGL2RenderingContext;
-    if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
-    gl.deleteSync(this.fence);
-    this.fence = null;
-    return this.allow(now);
-  }
-  private allow(now: number): true {
+  /// Whether the next picture may be drawn: none is heaped upon one that is not done, and `interval` [ms] lies between them.
+  ready(now: number, interval: number): boolean {
+    if (this.fence !== null) {
+      const gl = this.renderer.getContext() as WebGL2RenderingContext;
+      if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+      gl.deleteSync(this.fence);
+      this.fence = null;
+      this.pace.drew(performance.now() - this.begun);
+    }
+    if (!this.unhurried && now - this.drawn < interval) return false;
     this.drawn = now;
     return true;
   }
 
   /// Draws the next picture, dt seconds after the one before.
   render(dt: number): void {
+    this.begun = performance.now();
     this.keepPace(dt);
     this.resize();
     const { width, height } = this.backTarget;
     this.eye.update(dt, width / height);
+    this.labels.show(this.ruler.update(this.eye.camera), this.eye.camera, this.canvas);
     this.paths.advance(dt);
     const { renderer } = this;
     const camera = this.eye.camera;
@@ -219,7 +222,8 @@ export class View {
 
   private resize(): void {
     const scale = Math.min(2, window.devicePixelRatio || 1) * this.quality;
-    const width = Math.max(2, Math.round(this.canvas.clientWidth * scale)), height = Math.max(2, Math.round(this.canvas.clientHeight * scale));
+    const pixels = (length: number) => Math.max(2, Math.round(length * scale));
+    const width = pixels(this.canvas.clientWidth), height = pixels(this.canvas.clientHeight);
     this.speed.pixelRatio = scale;
     if (this.backTarget.width === width && this.backTarget.height === height && this.canvas.width === width) return;
     this.renderer.setSize(width, height, false);
@@ -232,17 +236,15 @@ export class View {
   /// Fewer pixels and shorter marches where pictures take too long, and more again where there is time.
   private keepPace(dt: number): void {
     if (dt <= 0 || this.unhurried) return;
-    const time = Math.min(dt, 1);
-    this.slow = this.slow === 0 ? time : 0.9 * this.slow + 0.1 * time;
-    this.speed.framesPerSecond = 1 / this.slow;
-    const lowest = this.software ? 0.4 : 0.6, highest = this.software ? 0.8 : 1;
-    const enough = this.software ? kSoftwareInterval / 1000 + 0.02 : 1 / 45;
-    if (this.slow > Math.max(1 / 15, 1.5 * enough) && this.quality > lowest) this.setQuality(Math.max(lowest, this.quality - 0.1));
-    else if (this.slow < enough && this.quality < highest) this.setQuality(Math.min(highest, this.quality + 0.1));
+    const { speed, pace } = this;
+    speed.framesPerSecond = speed.framesPerSecond === 0 ? 1 / dt : 0.9 * speed.framesPerSecond + 0.1 / dt;
+    const { least, most, slow, fast } = kQuality[this.software ? "processor" : "graphics"];
+    if (pace.measured && pace.cost > slow && this.quality > least) this.setQuality(Math.max(least, this.quality - 0.1));
+    if (pace.measured && pace.cost < fast && this.quality < most) this.setQuality(Math.min(most, this.quality + 0.1));
   }
   private setQuality(quality: number): void {
     this.quality = quality;
     this.steps = Math.round(this.software && !this.unhurried ? 20 * quality + 6 : 56 * quality);
-    this.slow = this.software ? 0.12 : 1 / 25; // measure anew
+    this.pace.measureAnew();
   }
 }

@@ -22,7 +22,7 @@ beforeAll(async () => {
   await program.start();
   page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: "light" });
   watch = new Watch(page);
-  await page.goto(program.address);
+  await page.goto(`${program.address}/#picture=on`);
   await until(page, () => window.prostm?.state?.tracker?.connected === true && window.prostm.frame?.hands.length === 1, 0, "a hand of the tracker");
 });
 afterAll(async () => {

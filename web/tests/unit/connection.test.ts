@@ -55,6 +55,14 @@ describe("a connection", () => {
     expect(newest().sent.map((s) => JSON.parse(s))).toEqual([{ type: "rate", hz: 30 }, { type: "rate", hz: 1 }]);
   });
 
+  it("asks for another rate when it is told one", () => {
+    const connection = make();
+    connection.open();
+    newest().open();
+    for (const hz of [15, 15, 10]) connection.setRate(hz);
+    expect(newest().sent.map((s) => JSON.parse(s).hz)).toEqual([30, 15, 10]);
+  });
+
   it("lets no malformed message out of its handler, counts it, says so and reads the next", () => {
     const connection = make();
     connection.open();

@@ -8,7 +8,9 @@ const names = readdirSync(folder).filter((n) => n.endsWith(".bin")).map((n) => n
 /// A frame in the words of the files that the encoder's own tests write.
 function inWords(frame: Frame): unknown {
   const known = (x: number) => (Number.isNaN(x) ? null : x);
-  const flags = (frame.run.paused ? 1 : 0) | (frame.run.pageHand ? 2 : 0) | (frame.run.handInSight ? 4 : 0) | (frame.run.fading ? 8 : 0);
+  const { run } = frame;
+  const flags = (run.paused ? 1 : 0) | (run.pageHand ? 2 : 0) | (run.handInSight ? 4 : 0) | (run.fading ? 8 : 0) |
+    (run.muted ? 16 : 0) | (run.calibrating ? 32 : 0);
   const rows = (values: Float32Array, width: number) => Array.from({ length: values.length / width }, (_, i) => [...values.subarray(width * i, width * (i + 1))]);
   return {
     version: 1,

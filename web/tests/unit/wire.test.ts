@@ -12,7 +12,7 @@ const patch: Patch = {
 const path: Path = { kind: "path", patch: 0, count: 4, length: 0.125, speed: 7, period: 0.5, points: Float32Array.from({ length: 24 }, (_, i) => i) };
 const focus: Path = { kind: "focus", patch: 1, count: 1, length: 0, speed: 0, period: 0.005, points: Float32Array.from([1, 2, 3, 4, 5, 6]) };
 const whole = () =>
-  encode({ sequence: 12, run: { time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, handInSight: true }, unknown: 13,
+  encode({ sequence: 12, run: { time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, handInSight: true, muted: true }, unknown: 13,
     numbers: kNumbers.map((_, i) => i), hands: [hand, { ...hand, side: "left" }], smoke, field: [patch, patch], plan: [path, focus] });
 
 /// Float32 has rounded what was not a multiple of a power of two.
@@ -22,7 +22,7 @@ describe("a whole frame", () => {
   it("is read as it was written", () => {
     const frame = new Decoder().decode(whole());
     expect(frame.sequence).toBe(12);
-    expect(frame.run).toEqual({ time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, pageHand: false, handInSight: true, fading: false });
+    expect(frame.run).toEqual({ time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, pageHand: false, handInSight: true, fading: false, muted: true, calibrating: false });
     expect(numberOf(frame, "plan_ms")).toBe(4);
     expect(numberOf(frame, "saturated")).toBe(29);
     expect(frame.hands).toEqual([hand, { ...hand, side: "left" }]);

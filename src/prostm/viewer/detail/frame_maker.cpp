@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace prostm::viewer {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMs = 1e3;
 constexpr double kHeightScale = 1e-5;  // of the skin's heights on the wire [m]
 
 std::array<float, 3> floats(const Vec3& v) {
@@ -123,7 +125,7 @@ void Recent::add(Clock::time_point now, double value) {
 }
 
 void Recent::trim(Clock::time_point now) {
-  while (entries_.size() > 1 &&
+  while (!entries_.empty() &&
          std::chrono::duration<double>(now - entries_.front().at).count() > span_) {
     entries_.pop_front();
   }
@@ -142,21 +144,33 @@ double Recent::quantile(double p) {
 // ---- frames ----
 
 void FrameMaker::refresh(ViewFrame& frame, ViewNews& news) {
-  if (snapshots_.refresh_step()) {
+  // first, so that whoever reads that the run is paused finds what it was paused at
+  snapshots_.refresh_run();
+  new_step_ |= snapshots_.refresh_step();
+  new_smoke_ |= snapshots_.refresh_smoke();
+  new_plan_ |= snapshots_.refresh_plan();
+  if (!snapshots_.run().paused || snapshots_.plan().step == snapshots_.step().step)
+    take(frame, news);
+  fill_numbers(frame);
+}
+
+void FrameMaker::take(ViewFrame& frame, ViewNews& news) {
+  if (std::exchange(new_step_, false)) {
+    const StepSnapshot& step = snapshots_.step();
     frame.hand_count = 0;
-    for (const Hand& hand : snapshots_.step().hands.hands)
-      fill_hand(hand, frame.hands[frame.hand_count++]);
+    for (const Hand& hand : step.hands.hands) fill_hand(hand, frame.hands[frame.hand_count++]);
+    frame.run.world_steps = static_cast<std::uint32_t>(step.step);
+    frame.run.recording_time = step.recording_time;
   }
-  if (snapshots_.refresh_smoke()) {
+  if (std::exchange(new_smoke_, false)) {
     fill_smoke(snapshots_.smoke(), frame.smoke);
     ++news.smoke;
   }
-  if (snapshots_.refresh_plan()) {
+  if (std::exchange(new_plan_, false)) {
     take_plan(frame);
+    frame.run.plan_updates = static_cast<std::uint32_t>(snapshots_.plan().id);
     ++news.fields;
   }
-  snapshots_.refresh_run();
-  fill_numbers(frame);
 }
 
 void FrameMaker::take_plan(ViewFrame& frame) {
@@ -192,20 +206,34 @@ void FrameMaker::fill_scores(ViewFrame& frame) const {
   set(frame, kSettingCorrelation, scored ? setting.correlation : kNone);
 }
 
+std::uint32_t FrameMaker::flags(const ViewFrame& frame) const {
+  const RunSnapshot& run = snapshots_.run();
+  return (run.paused ? kViewPaused : 0U) | (run.page_hand ? kViewPageHand : 0U) |
+         (frame.hand_count > 0 ? kViewHandInSight : 0U) | (run.fading ? kViewFading : 0U) |
+         (mute_.on(MuteReason::Person) ? kViewMuted : 0U) |
+         (mute_.on(MuteReason::Calibration) ? kViewCalibrating : 0U);
+}
+
+/// Where no hand is in sight there is no latency: the last one is of a hand that has gone.
+void FrameMaker::fill_latencies(ViewFrame& frame) {
+  const auto now = Recent::Clock::now();
+  double latency = 0.0;
+  while (snapshots_.next_latency(latency)) latencies_.add(now, latency);
+  latencies_.trim(now);
+  const double unit = frame.hand_count > 0 ? kMs : kNone;
+  set(frame, kLatencyMs, unit * snapshots_.plan().latency);
+  set(frame, kLatencyP50Ms, unit * latencies_.quantile(0.5));
+  set(frame, kLatencyP99Ms, unit * latencies_.quantile(0.99));
+  set(frame, kLatencyMaxMs, unit * latencies_.quantile(1.0));
+}
+
 void FrameMaker::fill_numbers(ViewFrame& frame) {
   const StepSnapshot& step = snapshots_.step();
   const PlanSnapshot& plan = snapshots_.plan();
   const RunSnapshot& run = snapshots_.run();
-  const auto now = Recent::Clock::now();
   frame.run.time = run.time;
-  frame.run.recording_time = step.recording_time;
-  frame.run.world_steps = static_cast<std::uint32_t>(step.step);
-  frame.run.plan_updates = static_cast<std::uint32_t>(plan.id);
-  frame.run.flags = (run.paused ? kViewPaused : 0U) | (run.page_hand ? kViewPageHand : 0U) |
-                    (frame.hand_count > 0 ? kViewHandInSight : 0U) |
-                    (run.fading ? kViewFading : 0U);
+  frame.run.flags = flags(frame);
 
-  constexpr double kMs = 1e3;
   const double plan_time = plan.plan_time + plan.lift_time + plan.contact_time;
   set(frame, kTrackMs, kMs * step.track_time);
   set(frame, kHandMs, kMs * step.hand_time);
@@ -217,14 +245,7 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   set(frame, kWorldHz, run.world_rate);
   set(frame, kPlanHz, run.plan_rate);
 
-  double latency = 0.0;
-  while (snapshots_.next_latency(latency)) latencies_.add(now, latency);
-  latencies_.trim(now);
-  set(frame, kLatencyMs, kMs * plan.latency);
-  set(frame, kLatencyP50Ms, kMs * latencies_.quantile(0.5));
-  set(frame, kLatencyP99Ms, kMs * latencies_.quantile(0.99));
-  set(frame, kLatencyMaxMs, kMs * latencies_.quantile(1.0));
-
+  fill_latencies(frame);
   set(frame, kBlocks, static_cast<double>(run.device.blocks));
   set(frame, kLateBlocks, static_cast<double>(run.device.late_blocks));
   set(frame, kMissedBlocks, static_cast<double>(run.device.missed_blocks));

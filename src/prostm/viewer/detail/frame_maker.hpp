@@ -16,7 +16,7 @@ class Recent {
   using Clock = std::chrono::steady_clock;
   explicit Recent(double seconds) : span_(seconds) {}
   void add(Clock::time_point now, double value);
-  /// Forgets what is older than the span, but never the last value.
+  /// Forgets what is older than the span.
   void trim(Clock::time_point now);
   /// The share p of the values are not above this; NaN without any.
   double quantile(double p);
@@ -34,16 +34,22 @@ class Recent {
 /// Keeps what it needs from frame to frame.
 class FrameMaker {
  public:
-  explicit FrameMaker(Snapshots& snapshots) : snapshots_(snapshots) {}
-  /// Takes what is new and fills in the frame, but for its sequence number.
+  FrameMaker(Snapshots& snapshots, const Mute& mute) : snapshots_(snapshots), mute_(mute) {}
+  /// Takes what is new and fills in the frame, but for its sequence number. A run that is paused is
+  /// shown at one instant: hands, smoke and plan wait for each other.
   void refresh(ViewFrame& frame, ViewNews& news);
 
  private:
+  void take(ViewFrame& frame, ViewNews& news);
   void take_plan(ViewFrame& frame);
   void fill_scores(ViewFrame& frame) const;
+  void fill_latencies(ViewFrame& frame);
   void fill_numbers(ViewFrame& frame);
+  std::uint32_t flags(const ViewFrame& frame) const;
 
   Snapshots& snapshots_;
+  const Mute& mute_;
+  bool new_step_ = true, new_smoke_ = false, new_plan_ = false;  // and not in a frame yet
   RenderedPlan rendered_;
   Recent latencies_{10.0};
   FeltWatch felt_;

@@ -140,7 +140,7 @@ void Session::upgrade() {
     if (hub.pages.empty()) hub.source.watch(true);
     hub.pages.push_back(self.get());
     hub.count.pages = static_cast<int>(hub.pages.size());
-    self->texts_.push_back(std::make_shared<const std::string>(hub.source.hello()));
+    self->texts_.push_back(std::make_shared<const std::string>(hub.source.hello(self->id_)));
     self->state_waits_ = !hub.state->empty();
     self->pump();
     self->buffer_.clear();
@@ -183,11 +183,14 @@ void Session::on_message(const std::string& text) {
     }
     problem = hub_.source.take(id_, message);
   }
-  if (!problem.empty()) tell_error(problem);
+  if (problem.empty()) return;
+  const auto* set = read ? std::get_if<SetMessage>(&message) : nullptr;
+  tell_error(problem, set == nullptr ? "" : set->id);
 }
 
-void Session::tell_error(const std::string& sentence) {
-  const nlohmann::ordered_json json = {{"type", "error"}, {"sentence", sentence}};
+void Session::tell_error(const std::string& sentence, const std::string& control) {
+  nlohmann::ordered_json json = {{"type", "error"}, {"sentence", sentence}};
+  if (!control.empty()) json["id"] = control;
   if (texts_.size() >= kMaxTexts) return;  // nobody reads them: see check_stall
   texts_.push_back(std::make_shared<const std::string>(
       json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));

@@ -35,7 +35,8 @@ class Session : public std::enable_shared_from_this<Session> {
   void offer_frame(Clock::time_point now, EncodedFrame& frame);
   /// The hub has a new state.
   void tell_state();
-  void tell_error(const std::string& sentence);
+  /// @param control that could not be set, where one is known.
+  void tell_error(const std::string& sentence, const std::string& control = "");
   /// Closes the connection if a write has been under way for longer than stall_time.
   void check_stall(Clock::time_point now);
 

@@ -1,0 +1,13 @@
+#pragma once
+/// A run's settings as the text of a settings file. Private to viewer.
+
+#include <string>
+
+#include "prostm/pipeline/settings.hpp"
+
+namespace prostm::viewer {
+
+/// Every setting that differs from its default, as TOML for `--settings`; empty if none does.
+std::string changed_settings(const PipelineSettings& settings);
+
+}  // namespace prostm::viewer

@@ -1,0 +1,45 @@
+/// A run's settings as a settings file.
+
+#include "prostm/viewer/detail/settings_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "prostm/io/settings_file.hpp"
+
+namespace prostm {
+namespace {
+
+using viewer::changed_settings;
+
+TEST(SettingsText, IsEmptyForTheDefaults) {
+  EXPECT_EQ(changed_settings({}), "");
+}
+
+TEST(SettingsText, SaysWhatDiffersAlone) {
+  PipelineSettings s;
+  s.plan.preset = Preset::Fast;
+  s.fluid.jet_speed = 1.5;
+  s.scripted_hand.still = true;
+  EXPECT_EQ(changed_settings(s),
+            "[scripted_hand]\nstill = true\n\n[fluid]\njet_speed = 1.5\n\n"
+            "[plan]\npreset = \"fast\"\n");
+}
+
+TEST(SettingsText, ReadsBackToTheBit) {
+  PipelineSettings s;
+  s.scene = "four-plumes";
+  s.array = "an \"array\".json";
+  s.plan.sigma = 0.1 * 0.087;
+  s.plan.paths = s.am.foci = s.emit.foci = 7;
+  s.emit.switch_at = SwitchAt::Now;
+  s.array_width = true;
+  PipelineSettings read;
+  settings_from_toml(changed_settings(s), "a test", settings_groups(read));
+  EXPECT_EQ(settings_to_json(settings_groups(std::as_const(read))),
+            settings_to_json(settings_groups(std::as_const(s))));
+}
+
+}  // namespace
+}  // namespace prostm

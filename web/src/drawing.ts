@@ -1,0 +1,84 @@
+/// When what is drawn: the picture as often as the run can spare, planes and numbers when there is something new.
+
+import type { PictureMode } from "./address";
+import { find, setText } from "./dom";
+import type { View } from "./scene/view";
+import type { Frame } from "./wire";
+
+export interface Parts {
+  /// planes and numbers
+  panels(frame: Frame, now: number): void;
+  /// @param due whether it is time for them to move on.
+  strips(now: number, due: boolean): void;
+  mode(): PictureMode;
+  /// the run keeps its rates
+  held(): boolean;
+  /// frames a second that are of use
+  rate(hz: number): void;
+}
+
+const kPanels = 60, kSlowPanels = 150, kStrips = 150, kSlowStrips = 400; // [ms] between drawings
+
+export class Drawing {
+  pictures = 0;
+  still = false;
+  private frame: Frame | null = null;
+  private inPanels: Frame | null = null;
+  private inView: Frame | null = null;
+  private panelsAt = 0;
+  private stripsAt = 0;
+  private before = 0;
+  private off = false; // the picture, for the run's sake
+
+  constructor(private readonly view: View, private readonly parts: Parts) {
+    window.requestAnimationFrame((now) => this.draw(now));
+  }
+
+  show(frame: Frame): void { this.frame = frame; }
+  get shown(): Frame | null { return this.frame; }
+  /// Draws what it has again: it looks different.
+  again(): void { this.inPanels = this.inView = null; }
+  /// The picture comes back if it was off by itself.
+  begin(): void { this.off = false; }
+
+  private draw(now: number): void {
+    window.requestAnimationFrame((next) => this.draw(next));
+    const slow = this.view.pace.slow;
+    if (this.frame !== null && this.frame !== this.inPanels && now - this.panelsAt >= (slow ? kSlowPanels : kPanels)) {
+      this.panelsAt = now;
+      this.inPanels = this.frame;
+      this.parts.panels(this.frame, now);
+    }
+    const due = !this.still && this.frame !== null && now - this.stripsAt >= (slow ? kSlowStrips : kStrips);
+    if (due) this.stripsAt = now;
+    this.parts.strips(now, due);
+    this.drawPicture(now);
+  }
+
+  private drawPicture(now: number): void {
+    const { view } = this, mode = this.parts.mode();
+    const pace = view.pace.state(now, this.parts.held());
+    if (mode === "auto" && pace.off) this.off = true;
+    const drawn = this.still || mode === "on" || (mode === "auto" && !this.off);
+    this.tell(drawn, mode);
+    this.parts.rate(!drawn ? 10 : view.pace.slow ? 15 : 30);
+    if (!drawn || !view.ready(now, pace.interval)) return;
+    const dt = this.before === 0 ? 0 : (now - this.before) / 1000;
+    this.before = now;
+    if (this.frame !== null && this.frame !== this.inView) {
+      this.inView = this.frame;
+      view.setFrame(this.frame);
+    }
+    view.render(dt);
+    ++this.pictures;
+  }
+
+  private tell(drawn: boolean, mode: PictureMode): void {
+    find("picture").dataset.drawn = String(drawn);
+    find("no-picture").hidden = drawn;
+    if (drawn) return;
+    setText(find("no-picture-why"), mode === "off"
+      ? "The picture in three dimensions is off; the planes show the fields."
+      : "The picture in three dimensions is off: drawing it here would slow the run down. The planes show the fields.");
+  }
+}

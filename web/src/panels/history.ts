@@ -1,0 +1,74 @@
+/// Numbers over time, and what a strip's axis makes of them.
+
+export const kLongest = 120; // [s]
+
+/// Values over time, those of more than two minutes ago dropped.
+export class History {
+  readonly times: number[] = [];
+  readonly values: number[][];
+  constructor(count: number) { this.values = Array.from({ length: count }, () => []); }
+
+  add(time: number, values: number[]): void {
+    this.times.push(time);
+    values.forEach((v, i) => this.values[i]!.push(v));
+    // in lumps, so that it costs little
+    const old = this.times.findIndex((t) => t >= time - kLongest - 1);
+    if (old < 64) return;
+    this.times.splice(0, old);
+    for (const row of this.values) row.splice(0, old);
+  }
+
+  /// As it is now, for a strip that is frozen.
+  copy(): History {
+    const made = new History(this.values.length);
+    made.times.push(...this.times);
+    this.values.forEach((row, i) => made.values[i]!.push(...row));
+    return made;
+  }
+
+  /// Place of the sample nearest to a time; −1 where there is none.
+  nearest(time: number): number {
+    const after = this.after(time);
+    if (after === 0 || (after < this.times.length && this.times[after]! - time < time - this.times[after - 1]!)) {
+      return after < this.times.length ? after : -1;
+    }
+    return after - 1;
+  }
+  /// Place of the first sample that is not before a time.
+  after(time: number): number {
+    let low = 0, high = this.times.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.times[middle]! < time) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+}
+
+const kRateOver = 1; // [s]
+
+/// By how much a count that only grows has grown in the last second, per second. A count that has fallen began anew.
+export class PerSecond {
+  private readonly seen: { time: number; count: number }[] = [];
+
+  add(time: number, count: number): number {
+    const last = this.seen[this.seen.length - 1];
+    if (!Number.isFinite(count)) return NaN;
+    if (last !== undefined && (count < last.count || time < last.time)) this.seen.length = 0;
+    this.seen.push({ time, count });
+    while (this.seen.length > 2 && this.seen[1]!.time <= time - kRateOver) this.seen.shift();
+    const first = this.seen[0]!;
+    return time > first.time ? (count - first.count) / Math.max(kRateOver, time - first.time) : 0;
+  }
+}
+
+const kOutlying = 1.5; // times the 98th percentile
+
+/// The top of an axis on which the values are well seen: that of their 98th percentile where a few stick out.
+export function robustTop(values: ArrayLike<number>, atLeast: number): number {
+  const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
+  if (sorted.length === 0) return atLeast;
+  const most = sorted[sorted.length - 1]!, high = sorted[Math.max(0, Math.ceil(0.98 * sorted.length) - 1)]!;
+  return Math.max(atLeast, 1.08 * (most <= kOutlying * high ? most : high));
+}

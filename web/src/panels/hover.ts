@@ -1,0 +1,31 @@
+/// A note beside the pointer: what is there.
+
+import { find } from "../dom";
+import { short } from "../text";
+import type { Patch } from "../wire";
+import { pressures } from "./plane_layout";
+
+const note = find("hover");
+
+/// @param lines none: nothing is said.
+export function say(lines: string[], clientX: number, clientY: number): void {
+  note.hidden = lines.length === 0;
+  if (note.hidden) return;
+  note.textContent = lines.join("\n");
+  const { width, height } = note.getBoundingClientRect();
+  // beside the pointer, and on the screen
+  const x = clientX + 16 + width > window.innerWidth ? clientX - 12 - width : clientX + 16;
+  const y = Math.max(4, Math.min(clientY + 14, window.innerHeight - height - 4));
+  note.style.setProperty("left", `${Math.max(4, x)}px`);
+  note.style.setProperty("top", `${y}px`);
+}
+
+/// What a cell holds, in words.
+export function cellWords(patch: Patch, cell: number): string[] {
+  const { target, rendered } = pressures(patch, cell);
+  const difference = rendered - target;
+  return [
+    `target ${short(target)} Pa`, `rendered ${short(rendered)} Pa`,
+    `difference ${difference < 0 ? "−" : "+"}${short(Math.abs(difference))} Pa`,
+  ];
+}

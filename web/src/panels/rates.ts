@@ -1,0 +1,91 @@
+/// Whether the run keeps its rates, and what keeps it from that, as a sentence.
+
+import type { Rates } from "../messages";
+import { fixed } from "../text";
+import { numberOf, type Frame } from "../wire";
+
+const kHeld = 0.98; // share of a rate that counts as kept
+const kOver = 3; // [s] over which rates and times are averaged
+const kSure = 2; // [s] for which they must be missed before anything is said
+
+interface Sample {
+  time: number; // [s]
+  smoke: number; // [Hz]
+  plans: number;
+  stages: Record<Stage, number>; // [ms]
+}
+type Stage = "track" | "hand" | "fluid" | "contact" | "plan" | "lift";
+const kNames: Record<Stage, string> = {
+  track: "the tracking", hand: "the hand on its grid", fluid: "the smoke", contact: "the pressure on the skin",
+  plan: "the planner", lift: "the way of the paths onto the skin",
+};
+
+export class RateWatch {
+  private samples: Sample[] = [];
+  private missedSince: number | null = null;
+
+  /// @param now of the page's clock [s].
+  add(frame: Frame, now: number): void {
+    // rates are of the last second: those of a pause, and right after it, mean nothing
+    if (frame.run.paused) return this.forget();
+    const ms = (name: Parameters<typeof numberOf>[1]) => {
+      const value = numberOf(frame, name);
+      return Number.isFinite(value) ? value : 0;
+    };
+    this.samples.push({
+      time: now, smoke: ms("world_hz"), plans: ms("plan_hz"),
+      stages: {
+        track: ms("track_ms"), hand: ms("hand_ms"), fluid: ms("world_ms"), contact: ms("contact_ms"),
+        plan: ms("plan_ms"), lift: ms("lift_ms"),
+      },
+    });
+    this.samples = this.samples.filter((s) => s.time > now - kOver);
+  }
+
+  forget(): void {
+    this.samples = [];
+    this.missedSince = null;
+  }
+
+  private mean(of: (s: Sample) => number): number {
+    return this.samples.reduce((sum, s) => sum + of(s), 0) / Math.max(1, this.samples.length);
+  }
+
+  /// Why the rates are not kept; "" where they are, or where it cannot be said yet.
+  /// @param drawing the processor draws this page's picture.
+  sentence(rates: Rates, now: number, drawing: boolean): string {
+    const first = this.samples[0];
+    const known = first !== undefined && first.time < now - 0.7 * kOver;
+    const smoke = this.mean((s) => s.smoke), plans = this.mean((s) => s.plans);
+    if (!known || (smoke >= kHeld * rates.world_hz && plans >= kHeld * rates.plan_hz)) {
+      this.missedSince = null;
+      return "";
+    }
+    this.missedSince ??= now;
+    if (now - this.missedSince < kSure) return "";
+    const hertz = (is: number, set: number) => `${fixed(is, 1)} of ${fixed(set, Number.isInteger(set) ? 0 : 1)} Hz`;
+    return `Rates not held: smoke ${hertz(smoke, rates.world_hz)}, plans ${hertz(plans, rates.plan_hz)}, ` +
+      `because ${this.reason(rates, drawing)}.`;
+  }
+
+  private reason(rates: Rates, drawing: boolean): string {
+    const stage = (name: Stage) => this.mean((s) => s.stages[name]);
+    const perStep = rates.plan_hz / rates.world_hz; // plans
+    const step: [Stage, number][] = [
+      ["track", stage("track")], ["hand", stage("hand")], ["fluid", stage("fluid")],
+      ["contact", perStep * stage("contact")],
+    ];
+    const plan: [Stage, number][] = [["plan", stage("plan")], ["lift", stage("lift")]];
+    for (const [what, parts, hz] of [["a step", step, rates.world_hz], ["a plan", plan, rates.plan_hz]] as const) {
+      const sum = parts.reduce((all, [, ms]) => all + ms, 0), room = 1000 / hz;
+      if (sum < 0.85 * room) continue;
+      const [slowest, ms] = parts.reduce((a, b) => (b[1] > a[1] ? b : a));
+      return `${what} takes ${fixed(sum, 0)} of the ${fixed(room, 0)} ms that it has, ` +
+        `${kNames[slowest]} ${fixed(ms, 0)} ms of them`;
+    }
+    const sum = step.reduce((all, [, ms]) => all + ms, 0);
+    const others = drawing ? "this page's picture and other work have" : "other work has";
+    const room = fixed(1000 / rates.world_hz, 0);
+    return `${others} the processor (the stages of a step take ${fixed(sum, 0)} of ${room} ms)`;
+  }
+}

@@ -1,0 +1,76 @@
+/// What each strip shows.
+
+import { numberOf, type Frame, type NumberName } from "../wire";
+
+export type Colour = [light: string, dark: string];
+
+export interface Series {
+  label: string;
+  value: (frame: Frame) => number;
+  /// the value counts from the start of the run; how fast it grows is shown
+  counts?: boolean;
+  colour: Colour;
+  digits?: number;
+  dash?: number[];
+}
+export interface StripSpec {
+  id: string;
+  title: string;
+  unit: string;
+  better?: "higher" | "lower";
+  stacked?: boolean;
+  atLeast: number; // the top of the axis is never lower
+  atMost?: number; // nor higher
+  series: Series[];
+}
+
+const of = (name: NumberName) => (frame: Frame) => numberOf(frame, name);
+const kBlue: Colour = ["#0072b2", "#56b4e9"], kOrange: Colour = ["#b84e00", "#ff9a4d"];
+const kGreen: Colour = ["#007a58", "#2fd0a5"], kViolet: Colour = ["#a3427f", "#e39ac6"];
+const kYellow: Colour = ["#9a7000", "#f0c54a"], kGrey: Colour = ["#5c6675", "#a9b4c4"];
+
+export const kStrips: StripSpec[] = [
+  {
+    id: "stages", title: "Stages", unit: "ms", better: "lower", stacked: true, atLeast: 10, series: [
+      { label: "fluid", value: of("world_ms"), colour: kBlue },
+      { label: "plan", value: of("plan_ms"), colour: kOrange },
+      { label: "hand", value: of("hand_ms"), colour: kGreen },
+      { label: "contact", value: of("contact_ms"), colour: kViolet },
+      { label: "track", value: of("track_ms"), colour: kYellow },
+      { label: "lift", value: of("lift_ms"), colour: kGrey },
+    ],
+  },
+  {
+    id: "rates", title: "Rates", unit: "Hz", better: "higher", atLeast: 30, series: [
+      { label: "smoke", value: of("world_hz"), colour: kBlue, digits: 1 },
+      { label: "plans", value: of("plan_hz"), colour: kOrange, digits: 1 },
+    ],
+  },
+  {
+    id: "latency", title: "Latency", unit: "ms", better: "lower", atLeast: 10, series: [
+      { label: "last", value: of("latency_ms"), colour: kBlue },
+      { label: "p50", value: of("latency_p50_ms"), colour: kGreen, dash: [6, 4] },
+      { label: "p99", value: of("latency_p99_ms"), colour: kOrange, dash: [6, 4] },
+    ],
+  },
+  {
+    id: "blocks", title: "Blocks", unit: "late and missed per second; in the queue", atLeast: 5, series: [
+      { label: "late", value: of("late_blocks"), counts: true, colour: kYellow, digits: 0 },
+      { label: "missed", value: of("missed_blocks"), counts: true, colour: kOrange, digits: 0 },
+      { label: "queue", value: of("queue_blocks"), colour: kGrey, digits: 0 },
+    ],
+  },
+  {
+    id: "quality", title: "Quality", unit: "", better: "higher", atLeast: 1, atMost: 1, series: [
+      { label: "correlation", value: of("correlation"), colour: kBlue, digits: 2 },
+      { label: "coverage", value: of("coverage"), colour: kGreen, digits: 2 },
+      { label: "skill", value: of("skill_8"), colour: kViolet, digits: 2 },
+      { label: "felt", value: of("felt_skill"), colour: kGrey, digits: 2 },
+    ],
+  },
+  {
+    id: "error", title: "RMSE", unit: "of the largest target", better: "lower", atLeast: 0.1, series: [
+      { label: "RMSE", value: of("rmse"), colour: kOrange, digits: 3 },
+    ],
+  },
+];

@@ -1,0 +1,45 @@
+/// What the page says of the run in words.
+
+import type { State } from "../messages";
+import { numberOf, type Frame } from "../wire";
+
+export interface Output {
+  state: "on" | "off" | "muted" | "unknown";
+  why: string;
+}
+
+const kAudible = 0.005; // intensity of the strongest focal point, 0 to 1
+
+/// What a frame says of the output.
+export function outputOf(frame: Frame): Output {
+  const { run } = frame;
+  if (run.muted) return { state: "muted", why: "by you or another page" };
+  if (run.calibrating) return { state: "muted", why: "for the calibration" };
+  const intensity = numberOf(frame, "intensity");
+  // a device that cannot be listened to plays what is planned
+  const sounds = Number.isFinite(intensity) ? intensity > kAudible : run.handInSight && !run.paused && !run.fading;
+  if (sounds) return { state: "on", why: "" };
+  if (run.paused) return { state: "off", why: "paused" };
+  if (!run.handInSight) return { state: "off", why: "no hand in sight" };
+  if (run.fading) return { state: "off", why: "no new plan comes" };
+  return { state: "off", why: "no pressure on the hand" };
+}
+
+const kSources: Record<string, string> = {
+  scripted: "scripted hand", recording: "recorded hand", leap: "tracked hand (Leap)", openxr: "tracked hand (OpenXR)",
+};
+
+/// Where the hands come from, for the page with this number.
+export function sourceOf({ source, hand_page: holder }: State["transport"], page: number): string {
+  if (source !== "page") return kSources[source] ?? source;
+  return holder === page ? "hand from this page" : "hand from another page";
+}
+
+/// What helps, by where the hands come from.
+export function advice(state: State | null): string {
+  if (state === null) return "";
+  const { tracker, transport } = state;
+  if (tracker !== null) return tracker.connected ? "Hold a hand over the array." : tracker.sentence;
+  if (transport.base === "page") return "Switch on “Use my mouse as the hand”.";
+  return "It comes back by itself; or use your mouse as the hand.";
+}

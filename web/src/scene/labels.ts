@@ -1,0 +1,37 @@
+/// Words in the picture: pieces of text that stand at places of the scene.
+
+import { Vector3, type Camera } from "three";
+import { find, make, setText } from "../dom";
+
+export interface Label {
+  text: string;
+  at: Vector3; // in D [m]
+  side: "left" | "right" | "middle"; // of the place, where the text stands
+  strong?: boolean;
+}
+
+export class Labels {
+  private readonly root = find("labels");
+  private readonly spans: HTMLElement[] = [];
+
+  /// @param canvas whose size the labels share.
+  show(labels: Label[], camera: Camera, canvas: HTMLCanvasElement): void {
+    while (this.spans.length < labels.length) {
+      const span = make("span");
+      this.spans.push(span);
+      this.root.append(span);
+    }
+    const { clientWidth: width, clientHeight: height } = canvas;
+    const place = new Vector3();
+    this.spans.forEach((span, i) => {
+      const label = labels[i];
+      if (label !== undefined) place.copy(label.at).project(camera);
+      span.hidden = label === undefined || Math.abs(place.x) > 1 || Math.abs(place.y) > 1 || Math.abs(place.z) > 1;
+      if (span.hidden || label === undefined) return;
+      setText(span, label.text);
+      span.className = `${label.side}${label.strong ? " strong" : ""}`;
+      span.style.setProperty("left", `${Math.round(0.5 * (place.x + 1) * width)}px`);
+      span.style.setProperty("top", `${Math.round(0.5 * (1 - place.y) * height)}px`);
+    });
+  }
+}

@@ -1,0 +1,45 @@
+/// What a ray of the eye meets: the skin of a hand as the program computes with it.
+
+import { Matrix4, Vector3 } from "three";
+import { cellAt } from "../panels/plane_layout";
+import type { Patch } from "../wire";
+
+export interface Hit {
+  patch: Patch;
+  cell: number;
+  point: Vector3; // in D [m]
+}
+
+const kRounds = 6; // of walking from the plane to the skin over it
+
+/// Where a ray meets a patch: first its plane, and from there the skin at its height over the plane.
+function hitPatch(patch: Patch, origin: Vector3, direction: Vector3): Hit | null {
+  const X_DP = new Matrix4().fromArray([...patch.pose, 0, 0, 0, 1]).transpose();
+  const X_PD = X_DP.clone().invert();
+  const from = origin.clone().applyMatrix4(X_PD), along = direction.clone().transformDirection(X_PD);
+  if (Math.abs(along.z) < 1e-6) return null;
+  let height = 0, cell = -1;
+  const at = new Vector3();
+  for (let round = 0; round < kRounds; ++round) {
+    const t = (height - from.z) / along.z;
+    if (!(t > 0)) return null;
+    at.copy(from).addScaledVector(along, t);
+    const next = cellAt(patch, at.x, at.y);
+    if (next < 0) return null;
+    if (next === cell) break;
+    cell = next;
+    height = patch.height[cell]! * patch.heightScale;
+  }
+  return { patch, cell, point: at.applyMatrix4(X_DP) };
+}
+
+/// The nearest skin along a ray; null where it meets none.
+export function pick(field: Patch[], origin: Vector3, direction: Vector3): Hit | null {
+  let nearest: Hit | null = null;
+  for (const patch of field) {
+    const hit = hitPatch(patch, origin, direction);
+    if (hit === null) continue;
+    if (nearest === null || hit.point.distanceTo(origin) < nearest.point.distanceTo(origin)) nearest = hit;
+  }
+  return nearest;
+}

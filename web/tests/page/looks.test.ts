@@ -1,0 +1,153 @@
+import type { Browser, Page } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import "../../src/inspection";
+import { clean, openBrowser, Program, until, Watch, writeRecording } from "./program";
+
+const program = new Program(["--grid", "48", "--scene", "four-plumes", "--hand", writeRecording(6), "--seconds", "3600"]);
+let browser: Browser;
+const watches: Watch[] = [];
+
+beforeAll(async () => {
+  browser = await openBrowser();
+  await program.start();
+});
+afterAll(async () => {
+  await browser?.close();
+  await program.stop();
+  clean();
+});
+
+const kWidths = [390, 1024, 1440, 1920] as const;
+const kHeights: Record<number, number> = { 390: 844, 1024: 768, 1440: 900, 1920: 1080 };
+
+/// A page on the program, without the picture: it is not what is looked at here.
+async function open(width: number, theme: "light" | "dark", more = ""): Promise<Page> {
+  const page = await browser.newPage({ viewport: { width, height: kHeights[width] ?? 900 }, colorScheme: theme });
+  watches.push(new Watch(page));
+  await page.goto(`${program.address}/#folded=&picture=off${more}`);
+  await until(page, () => (window.prostm?.frames ?? 0) > 5 && (window.prostm.state?.controls.length ?? 0) > 0, 0, "frames and controls");
+  return page;
+}
+
+/// Whatever is wider than the room that it has, and is cut off there.
+const clipped = (page: Page) => page.evaluate(() => {
+  const texts = "button, label, .label, summary, h1, h2, h3, dt, dd, figcaption, .unit, option, select, th, td, li, p, output, kbd";
+  const bad: string[] = [];
+  for (const element of document.querySelectorAll<HTMLElement>(texts)) {
+    if (!element.checkVisibility() || element.closest(".unseen, canvas")) continue;
+    const box = element.getBoundingClientRect();
+    if (box.width === 0 || element.matches(".unseen")) continue;
+    const what = `${element.tagName} ${element.id} “${(element.textContent ?? "").trim().slice(0, 30)}”`;
+    if (box.left < -0.5 || box.right > window.innerWidth + 0.5) bad.push(`${what} beside the window`);
+    if (element.scrollWidth > element.clientWidth + 1 && element.clientWidth > 0 && getComputedStyle(element).display !== "inline") bad.push(`${what} wider than its box`);
+    // cut off by something around it
+    for (let outer = element.parentElement; outer !== null; outer = outer.parentElement) {
+      const style = getComputedStyle(outer);
+      if (style.overflowX === "visible") continue;
+      const room = outer.getBoundingClientRect();
+      if (box.right > room.right + 1 || box.left < room.left - 1) bad.push(`${what} cut off by ${outer.tagName} ${outer.id}.${outer.className}`);
+    }
+  }
+  return bad;
+});
+
+/// Texts that are too faint on what is behind them, WCAG 2.2: 4.5, and 3 for large type.
+const faint = (page: Page) => page.evaluate(() => {
+  const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true })!;
+  const rgba = (colour: string): number[] => {
+    context.clearRect(0, 0, 1, 1);
+    context.fillStyle = colour;
+    context.fillRect(0, 0, 1, 1);
+    const [r, g, b, a] = [...context.getImageData(0, 0, 1, 1).data];
+    return [r!, g!, b!, a! / 255];
+  };
+  const over = (front: number[], back: number[]) => [0, 1, 2].map((i) => front[i]! * front[3]! + back[i]! * (1 - front[3]!));
+  const luminance = (c: number[]) => {
+    const [r, g, b] = c.slice(0, 3).map((v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r! + 0.7152 * g! + 0.0722 * b!;
+  };
+  const ground = (element: HTMLElement): number[] => {
+    const layers: number[][] = [];
+    for (let e: HTMLElement | null = element; e !== null; e = e.parentElement) layers.push(rgba(getComputedStyle(e).backgroundColor));
+    return layers.reverse().reduce((below, layer) => [...over(layer, below), 1], [255, 255, 255, 1]);
+  };
+  const bad: string[] = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node !== null; node = walker.nextNode()) {
+    const element = node.parentElement!;
+    if ((node.textContent ?? "").trim() === "" || !element.checkVisibility({ opacityProperty: true } as never) || element.closest("script, noscript, .unseen")) continue;
+    // what can do nothing may be faint, and what stands on the picture has a ground of its own
+    if (element.closest(":disabled, .disabled, #labels") || element.closest("label")?.control?.matches(":disabled")) continue;
+    const style = getComputedStyle(element), back = ground(element);
+    const [a, b] = [luminance(over(rgba(style.color), back)), luminance(back)].sort((p, q) => q - p);
+    const size = parseFloat(style.fontSize), large = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700);
+    const contrast = (a! + 0.05) / (b! + 0.05);
+    if (contrast < (large ? 3 : 4.5)) bad.push(`${(node.textContent ?? "").trim().slice(0, 40)}: ${contrast.toFixed(2)}`);
+  }
+  return bad;
+});
+
+describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
+  it.each(kWidths)("fits into a window %i pixels wide", async (width) => {
+    const page = await open(width, theme);
+    expect(await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth)).toBeLessThanOrEqual(0);
+    expect(await page.evaluate(() => document.getElementById("page")!.scrollWidth - document.getElementById("page")!.clientWidth)).toBeLessThanOrEqual(0);
+    expect(await page.evaluate(() => document.documentElement.scrollHeight - window.innerHeight)).toBeLessThanOrEqual(0);
+    expect(await clipped(page)).toEqual([]);
+    expect(await faint(page)).toEqual([]);
+    await page.close();
+  });
+});
+
+describe("large type", () => {
+  it.each(kWidths)("cuts nothing off in a window %i pixels wide", async (width) => {
+    const page = await open(width, "light", "&large=1");
+    expect(await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize))).toBeGreaterThanOrEqual(18);
+    expect(await page.evaluate(() => document.getElementById("page")!.scrollWidth - document.getElementById("page")!.clientWidth)).toBeLessThanOrEqual(0);
+    expect(await clipped(page)).toEqual([]);
+    await page.close();
+  });
+  it("of the browser, twice as large, cuts nothing off", async () => {
+    const page = await open(1440, "light");
+    // as a browser does whose own type is 32 pixels high
+    await page.addStyleTag({ content: ":root { font-size: 175% !important; }" }).catch(() => undefined);
+    await page.evaluate(() => document.documentElement.style.setProperty("font-size", "28px", "important"));
+    await page.waitForTimeout(300);
+    expect(await page.evaluate(() => document.getElementById("page")!.scrollWidth - document.getElementById("page")!.clientWidth)).toBeLessThanOrEqual(0);
+    expect(await clipped(page)).toEqual([]);
+    await page.close();
+  });
+});
+
+describe("what is read aloud", () => {
+  let page: Page;
+  beforeAll(async () => {
+    page = await open(1440, "light");
+  });
+  it("names every control", async () => {
+    const unnamed = await page.evaluate(() => [...document.querySelectorAll<HTMLElement>("button, select, input, summary, canvas[role], fieldset, [role=radiogroup], [role=group], dialog")]
+      .filter((e) => {
+        const by = (e.getAttribute("aria-labelledby") ?? "").split(" ").map((id) => document.getElementById(id)?.textContent ?? "").join("");
+        const labels = [...((e as HTMLInputElement).labels ?? [])].map((l) => l.textContent ?? "").join("");
+        const own = e.matches("button, summary") ? e.textContent : "";
+        return `${e.getAttribute("aria-label") ?? ""}${by}${labels}${own ?? ""}`.trim() === "";
+      }).map((e) => e.outerHTML.slice(0, 90)));
+    expect(unnamed).toEqual([]);
+  });
+  it("has its headings in order", async () => {
+    const levels = await page.evaluate(() => [...document.querySelectorAll("h1, h2, h3, h4, h5, h6")].map((h) => Number(h.tagName[1])));
+    expect(levels[0]).toBe(1);
+    expect(levels.filter((l) => l === 1)).toHaveLength(1);
+    levels.forEach((level, i) => expect(level - (levels[i - 1] ?? 0), `heading ${i}`).toBeLessThanOrEqual(1));
+  });
+  it("keeps a strip's name apart from its unit", async () => {
+    const heads = await page.locator(".strip-head").allTextContents();
+    expect(heads[0]).toBe("Stages ms · ↓ lower is better");
+    expect(await page.locator(".strip h3").allTextContents()).toEqual(["Stages", "Rates", "Latency", "Blocks", "Quality", "RMSE"]);
+  });
+  afterAll(() => page.close());
+});
+
+describe("all pages", () => {
+  it("complained of nothing", () => expect(watches.flatMap((w) => w.complaints)).toEqual([]));
+});

@@ -1,0 +1,200 @@
+import type { Browser, Page } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import "../../src/inspection";
+import { clean, openBrowser, Program, until, Watch } from "./program";
+
+// no hand but the page's: it is there when a test wants it
+const program = new Program(["--grid", "48", "--scene", "four-plumes", "--hand", "page", "--seconds", "3600"]);
+let browser: Browser, page: Page, watch: Watch;
+
+beforeAll(async () => {
+  browser = await openBrowser();
+  await program.start();
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, permissions: ["clipboard-read", "clipboard-write"] });
+  page = await context.newPage();
+  watch = new Watch(page);
+  await page.goto(`${program.address}/#folded=&picture=on`);
+  await until(page, () => (window.prostm?.frames ?? 0) > 3 && window.prostm.pictures > 1, 0, "frames and pictures");
+});
+afterAll(async () => {
+  await browser?.close();
+  await program.stop();
+  clean();
+});
+
+const text = (id: string) => page.locator(`#${id}`).textContent();
+const says = (id: string, words: string) =>
+  until(page, ({ id, words }) => (document.getElementById(id)?.textContent ?? "").includes(words), { id, words }, `#${id} says ${words}`);
+
+describe("a page without a hand", () => {
+  it("says so over the picture and the planes, and has no latency", async () => {
+    await page.locator("#no-hand").waitFor();
+    expect(await text("no-hand-advice")).toContain("Use my mouse as the hand");
+    expect(await page.locator("#no-hand-planes").isVisible()).toBe(true);
+    expect(await page.locator('#tiles [data-number="latency_p50_ms"]').textContent()).toBe("–");
+    expect(await text("output-word")).toBe("Output off");
+    expect(await text("output-why")).toBe("no hand in sight");
+  });
+});
+
+describe("a page with a hand", () => {
+  beforeAll(async () => {
+    await page.locator("#page-hand").check();
+    await until(page, () => (window.prostm.frame?.plan.length ?? 0) > 0 && window.prostm.frame!.numbers[24]! > 0.1, 0, "pressure on the page's hand");
+  });
+
+  it("names what is drawn", async () => {
+    const names = async () => (await page.locator("#things li:visible").allTextContents()).join("; ");
+    await expect.poll(names).toMatch(/array.*box of the smoke, 360 mm wide.*hand, 1\d\d mm long.*rendered pressure.*path.*focal point.*height.*under the palm/);
+    await page.locator('label[for="skin-difference"]').click();
+    await expect.poll(names).toContain("rendered less target");
+    await page.locator('label[for="skin-rendered"]').click();
+    const labels = await page.locator("#labels span:visible").allTextContents();
+    expect(labels).toContain("100");
+    expect(labels).toContain("palm 190 mm");
+  });
+
+  it("mutes the array with its button and with M", async () => {
+    await says("output-word", "Output on");
+    await page.locator("#mute").click();
+    await says("output-word", "Muted");
+    await expect.poll(async () => (await program.numbers() as { numbers: { intensity: number } }).numbers.intensity).toBe(0);
+    expect(await page.locator("#mute").getAttribute("aria-pressed")).toBe("true");
+    await page.locator("#view").focus();
+    await page.keyboard.press("m");
+    await says("output-word", "Output on");
+    await expect.poll(async () => (await program.numbers() as { numbers: { intensity: number } }).numbers.intensity).toBeGreaterThan(0);
+  });
+
+  it("says what pressure is under the pointer, in the planes and on the skin", async () => {
+    const box = (await page.locator('canvas[data-kind="rendered"]').boundingBox())!;
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await says("hover", "Pa");
+    expect(await text("hover")).toMatch(/^target \d+(\.\d+)? Pa\nrendered \d+(\.\d+)? Pa\ndifference [−+]\d+(\.\d+)? Pa\nx −?-?\d+, y -?\d+ mm in the plane$/);
+    // from below, the palm is in the middle
+    await page.locator('[data-view="below"]').click();
+    await page.waitForTimeout(1500);
+    const view = (await page.locator("#view").boundingBox())!;
+    const seen = async () => {
+      for (const [dx, dy] of [[0, 0], [0, 30], [0, -30], [30, 0], [-30, 0], [0, 60]] as const) {
+        await page.mouse.move(view.x + view.width / 2 + dx, view.y + view.height / 2 + dy);
+        if (await page.locator("#hover").isVisible()) return text("hover");
+      }
+      return "";
+    };
+    await expect.poll(seen).toMatch(/^target .* Pa\nrendered .* Pa\ndifference .* Pa\nx -?\d+, y -?\d+ mm, 1\d\d mm over the array$/);
+    await page.mouse.move(view.x + 5, view.y + view.height / 2);
+    await expect.poll(() => page.locator("#hover").isHidden()).toBe(true);
+    await page.locator('[data-view="home"]').click();
+  });
+
+  it("locks the scale of colours", async () => {
+    const end = await text("lock-scale");
+    expect(end).toMatch(/^Lock at [\d.]+ Pa$/);
+    await page.locator("#lock-scale").click();
+    const locked = (await text("lock-scale"))!;
+    expect(locked).toMatch(/^Locked at [\d.]+ Pa$/);
+    await expect.poll(() => page.evaluate(() => location.hash)).toContain("scale=");
+    await page.locator("#lock-scale").click();
+    expect(await text("lock-scale")).toMatch(/^Lock at/);
+  });
+
+  it("shows all values at a time under the pointer, freezes, and zooms in time", async () => {
+    await page.waitForTimeout(2000);
+    const plot = (await page.locator('[data-strip="latency"] .u-over').boundingBox())!;
+    await page.mouse.move(plot.x + plot.width * 0.98, plot.y + plot.height / 2);
+    await says("strips-at", "s ago");
+    expect(await text("strips-at")).toBe("values 0.6 s ago");
+    await page.keyboard.press("f");
+    expect(await page.locator("#freeze").getAttribute("aria-pressed")).toBe("true");
+    await page.waitForTimeout(400);
+    const readings = () => page.locator("#strips .legend b").allTextContents();
+    const before = await readings();
+    expect(before.filter((v) => v !== "–").length).toBeGreaterThan(8);
+    await page.waitForTimeout(1500);
+    expect(await readings()).toEqual(before);
+    await page.locator("#freeze").click();
+    await page.mouse.move(10, 10);
+    expect(await text("strips-at")).toBe("");
+    for (const span of [120, 10, 30]) {
+      await page.locator(`label[for="span-${span}"]`).click();
+      expect(await page.locator(`#span-${span}`).isChecked()).toBe(true);
+    }
+  });
+
+  it("explains itself on ?", async () => {
+    await page.keyboard.press("?");
+    expect(await page.locator("#help").isVisible()).toBe(true);
+    await page.keyboard.press("Escape");
+    expect(await page.locator("#help").isVisible()).toBe(false);
+    await page.locator("#show-help").click();
+    await page.locator("#close-help").click();
+    expect(await page.locator("#help").isVisible()).toBe(false);
+  });
+});
+
+describe("a page's state", () => {
+  const set = async (id: string, value: number) => {
+    const box = page.locator(`[data-control="${id}"] input[type=number]`);
+    await box.fill(String(value));
+    await box.press("Enter");
+    await until(page, ({ id, value }) => window.prostm.state?.controls.find((c) => c.id === id)?.value === value, { id, value }, `${id} is ${value}`);
+  };
+  const clipboard = () => page.evaluate(() => navigator.clipboard.readText());
+
+  it("stands in its address, and is asked about before a link changes a run", async () => {
+    await set("paths", 2);
+    await page.locator('[data-view="side"]').click();
+    await expect.poll(() => page.evaluate(() => location.hash)).toMatch(/set\.paths=2.*eye=90,3,780/);
+    await page.locator("#copy-link").click();
+    await says("notice", "copied");
+    const link = await clipboard();
+    await set("paths", 4);
+    await expect.poll(() => page.evaluate(() => location.hash)).not.toContain("set.paths");
+
+    const other = await browser.newPage();
+    await other.goto(link);
+    await other.locator("#asked").waitFor();
+    expect(await other.locator("#asked span").textContent()).toBe("This link asks for: Paths 2.");
+    expect(await page.evaluate(() => window.prostm.state?.controls.find((c) => c.id === "paths")?.value)).toBe(4);
+    await other.locator("#asked-apply").click();
+    await until(page, () => window.prostm.state?.controls.find((c) => c.id === "paths")?.value === 2, 0, "two paths");
+    await other.close();
+  });
+
+  it("can be taken as a command line and as a settings file, and taken back", async () => {
+    await set("speed", 5);
+    await page.locator("#copy-command").click();
+    await says("notice", "Copied");
+    expect(await clipboard()).toMatch(/^prostm run --view --scene four-plumes --method pro-stm --preset best --paths 2 --switch lap --hand page --settings prostm.toml$/);
+    await page.locator("#copy-settings").click();
+    await says("notice", "settings file is copied");
+    expect(await clipboard()).toContain("[plan]\npaths = 2\nspeed = 5\n");
+    await page.locator("#reset").click();
+    await until(page, () => window.prostm.state!.controls.every((c) => c.value === c.default), 0, "everything as the run began");
+    await expect.poll(() => page.evaluate(() => location.hash)).not.toContain("set.");
+  });
+
+  it("keeps which groups are folded", async () => {
+    await page.locator('[data-fold="Plan"] > summary').click();
+    await expect.poll(() => page.evaluate(() => location.hash)).toContain("folded=Plan");
+    await page.reload();
+    await until(page, () => (window.prostm?.frames ?? 0) > 1 && document.querySelector('[data-fold="Plan"]') !== null, 0, "the page again");
+    expect(await page.locator('[data-fold="Plan"]').getAttribute("open")).toBeNull();
+    expect(await page.locator('[data-fold="Smoke"]').getAttribute("open")).not.toBeNull();
+  });
+});
+
+describe("a page that may not draw the picture", () => {
+  it("shows the planes alone, and says so", async () => {
+    await page.locator("#picture-mode").selectOption("off");
+    await page.locator("#no-picture").waitFor();
+    const drawn = await page.evaluate(() => window.prostm.pictures), frames = await page.evaluate(() => window.prostm.frames);
+    await until(page, (n) => window.prostm.frames > n + 5, frames, "frames");
+    expect(await page.evaluate(() => window.prostm.pictures)).toBe(drawn);
+    await page.locator("#draw-anyway").click();
+    await until(page, (n) => window.prostm.pictures > n, drawn, "pictures again");
+    expect(await page.locator("#no-picture").isHidden()).toBe(true);
+  });
+  it("complained of nothing", () => expect(watch.complaints).toEqual([]));
+});

@@ -1,0 +1,56 @@
+import { describe, expect, it } from "vitest";
+import { History, PerSecond, robustTop } from "../../src/panels/history";
+
+describe("the top of an axis", () => {
+  it("is above the largest value where none sticks out", () => {
+    expect(robustTop([10, 11, 12, 13], 5)).toBeCloseTo(14.04);
+    expect(robustTop([1, 2], 10)).toBe(10);
+    expect(robustTop([], 3)).toBe(3);
+    expect(robustTop([NaN, 20], 3)).toBeCloseTo(21.6);
+  });
+  it("lets single values of a thousand stick out, so that the others are seen", () => {
+    const values = Array.from({ length: 900 }, (_, i) => 10 + (i % 5));
+    values[100] = values[500] = 1000;
+    expect(robustTop(values, 5)).toBeCloseTo(1.08 * 14);
+  });
+});
+
+describe("counts per second", () => {
+  it("are how fast a count grows", () => {
+    const rate = new PerSecond();
+    let last = 0;
+    for (let i = 0; i <= 90; ++i) last = rate.add(i / 30, 5 * Math.floor(i / 30));
+    expect(last).toBeCloseTo(5, 0);
+    for (let i = 91; i <= 150; ++i) last = rate.add(i / 30, 15);
+    expect(last).toBe(0);
+  });
+  it("begin anew with the count", () => {
+    const rate = new PerSecond();
+    rate.add(0, 1000);
+    rate.add(1, 1010);
+    expect(rate.add(2, 0)).toBe(0);
+    expect(rate.add(3, 2)).toBe(2);
+    expect(rate.add(4, NaN)).toBeNaN();
+  });
+});
+
+describe("a history", () => {
+  const history = new History(1);
+  for (let i = 0; i <= 4000; ++i) history.add(i / 20, [i]);
+  it("keeps two minutes", () => {
+    expect(history.times[0]).toBeGreaterThan(200 - 121 - 64 / 20 - 0.1);
+    expect(history.times[0]).toBeLessThanOrEqual(200 - 121);
+    expect(history.values[0]!.length).toBe(history.times.length);
+  });
+  it("finds the sample nearest to a time", () => {
+    for (const [time, value] of [[150, 3000], [150.02, 3000], [150.03, 3001], [500, 4000]] as const) {
+      expect(history.values[0]![history.nearest(time)]).toBe(value);
+    }
+    expect(new History(1).nearest(3)).toBe(-1);
+  });
+  it("can be copied, and goes on without its copy", () => {
+    const copy = history.copy();
+    history.add(201, [7]);
+    expect(copy.times[copy.times.length - 1]).toBe(200);
+  });
+});

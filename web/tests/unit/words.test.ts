@@ -1,0 +1,105 @@
+import { describe, expect, it } from "vitest";
+import { caption } from "../../src/controls/caption";
+import { commandLine } from "../../src/controls/command_line";
+import { RateWatch } from "../../src/panels/rates";
+import { advice, outputOf, sourceOf } from "../../src/panels/words";
+import { handLength } from "../../src/scene/hand_bones";
+import { frameWith, paths, scene, speed, stateWith } from "../support/frames";
+import { skeleton } from "../support/skeleton";
+import { Matrix4 } from "three";
+
+describe("the output's sign", () => {
+  it("says whether the array sounds, and why not", () => {
+    const said = (run: Parameters<typeof frameWith>[0], intensity: number) => Object.values(outputOf(frameWith(run, { intensity }))).join(": ");
+    expect(said({ handInSight: true }, 0.4)).toBe("on: ");
+    expect(said({ handInSight: true, muted: true }, 0.4)).toMatch(/^muted: by/);
+    expect(said({ handInSight: true, calibrating: true }, 0)).toMatch(/^muted: for the calibration/);
+    expect(said({ handInSight: false }, 0)).toBe("off: no hand in sight");
+    expect(said({ handInSight: true, paused: true }, 0)).toBe("off: paused");
+    expect(said({ handInSight: true, fading: true }, 0)).toBe("off: no new plan comes");
+    expect(said({ handInSight: true }, 0)).toBe("off: no pressure on the hand");
+    // a device that cannot be listened to
+    expect(said({ handInSight: true }, NaN)).toBe("on: ");
+    expect(said({ handInSight: false }, NaN)).toBe("off: no hand in sight");
+  });
+});
+
+describe("the source of the hands", () => {
+  const { transport } = stateWith([]);
+  it("tells this page's hand from another's", () => {
+    expect(sourceOf(transport, 1)).toBe("scripted hand");
+    expect(sourceOf({ ...transport, source: "page", hand_page: 1 }, 1)).toBe("hand from this page");
+    expect(sourceOf({ ...transport, source: "page", hand_page: 2 }, 1)).toBe("hand from another page");
+  });
+  it("has its own advice when no hand is in sight", () => {
+    const tracker = { connected: false, sentence: "no tracker at 127.0.0.1", frames: 0, dropped: 0, repeated: 0, unsure: 0, frozen: 0 };
+    expect(advice(stateWith([], { tracker }))).toBe("no tracker at 127.0.0.1");
+    expect(advice(stateWith([], { tracker: { ...tracker, connected: true } }))).toContain("over the array");
+    expect(advice(stateWith([], { transport: { ...transport, base: "page" } }))).toContain("mouse");
+  });
+});
+
+describe("rates that are not held", () => {
+  const rates = { world_hz: 50, plan_hz: 25 };
+  const after = (seconds: number, numbers: Record<string, number>, drawing = false, paused = false) => {
+    const watch = new RateWatch();
+    let sentence = "";
+    for (let t = 0; t < seconds; t += 0.1) {
+      watch.add(frameWith({ paused }, numbers), t);
+      sentence = watch.sentence(rates, t, drawing);
+    }
+    return sentence;
+  };
+  const quick = { track_ms: 0.1, hand_ms: 1, world_ms: 7, contact_ms: 2, plan_ms: 3, lift_ms: 0.5 };
+  it("are told with the stage that takes too long", () => {
+    expect(after(10, { ...quick, world_hz: 43.5, plan_hz: 21.8, world_ms: 21 })).toBe(
+      "Rates not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz, because a step takes 23 of the 20 ms that it has, the smoke 21 ms of them.");
+    expect(after(10, { ...quick, world_hz: 50, plan_hz: 20, plan_ms: 45 })).toContain("a plan takes 46 of the 40 ms that it has, the planner 45 ms of them");
+    expect(after(10, { ...quick, world_hz: 40, plan_hz: 20 })).toContain("because other work has the processor");
+    expect(after(10, { ...quick, world_hz: 40, plan_hz: 20 }, true)).toContain("because this page's picture and other work have");
+  });
+  it("are not spoken of at once, while the run is paused, and where they are held", () => {
+    const slow = { ...quick, world_hz: 30, plan_hz: 15 };
+    expect(after(3, slow)).toBe("");
+    expect(after(10, slow, false, true)).toBe("");
+    expect(after(10, { ...quick, world_hz: 49.5, plan_hz: 24.8 })).toBe("");
+  });
+});
+
+describe("the command line", () => {
+  it("has an option for what has one", () => {
+    expect(commandLine(stateWith([scene, speed, { ...paths, value: 2 }]))).toEqual({
+      command: "prostm run --view --scene one-plume --paths 2 --hand scripted", note: "",
+    });
+    expect(commandLine(stateWith([scene], { settings: "[pipeline]\nscene = \"one-plume\"\n\n[plan]\nbudget = 0.002\n" })).command).not.toContain("--settings");
+  });
+  it("says what else is needed", () => {
+    const made = commandLine(stateWith([scene, { ...paths, enabled: false }], {
+      settings: "[plan]\nspeed = 4\n", transport: { ...stateWith([]).transport, base: "recording" },
+    }));
+    expect(made.command).toBe("prostm run --view --scene one-plume --settings prostm.toml");
+    expect(made.note).toMatch(/recording's file.*prostm\.toml/);
+  });
+});
+
+describe("a picture's caption", () => {
+  it("has the date, the scale and the settings that count", () => {
+    const modulation = { ...speed, id: "am_frequency", label: "Modulation", unit: "Hz", value: 200, enabled: false };
+    const { title, parts } = caption(frameWith({ time: 12.345 }, { plan_hz: 25 }), stateWith([scene, speed, modulation]), 0.6, new Date("2026-01-02T03:04:05Z"));
+    expect(title).toBe("prostm · 12.35 s of the run · 2026-01-02 03:04:05 UTC");
+    expect(parts).toContain("Plans 25.0 Hz");
+    expect(parts.join("\n")).toContain("colours: 0 to 0.60 Pa");
+    expect(parts).toContain("Scene One wide plume");
+    expect(parts).toContain("Speed 7 m/s");
+    expect(parts.join()).not.toContain("Modulation");
+  });
+});
+
+describe("a hand's length", () => {
+  it("is the same however it is bent", () => {
+    const length = (closure: number) => handLength(skeleton(new Matrix4(), closure, "right"));
+    expect(length(0)).toBeGreaterThan(160);
+    expect(length(0)).toBeLessThan(200);
+    expect(length(1)).toBeCloseTo(length(0), 3);
+  });
+});
