@@ -46,7 +46,7 @@ void check_cells(const TargetField& target, const SharedPlanner<P>& planner) {
       " cells must have at most the planner's max_cells = " + std::to_string(planner.max_cells));
 }
 
-/// What InvalidTarget means for a field that passed validate().
+/// Explains InvalidTarget for a field that passed validate().
 void check_status(PlanStatus status) {
   if (status != PlanStatus::InvalidTarget) return;
   throw std::invalid_argument(

@@ -1,5 +1,5 @@
 #pragma once
-/// What one call of the planner gave, with what it was given.
+/// The result of one call of the planner, with its arguments.
 
 #include <optional>
 #include <variant>
@@ -16,7 +16,7 @@ namespace prostm::python {
 /// The settings of a planner, which say the method too.
 using AnySettings = std::variant<PlanSettings, AmSettings>;
 
-/// What a plan file says of them. @param settings are listed as {"plan": …} or {"am": …}, and
+/// The settings of a plan file. @param settings are listed as {"plan": …} or {"am": …}, and
 /// outlive it.
 struct SettingsInFile {
   explicit SettingsInFile(const AnySettings& settings);
@@ -29,7 +29,7 @@ struct PlanResult {
   PlanResult(py::object planned, AnySettings s)
       : target(std::move(planned)), settings(std::move(s)) {}
 
-  /// What fields are rendered and scored with.
+  /// The width and the gain that fields are rendered and scored with.
   double sigma() const;
   GainLaw gain_law() const;
 

@@ -105,7 +105,7 @@ void print_am(std::FILE* out, const Column& am) {
              am.correlation.summary().mean, am.coverage.summary().mean);
 }
 
-/// What a stage is compared with.
+/// The planner that a stage is compared with.
 struct Reference {
   std::string name;
   double p50 = 0.0, mean = 0.0;  // [s]
@@ -180,7 +180,7 @@ class FieldBench {
   }
 
  private:
-  /// Of what is played.
+  /// Scores the field as it is played.
   Metrics score(const TargetField& target, const Plan& plan, double sigma) const {
     const SegmentPressures played = played_pressures(
         plan, target, emit_settings(settings_, max_pressure(target)), settings_.emission_rate());

@@ -50,7 +50,8 @@ int capture_command(const CaptureOptionsGiven& given) {
   recorder.set_attribute("scene", settings.scene);
   recorder.set_attribute("hand", given.hand);
 
-  // a hand is away for part of its time; one that never meets the smoke must not capture for ever
+  // a hand is away for part of its time; one that never meets the smoke must not capture without
+  // end
   RunOptions options;
   options.mode = RunMode::AsFastAsPossible;
   options.seconds = 120.0 + 10.0 * given.frames * settings.steps_per_plan() / settings.world_rate;

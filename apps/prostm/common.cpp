@@ -34,7 +34,7 @@ void on_signal(int signal) {
   if (interrupt.exchange(signal) != 0) _exit(128 + signal);
 }
 
-/// What the settings file names is among the files of the command.
+/// Checks the files that the settings name, with those of the command.
 void check_files_of(const PipelineSettings& settings, const CommonOptions& options) {
   Files files = options.files;
   const std::string where = " (in " + options.settings_file + ")";

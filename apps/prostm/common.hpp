@@ -1,5 +1,5 @@
 #pragma once
-/// What the commands share: settings, hands, progress, signals, failures and JSON.
+/// Code that the commands share: settings, hands, progress, signals, failures and JSON.
 
 #include <exception>
 #include <memory>
@@ -46,7 +46,7 @@ class Interrupt {
   int status() const;
 };
 
-/// What went wrong, in words.
+/// Says what went wrong.
 std::string sentence_of(const std::exception_ptr& failure);
 /// Prints that to standard error. @return the exit status it asks for.
 int tell(const std::exception_ptr& failure);

@@ -170,7 +170,7 @@ bool solve(const TransducerArray& array, const Medium& air, const LoopSamples& l
   return loop_drives(array, air, loop, settings, go_on, drives);
 }
 
-/// What a report points to.
+/// The results that a report points to.
 struct Judgement {
   FeltField felt;
   Metrics envelope, mean, of_felt;

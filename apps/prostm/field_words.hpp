@@ -1,5 +1,5 @@
 #pragma once
-/// What `prostm plan` says of a field that it has read, and of the plan for it.
+/// The sentences of `prostm plan` about a field that it has read, and about its plan.
 
 #include <string>
 #include <vector>

@@ -21,7 +21,7 @@ namespace {
 
 using namespace prostm::app;
 
-/// What the command line asks for: done once it has been parsed and its files have been checked.
+/// The work that the command line asks for: it begins once all is parsed and files are checked.
 struct Work {
   const Files* files = nullptr;  ///< null: none
   std::function<int()> run;

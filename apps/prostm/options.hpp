@@ -1,5 +1,5 @@
 #pragma once
-/// What the command line asks for, one struct per command.
+/// The options of the command line, one struct per command.
 
 #include <optional>
 #include <string>

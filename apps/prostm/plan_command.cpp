@@ -93,7 +93,7 @@ TargetField another_target(const TargetField& target, std::uint64_t seed) {
   return other;
 }
 
-/// What is played of a plan on its target.
+/// Returns the pressures of a plan as they are played.
 SegmentPressures played(const TargetField& target, const Plan& plan,
                         const PipelineSettings& settings) {
   if (plan.empty()) return {};
@@ -289,7 +289,7 @@ double sigma_on_skin(const TransducerArray& array, const TargetField& target, do
   return focus_width(packed, air, middle / sum, normal, normal.unitOrthogonal()).sigma();
 }
 
-/// What is felt of the plan as the array of the settings plays it.
+/// Returns the felt skill of the plan as the array of the settings plays it.
 double felt_skill_of(const TargetField& target, const Plan& plan,
                      const PipelineSettings& settings) {
   TargetFrame frame;

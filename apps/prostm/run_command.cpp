@@ -83,7 +83,7 @@ class Observer final : public RunObserver {
   void follow(std::shared_ptr<const Mute> mute) { mute_ = std::move(mute); }
   /// Says what becomes of a live tracker.
   void follow(Pipeline& pipeline) { pipeline_ = &pipeline; }
-  /// What is done when the run's seconds are over and it goes on.
+  /// Sets the function to call when the run's seconds are over and it goes on.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
   bool reported() const { return reported_; }
   /// Nothing more comes.
@@ -172,7 +172,7 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   draw_scene(figure, path);
 }
 
-/// What the command line asks of a run: the options, and what it changes in the settings.
+/// Returns the run's options, and changes the settings as the command line asks.
 RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) {
   RunOptions options;
   options.mode = given.stepped               ? RunMode::Stepped
@@ -210,8 +210,8 @@ std::unique_ptr<Recorder> make_recorder(const RunOptionsGiven& given,
   return recorder;
 }
 
-/// What is left of a run: its recording's end, its summary and its picture. Each is tried, whatever
-/// becomes of the others.
+/// The end of a run: its recording is closed, its summary and its picture are written. Each is
+/// tried, even if another fails.
 struct Ending {
   const RunOptionsGiven& given;
   const PipelineSettings& settings;

@@ -84,7 +84,7 @@ void print_tracker(std::FILE* out, const TrackerStatus& tracker) {
                         tracker.unsure, tracker.frozen, tracker.connected ? "" : "not "));
 }
 
-/// Of a table of times: heading and rows.
+/// Prints the heading of a table of times.
 void print_heading(std::FILE* out) {
   fmt::print(out, "  [ms]               mean      p50      p99      max\n");
 }
@@ -94,7 +94,7 @@ void print_times(std::FILE* out, const std::string& name, const Summary& t,
              t.p50 * 1e3, t.p99 * 1e3, t.max * 1e3, meaning);
 }
 
-/// What each part of a latency is spent on, by LatencyPart.
+/// The meaning of each part of a latency, by LatencyPart.
 constexpr std::array<const char*, kLatencyParts> kPartMeanings = {
     "the frame waits for the next step",
     "the step begins late",

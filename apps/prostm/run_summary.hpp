@@ -1,5 +1,5 @@
 #pragma once
-/// What a run tells when it is over.
+/// The summary of a run, on the terminal and as JSON.
 
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -13,7 +13,7 @@
 namespace prostm::app {
 namespace {
 
-/// What kind of hands `--hand` names.
+/// Returns the kind of hands that `--hand` names.
 std::string source_of(const std::string& hand) {
   if (names_recording(hand)) return "recording";
   return hand.starts_with("leap:") ? "leap" : hand;

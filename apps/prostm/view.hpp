@@ -15,7 +15,7 @@ namespace prostm::app {
 /// @throws InputError for options of the page that do not go together.
 void check_view(const RunOptionsGiven& given, bool realtime);
 
-/// What a page needs, from before the pipeline is made until after it has run.
+/// Everything that a page needs, from before the pipeline is made until after it has run.
 class View {
  public:
   View(const RunOptionsGiven& given, const PipelineSettings& settings);

@@ -1,4 +1,4 @@
-"""What ./run says and finds out before it starts long things: its functions, taken in by a shell, with stand-ins for apt."""
+"""The things that ./run says and finds out before it starts long things: its functions, taken in by a shell, with stand-ins for apt."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""What a run says: its verdict first, where its files are, what becomes of its tracker; and what prostm check finds."""
+"""The words of a run: its verdict first, where its files are, what becomes of its tracker; and what prostm check finds."""
 
 import base64
 import hashlib
@@ -78,7 +78,7 @@ def test_a_run_that_stayed_says_at_its_end_where_its_files_are(program, tmp_path
 
 
 def on_a_terminal(program, folder, *arguments):
-    """What a terminal shows of a command, escape sequences included."""
+    """Returns what a terminal shows of a command, escape sequences included."""
     ours, theirs = pty.openpty()
     process = subprocess.Popen([str(program), *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs)
     os.close(theirs)

@@ -26,7 +26,7 @@ TEST(NearestName, IsTheOneThatIsSpelledMostAlike) {
 TEST(Suggestion, NamesTheNearestOrAll) {
   EXPECT_EQ(suggestion("runn", {"run", "plan"}), "did you mean \"run\"?");
   EXPECT_EQ(suggestion("dance", {"run", "plan"}), "known are run, plan");
-  EXPECT_EQ(suggestion("dance", {}), "there are none");
+  EXPECT_EQ(suggestion("dance", {}), "no names are allowed here");
 }
 
 TEST(NumberText, HasTheFewestDigitsThatReadBack) {

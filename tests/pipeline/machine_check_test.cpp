@@ -1,4 +1,4 @@
-/// What a machine is told from trials that held their rates or did not.
+/// The answer about a machine, from trials that held their rates or did not.
 
 #include "prostm/pipeline/machine_check.hpp"
 

@@ -1,4 +1,4 @@
-/// What runs of every kind are judged to be, from made-up summaries.
+/// The verdicts on runs of every kind, from made-up summaries.
 
 #include "prostm/pipeline/verdict.hpp"
 

@@ -1,4 +1,4 @@
-/// What pages ask of a run waits until the run has had time for itself.
+/// A command of a page waits until the run has had time for itself.
 
 #include "prostm/viewer/detail/command_queue.hpp"
 
@@ -19,7 +19,7 @@ class Queue : public testing::Test {
     return queue_.add(LiveCommand{Kind::Set, 1, control, value}, now_);
   }
   bool ask(Kind kind) { return queue_.add(LiveCommand{kind, 1}, now_); }
-  /// What the run is asked by now.
+  /// The commands that the run has received by now.
   std::vector<LiveCommand> asked() {
     std::vector<LiveCommand> all;
     LiveCommand command;

@@ -1,4 +1,4 @@
-/// What of the page stands in its address, after the #: so that it can be shared, and reloaded.
+/// The part of the page's state that stands in its address, after the #, to be shared and reloaded.
 
 import type { Control, Value } from "./messages";
 
@@ -85,7 +85,7 @@ export interface Asked {
   value: Value;
 }
 
-/// What has to be set so that the controls are as an address asks; those that do not exist are left out.
+/// Returns the settings to change so that the controls are as an address asks; those that do not exist are left out.
 export function askedSettings(controls: Control[], settings: Record<string, string>): Asked[] {
   return controls.flatMap<Asked>((control) => {
     const asked = settings[control.id];

@@ -39,7 +39,7 @@ export function differenceColour(t: number, dark: boolean): Rgb {
   return screenColour(lightness, t < 0 ? 250 : 50, 0.18 * x ** 0.8);
 }
 
-/// Of path i: told apart by people of any colour vision (M. Okabe and K. Ito, "Color universal design", 2008).
+/// The colour of path i: told apart by people of any colour vision (M. Okabe and K. Ito, "Color universal design", 2008).
 const kPathColours: Rgb[] = [
   [0.835, 0.369, 0.0], [0.0, 0.447, 0.698], [0.0, 0.62, 0.451], [0.8, 0.475, 0.655],
   [0.902, 0.624, 0.0], [0.337, 0.706, 0.914], [0.35, 0.25, 0.2], [0.75, 0.7, 0.1],

@@ -1,4 +1,4 @@
-/// What may be read of the page from outside, as window.prostm: by tests, and in the browser's console.
+/// The state of the page that may be read from outside, as window.prostm: by tests, and in the browser's console.
 
 import type { State } from "./messages";
 import type { Frame } from "./wire";

@@ -48,7 +48,7 @@ export interface Transport {
   base: string;
   hand_page: number | null; // the page that holds the page's hand
 }
-/// What the settings ask for.
+/// The rates that the settings ask for.
 export interface Rates {
   world_hz: number;
   plan_hz: number;

@@ -1,4 +1,4 @@
-/// What this browser keeps from one visit to the next.
+/// The values that this browser keeps from one visit to the next.
 
 export function remembered(key: string): string | null {
   try {

@@ -10,9 +10,9 @@ namespace prostm {
 /// Whether a file without a byte may be read.
 enum class Empty { Refused, Allowed };
 
-/// Returns the bytes of a file. Never waits: pipes and devices are refused. @throws InputError: it does not
-/// exist, cannot be read, is not an ordinary file, is empty unless that is allowed, exceeds `limit`
-/// bytes.
+/// Returns the bytes of a file. Never waits: pipes and devices are refused. @throws InputError: it
+/// does not exist, cannot be read, is not an ordinary file, is empty unless that is allowed,
+/// exceeds `limit` bytes.
 std::string read_file(const std::string& path, std::size_t limit = std::size_t{1} << 30,
                       Empty empty = Empty::Refused);
 

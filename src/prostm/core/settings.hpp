@@ -19,10 +19,10 @@
 
 namespace prostm {
 
-/// What a field is, beside its value.
+/// A field's description, without its value.
 struct Setting {
   const char* name;
-  const char* unit = "";  ///< "m/s"; empty for a plain number, and for what is none
+  const char* unit = "";  ///< "m/s"; empty for a plain number or no number
   double least = -std::numeric_limits<double>::infinity();  ///< of a number, in its unit
   double most = std::numeric_limits<double>::infinity();
   const char* help = "";  ///< one clause, without the unit and the bounds

@@ -16,7 +16,7 @@ namespace prostm {
 /// InputError: the name ends in neither .png nor .svg, or the file cannot be written.
 void check_figure(const std::string& path);
 
-/// What the panels of the paper's Fig. 2 show.
+/// The data of the panels of the paper's Fig. 2.
 struct PlanFigure {
   const TargetField* target = nullptr;
   const Plan* plan = nullptr;
@@ -35,7 +35,7 @@ struct PlanFigure {
 void draw_plan(const PlanFigure& figure, const std::string& path,
                const PlanFigure* beside = nullptr);
 
-/// What one planner makes of a target.
+/// One planner's plan of a target.
 struct GalleryPlan {
   std::string name;
   Plan plan;
@@ -48,7 +48,7 @@ struct GalleryField {
   TargetField target;
   std::vector<GalleryPlan> plans;  ///< the same planners in the same order for every field
 };
-/// What stands beside the RMSE under each plan.
+/// The number beside the RMSE under each plan.
 enum class GalleryCaption : std::uint8_t { Skill, Correlation };
 struct GalleryPage {
   std::string title;
@@ -64,9 +64,9 @@ struct GalleryPage {
 void draw_gallery(const GalleryPage& page, const std::vector<GalleryField>& fields,
                   const std::string& path);
 
-/// What an array puts on the skin, and what it should.
+/// The pressure that an array puts on the skin, and its target.
 struct PhysicalFigure {
-  const TargetField* raster = nullptr;  ///< the skin; the target where there is one
+  const TargetField* raster = nullptr;  ///< the skin; the target if it is known
   const Plan* plan = nullptr;
   const PhysicalField* field = nullptr;
   const Metrics* metrics = nullptr;  ///< of the envelope; without them there is no target to show

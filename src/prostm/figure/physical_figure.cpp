@@ -1,4 +1,4 @@
-/// What an array puts on the skin, beside what it should.
+/// Draws the pressure that an array puts on the skin beside its target.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -120,7 +120,7 @@ void draw_plane(Canvas& canvas, const Panel& panel, const TargetField& target) {
               {.size = 11.5, .colour = kPlane, .bold = true});
 }
 
-/// What the colours of the side view mean, in a line under it.
+/// Explains the colours of the side view in a line under it.
 void draw_legend(Canvas& canvas, const Box& box) {
   struct Entry {
     const char* name;

@@ -10,7 +10,7 @@
 
 namespace prostm {
 
-/// What the panels (b) to (f) of a digitised figure show, for the target of its panel (a).
+/// The content of the panels (b) to (f) of a digitised figure, for the target of its panel (a).
 struct DigitisedFigure {
   PlanTrace trace;
   Plan plan;                           ///< the refined paths; pressure = γ p* at their points

@@ -1,5 +1,5 @@
 #pragma once
-/// What an array puts on the skin, in files: prostm-physical/1.
+/// The pressure that an array puts on the skin, in files: prostm-physical/1.
 
 #include <string>
 #include <vector>

@@ -12,7 +12,7 @@
 
 namespace prostm {
 
-/// What each of a plan's focal points, all drawn at the same time, may have.
+/// The share of power of each focal point of a plan, all drawn at the same time.
 struct PowerShare {
   double array = 0.0;     ///< of the array's power: 1 / number of paths
   double pressure = 0.0;  ///< of full scale's radiation pressure, when all want the same, (E4a)
@@ -31,7 +31,7 @@ struct PlanQuality {
   std::vector<At> at;  ///< what is played at other widths of the focal point
 };
 
-/// What a plan file says besides the paths or foci.
+/// The content of a plan file besides the paths or foci.
 struct PlanFileExtras {
   Method method = Method::ProStm;    ///< am: the plan holds foci, and they are written
   std::optional<Preset> preset;      ///< writes "preset", when given

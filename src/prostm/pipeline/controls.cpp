@@ -15,7 +15,7 @@ namespace {
 
 // ---- lists of choices ----
 
-/// Of an enum: its names, with a label for each.
+/// Returns the names of an enum, with a label for each.
 template <class E, std::size_t N>
 std::array<ControlChoice, N> choices_of(const std::array<std::string_view, N>& labels) {
   std::array<ControlChoice, N> choices;
@@ -206,7 +206,7 @@ std::vector<RunControl> make_controls() {
       "Output", "tilt", "Tilt compensation", "×", 1, 4, 0.1,
       [](const S& s) { return s.pipeline.emit.tilt_bound; },
       [](S& s, double v) { s.pipeline.emit.tilt_bound = v; }, always,
-      "The most by which pressure makes up for skin that is tilted away; 1 is none.");
+      "The most by which pressure makes up for skin that is tilted away; 1 is off.");
   number(
       "Output", "am_frequency", "Modulation", "Hz", 50, 300, 10,
       [](const S& s) { return s.pipeline.emit.am_frequency; },

@@ -1,5 +1,5 @@
 #pragma once
-/// What can be turned while a run goes: the one table of controls, with their bounds and help.
+/// The controls that can be turned during a run: one table, with bounds and help.
 
 #include <span>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace prostm {
 
-/// What a live run takes other values of between two steps.
+/// The settings that a live run can change between two steps.
 struct LiveSettings {
   PipelineSettings pipeline;
   std::string source = "scripted";   ///< of the hands, one of `sources`
@@ -41,10 +41,10 @@ struct RunControl {
 /// In the order in which to show them.
 std::span<const RunControl> run_controls();
 
-/// Place of a control in run_controls(); −1 for an id that is none.
+/// Returns the place of a control in run_controls(); −1 if the id is unknown.
 int control_index(std::string_view id);
 
-/// What a page says a control is to be.
+/// The value that a page asks for.
 using ControlValue = std::variant<double, bool, std::string>;
 
 /// The number of a value. @throws InputError with a sentence: of the wrong kind, out of bounds, no

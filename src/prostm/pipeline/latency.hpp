@@ -32,7 +32,7 @@ enum LatencyPart : int {
 
 const char* latency_part_name(int part);  ///< "frame", "late", "hand", …, as in run summaries
 
-/// Of one plan [s]. The parts add up to the total.
+/// The latency of one plan [s]. The parts add up to the total.
 struct Latency {
   std::array<double, kLatencyParts> part{};
   double total = 0.0;
@@ -51,7 +51,7 @@ class LatencyLog {
   /// The emitter reports on a plan.
   void follow(const TakeOver& event, const Device& device) noexcept;
 
-  /// Of the plan that was followed last; none before the first.
+  /// The latency of the plan that was followed last; empty before the first.
   const std::optional<Latency>& last() const { return last_; }
   /// Its total, NaN before the first [s].
   double last_total() const {

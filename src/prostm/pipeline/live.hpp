@@ -76,7 +76,7 @@ class LiveControl {
   Latest<LiveState> state_;
 };
 
-/// What a run needs to be looked at and steered; outlives it.
+/// The link through which a run is watched and steered; outlives the run.
 struct LiveLink {
   Snapshots snapshots;
   LiveControl control;

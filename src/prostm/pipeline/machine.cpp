@@ -26,7 +26,7 @@ std::string cpu_model() {
   return {};
 }
 
-/// Of the targets that the kernels were compiled for, the best that the processor has: Highway
+/// Returns the best target of the processor among those that the kernels were compiled for: Highway
 /// gives better targets lower bits.
 std::string vector_target() {
   const auto usable = hwy::SupportedTargets() & HWY_TARGETS;

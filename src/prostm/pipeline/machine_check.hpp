@@ -10,7 +10,7 @@
 
 namespace prostm {
 
-/// What a trial turns, as `prostm run` takes it.
+/// The options of `prostm run` that a trial changes.
 struct CheckedSetup {
   int cells = 0;  ///< --grid
   Preset preset = Preset::Best;

@@ -26,7 +26,7 @@ struct SideView {
   std::vector<std::uint8_t> hand;  ///< nx·nz, 1 where there is a hand
 };
 
-/// What one step of the world left behind: everything that a plan, a recording or a picture needs.
+/// The result of one step of the world: everything that a plan, a recording or a picture needs.
 struct WorldFrame {
   std::int64_t step = 0;  ///< steps so far, from 1
   double arrival = 0.0;   ///< of the tracker's frame; run time [s]
@@ -99,7 +99,7 @@ class WorldStage {
   bool side_view_;
 };
 
-/// What one plan update left behind.
+/// The result of one plan update.
 struct PlanFrame {
   std::int64_t id = 0;  ///< counts updates from 1
   PlanStatus status = PlanStatus::EmptyTarget;

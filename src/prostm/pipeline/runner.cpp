@@ -56,7 +56,7 @@ class Run {
     });
   }
 
-  /// Of the whole run. Ends the output.
+  /// Ends the output. Returns the summary of the whole run.
   RunSummary finish() {
     shared_.end.guard([this] {
       if (!summary_) summary_ = summary();
@@ -130,7 +130,7 @@ void Run::segment() {
   if (!shared_.end.failed()) drain_updates();
 }
 
-/// What is done while no other thread runs. False at the end.
+/// Does the work for which no other thread may run. Returns false at the end.
 bool Run::goes_on() {
   plans_.follow();
   if (!pace_.realtime || over() || (world_.done() && !pace_.stay)) return false;

@@ -45,8 +45,8 @@ struct RunSummary {
   double seconds = 0;    ///< of run time, shorter than asked when stopped
   double took = 0;       ///< by the clock, pauses included
   bool stopped = false;  ///< by the observer, or by what failed
-  /// What ended the run, null where nothing failed: what an observer, the hands, a stage or the
-  /// device's end threw. Of several the first.
+  /// The first exception that ended the run, thrown by an observer, the hands, a stage or the
+  /// device's end; null without one.
   std::exception_ptr failure;
   std::int64_t world_steps = 0, skipped_world_steps = 0, plans = 0, empty_updates = 0,
                skipped_updates = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What a hand is held into, by name.
+/// The scenes that a hand is held into, by name.
 
 #include <span>
 #include <string_view>

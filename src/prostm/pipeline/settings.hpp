@@ -51,7 +51,7 @@ struct PipelineSettings {
   /// world_steps_per_plan, where 0 stands for what the method asks.
   int steps_per_plan() const;
 
-  /// What `device` is made from.
+  /// Returns the setup that `device` is made from.
   DeviceSetup device_setup() const { return {simulated_array, transducers, Medium{}}; }
 
   /// Samples of an emission for it [Hz].
@@ -70,8 +70,8 @@ void set_live_budget(PipelineSettings& settings);
 
 /// The planner's settings with what an emission of so many samples a second can play, (P18).
 PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate);
-/// The same with the widths that `array_width` asks for: those of `plan`, or (A22) of `transducers`
-/// where there are none.
+/// The same with the widths that `array_width` asks for: those of `plan`, or else (A22) of
+/// `transducers`.
 PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate);
 
 /// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest

@@ -36,7 +36,7 @@ void average(std::span<const float> smoke, std::size_t n, std::span<std::uint8_t
       for (std::size_t i = 0; i < n; ++i) {
         float sum = 0.0F;
         for (std::size_t x = 0; x < B; ++x) sum += row[i * B + x];
-        // by way of int, for which the machine has an instruction
+        // via int: float to int is one instruction, float to uint8 has none
         to[i] = static_cast<std::uint8_t>(static_cast<int>(std::min(sum * kScale + 0.5F, 255.0F)));
       }
     }

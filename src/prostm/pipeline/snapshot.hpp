@@ -1,5 +1,5 @@
 #pragma once
-/// What an onlooker sees of a run while it goes: copies, handed over by threads that wait for
+/// The state of a run for those who watch it: copies, handed over by threads that wait for
 /// nobody (docs/design.md, section "Viewer").
 
 #include <array>
@@ -97,7 +97,7 @@ class Snapshots {
   const PlanSnapshot& plan() const { return plan_.value(); }
   bool refresh_run() { return run_.refresh(); }
   const RunSnapshot& run() const { return run_.value(); }
-  /// The oldest latency that was not read; false when there is none.
+  /// Reads the oldest latency that was not read yet; false without one.
   bool next_latency(double& out) { return latencies_.pop(out); }
 
  private:
@@ -110,8 +110,8 @@ class Snapshots {
   std::shared_ptr<const PipelineSettings> settings_;
 };
 
-/// What a plan renders on its target as it is played, by Eq. (1) with the width that it was planned
-/// with.
+/// The field that a plan renders on its target as it is played, by Eq. (1) with the plan's own
+/// width.
 struct RenderedPlan {
   std::array<std::vector<double>, kMaxPatches> field;  ///< of each patch, unit of the target
   Metrics metrics;                                     ///< of the patch with the most pressure

@@ -14,8 +14,8 @@ constexpr std::size_t kMostSentences = 4;  // that a newcomer reads in ten secon
 constexpr double kLeastDone = 0.99;
 // A missed block is a millisecond of silence: one each second.
 constexpr double kMostMissed = 1e-3;
-// Of the time that there is. The rest is for other stages, for the threads to wake up, and for what
-// else runs.
+// Share of the time there is. The rest is for other stages, for the threads to wake up, and for
+// other programs.
 constexpr double kBusy = 0.8;
 constexpr double kComfortable = 0.6;  // the same for a setting that is recommended
 constexpr int kLeastCells = 32, kCellsStep = 16;
@@ -24,7 +24,7 @@ constexpr int kLeastCells = 32, kCellsStep = 16;
 // and the strongest pressure of a scene may pass full scale at times: the scenes as they are stay
 // below these.
 constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5;
-// Of a tracker's frames.
+// Share of a tracker's frames.
 constexpr double kMostDropped = 0.01;
 
 /// @param of_none what it is where there is nothing to have a share of.
@@ -178,7 +178,7 @@ void judge_output(const RunSummary& s, std::vector<std::string>& out) {
   }
 }
 
-/// What should never be.
+/// Reports faults that should never occur.
 void judge_faults(const RunSummary& s, std::vector<std::string>& out) {
   if (s.world_resets > 0) {
     out.push_back(fmt::format(

@@ -1,5 +1,5 @@
 #pragma once
-/// What the hands meet: smoke, or anything else that presses on them.
+/// The world that the hands meet: smoke, or anything else that presses on them.
 
 #include <memory>
 
@@ -23,16 +23,16 @@ class World {
   virtual ~World() = default;
   /// On which hands are rasterised and their skin is looked for.
   virtual const GridShape& grid() const = 0;
-  /// Of a target, that maps to full output [Pa].
+  /// The pressure of a target that maps to full output [Pa].
   virtual double full_scale_pressure() const = 0;
 
-  /// What needs no hands, of a step of dt [s].
+  /// Does the part of a step of dt that needs no hands [s].
   virtual void prepare(double dt) noexcept { static_cast<void>(dt); }
   /// The hands, made for grid(), are there.
   virtual void meet(const HandRaster& raster) noexcept = 0;
-  /// What presses now. @param dt since the last call [s].
+  /// Returns the pressure on the skin now. @param dt since the last call [s].
   virtual const PressureSource& pressure(double dt) noexcept = 0;
-  /// What nobody waits for.
+  /// Does the rest of the step, for which nobody waits.
   virtual WorldStats settle() noexcept { return {}; }
 
   /// Goes on from where another world is, as far as the two are alike. @pre between steps.

@@ -52,9 +52,9 @@ bool is_local_maximum(const TargetField& raster, const std::vector<double>& map,
 }  // namespace
 
 bool is_felt(const TargetField& raster, const LoopSamples& loop) {
-  constexpr double kHighestRate = 100e3;               // [Hz]
-  constexpr double kSmallest = 1e-4, kLargest = 20e-3;     // cells [m]
-  constexpr int kMost = 128;                               // cells along an edge
+  constexpr double kHighestRate = 100e3;                // [Hz]
+  constexpr double kSmallest = 1e-4, kLargest = 20e-3;  // cells [m]
+  constexpr int kMost = 128;                            // cells along an edge
   return loop.sample_rate <= kHighestRate && loop.samples >= 3 * kPart &&
          loop.samples <= kLongestFelt * loop.sample_rate &&
          std::max(raster.rows, raster.cols) <= kMost && raster.cell >= kSmallest &&

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What is wrong with a message; caught where it is read.
+/// The fault of a message; caught where the message is read.
 struct Wrong : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

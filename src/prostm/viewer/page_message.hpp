@@ -1,5 +1,5 @@
 #pragma once
-/// What a page may say: the text messages of docs/wire.md.
+/// The messages of a page: the text messages of docs/wire.md.
 
 #include <cstddef>
 #include <optional>
@@ -50,8 +50,8 @@ struct RateMessage {
 using PageMessage = std::variant<SetMessage, TransportMessage, HandMessage, CalibrationMessage,
                                  MuteMessage, RateMessage>;
 
-/// Reads one message; never throws for what is in it. @return false, with one sentence in `problem`
-/// that says what would be right, for what is none.
+/// Reads one message; never throws for its contents. @return false for an invalid message, with one
+/// sentence in `problem` that says what would be right.
 bool read_page_message(std::string_view text, PageMessage& out, std::string& problem);
 
 }  // namespace prostm

@@ -157,7 +157,7 @@ std::string PipelineView::Impl::save_calibration() {
   return {};
 }
 
-/// What was not saved does not stay.
+/// Ends a calibration; a pose that was not saved is dropped.
 std::string PipelineView::Impl::end_calibration(std::uint32_t page) {
   LiveCommand pose{LiveCommand::Kind::TrackerPose, page};
   pose.X_DT = pose_kept;

@@ -1,5 +1,5 @@
 #pragma once
-/// What the server shows and steers when a run is behind it.
+/// A run, as the server shows and steers it.
 
 #include <memory>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace prostm {
 
-/// What a page is told once.
+/// The facts that a page is told once.
 struct ViewHello {
   std::string version;             ///< of prostm
   std::string device;              ///< name of what plays

@@ -31,7 +31,7 @@ asio::ip::address listen_address(const std::string& text) {
   const auto address = asio::ip::make_address(text, wrong);
   if (wrong) {
     throw InputError(fmt::format(
-        "the view's address \"{}\" is none; give one like 127.0.0.1, 0.0.0.0 or ::1", text));
+        "\"{}\" is not a valid address for the view; use e.g. 127.0.0.1, 0.0.0.0 or ::1", text));
   }
   return address;
 }

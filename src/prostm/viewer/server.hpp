@@ -15,7 +15,7 @@ namespace prostm {
 
 struct ViewSettings {
   std::string address = "127.0.0.1";  ///< to listen on; a literal
-  /// Of TCP, 0 for any that is free. Without it the first free one from kViewPort on.
+  /// The TCP port; 0 takes any free one. Without it, the first free port from kViewPort on.
   std::optional<int> port;
   int max_pages = 16;          ///< WebSockets at the same time
   int max_connections = 64;    ///< of HTTP and WebSocket together
@@ -39,7 +39,7 @@ struct ViewStats {
 class ViewServer {
  public:
   /// @param source, files must outlive the server.
-  /// @throws InputError with a sentence: an address that is none or is not ours, a port that is in
+  /// @throws InputError with a sentence: an address that is invalid or not ours, a port that is in
   /// use.
   ViewServer(const ViewSettings& settings, ViewSource& source, std::span<const PageFile> files);
   ~ViewServer();

@@ -1,5 +1,5 @@
 #pragma once
-/// What the server shows and steers, behind an interface: a run, or a stand-in in tests.
+/// The source that the server shows and steers, as an interface: a run, or a stand-in in tests.
 
 #include <cstdint>
 #include <string>
@@ -33,7 +33,7 @@ class ViewSource {
   /// Does what a page asks, RateMessage excepted. @return an empty text, or the sentence that says
   /// why not.
   virtual std::string take(std::uint32_t page, const PageMessage& message) = 0;
-  /// The oldest refusal that came after take() had returned; false when there is none.
+  /// Reads the oldest refusal that came after take() had returned; false without one.
   virtual bool next_refusal(std::uint32_t& page, std::string& sentence) = 0;
   /// A page has gone: whatever it held is let go.
   virtual void forget(std::uint32_t page) = 0;

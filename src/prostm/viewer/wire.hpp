@@ -118,12 +118,12 @@ struct ViewPath {
   std::vector<ViewPoint> points;
 };
 
-/// What a page sees at one moment. Vectors keep their room from frame to frame: the first *_count
-/// of them hold.
+/// The frame that a page sees at one moment. Vectors keep their room from frame to frame: the first
+/// *_count of them hold.
 struct ViewFrame {
   std::uint32_t sequence = 0;
   ViewRun run;
-  /// By ViewNumber; NaN where there is none.
+  /// By ViewNumber; NaN for a number without a value.
   std::vector<float> numbers = std::vector<float>(view_number_names().size());
   std::uint32_t hand_count = 0;
   std::array<ViewHand, 2> hands;

@@ -1,4 +1,4 @@
-/// What stands over and under a picture of the page.
+/// The text over and under a picture of the page.
 
 import { inWords } from "../address";
 import type { Control, State } from "../messages";

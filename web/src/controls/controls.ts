@@ -1,4 +1,4 @@
-/// What can be turned, as the program tells it: one field for each control, in its groups and its order.
+/// The controls, as the program tells them: one field for each control, in its groups and its order.
 
 import { find, make } from "../dom";
 import type { Control, Value } from "../messages";
@@ -8,7 +8,7 @@ import type { Folds } from "./folds";
 // groups that are turned seldom are closed until somebody opens them
 const kClosed = ["Output", "Hand"];
 
-/// What would make another field of a control.
+/// The properties of a control that need another field when they change.
 function shape(c: Control): string {
   return JSON.stringify([c.id, c.group, c.kind, c.label, c.unit, c.help, c.kind === "choice" ? c.choices : 0]);
 }
@@ -37,7 +37,7 @@ export class Controls {
   lost(): void { this.stale = true; }
 
   /// Says beside a control why it could not be turned, and shows the value in force again.
-  /// @param id the control; without one, the control that was turned last. @return whether there is one.
+  /// @param id the control; without one, the control that was turned last. @return whether it was found.
   showError(sentence: string, id = this.last): boolean {
     this.last = null;
     const field = this.fields.get(id ?? ""), control = this.known.get(id ?? "");
@@ -47,7 +47,7 @@ export class Controls {
     return true;
   }
 
-  /// What is asked from now on is not a control's.
+  /// Later errors belong to no control.
   forget(): void { this.last = null; }
 
   private set(id: string, value: Value): void {

@@ -10,7 +10,7 @@ export interface Actions {
   refuse(id: string, sentence: string): void;
 }
 
-/// What belongs after a control's label.
+/// The elements after a control's label.
 interface Made<C> {
   parts: HTMLElement[];
   /// @param force shows the program's value, whatever somebody is about to set.

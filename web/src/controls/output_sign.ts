@@ -28,7 +28,7 @@ export class OutputSign {
     this.muted = frame.run.muted;
     this.button.setAttribute("aria-pressed", String(this.muted));
     setText(this.button.querySelector("span")!, this.muted ? "Unmute" : "Mute");
-    // modulated output is silent for moments, which are none
+    // modulated output is silent for moments, which do not count
     const now = performance.now(), output = outputOf(frame);
     if (output.state === "on") this.sounded = now;
     if (output.state !== "off" || now - this.sounded > kMoment) this.show(output);

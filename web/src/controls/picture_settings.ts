@@ -1,4 +1,4 @@
-/// What the picture shows, and how: settings of this page alone.
+/// The settings of the picture, which belong to this page alone.
 
 import { kPictures, type Address, type PictureMode } from "../address";
 import { find, make, reducedMotion } from "../dom";

@@ -17,7 +17,7 @@ export class SettingsSender {
     this.timer ??= window.setTimeout(() => this.flush(), Math.max(0, this.sent + kEvery - performance.now()));
   }
 
-  /// What waits was for a program that is gone.
+  /// Drops what waits: it was for a program that is gone.
   forget(): void { this.waiting.clear(); }
 
   private flush(): void {

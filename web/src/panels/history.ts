@@ -26,7 +26,7 @@ export class History {
     return made;
   }
 
-  /// Place of the sample nearest to a time; −1 where there is none.
+  /// Place of the sample nearest to a time; −1 without samples.
   nearest(time: number): number {
     const after = this.after(time);
     if (after === 0 || (after < this.times.length && this.times[after]! - time < time - this.times[after - 1]!)) {

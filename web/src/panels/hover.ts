@@ -20,7 +20,7 @@ export function say(lines: string[], clientX: number, clientY: number): void {
   note.style.setProperty("top", `${y}px`);
 }
 
-/// What a cell holds, in words.
+/// Returns the content of a cell in words.
 export function cellWords(patch: Patch, cell: number): string[] {
   const { target, rendered } = pressures(patch, cell);
   const difference = rendered - target;

@@ -1,4 +1,4 @@
-/// What the colours on the skin in the picture mean.
+/// The meaning of the colours on the skin in the picture.
 
 import { kDifferenceTables, kFieldTable } from "../colours";
 import { find, make } from "../dom";

@@ -8,7 +8,7 @@ import type { Frame } from "../wire";
 import { History, PerSecond, robustTop } from "./history";
 import type { StripSpec } from "./strip_specs";
 
-/// What all strips have in common at a moment.
+/// The state that all strips share at a moment.
 export interface StripsView {
   span: number; // [s]
   now: number; // the right end [s of the page's clock]

@@ -1,4 +1,4 @@
-/// What each strip shows.
+/// The content of each strip.
 
 import { numberOf, type Frame, type NumberName } from "../wire";
 

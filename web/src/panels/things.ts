@@ -1,4 +1,4 @@
-/// What the picture in three dimensions is made of: a swatch and a name for each thing that is drawn now.
+/// The things in the picture in three dimensions: a swatch and a name for each thing that is drawn now.
 
 import { find, make, setText } from "../dom";
 import type { Hello } from "../messages";

@@ -1,4 +1,4 @@
-/// What the page says of the run in words.
+/// The page's words about the run.
 
 import type { State } from "../messages";
 import { numberOf, type Frame } from "../wire";
@@ -10,7 +10,7 @@ export interface Output {
 
 const kAudible = 0.005; // intensity of the strongest focal point, 0 to 1
 
-/// What a frame says of the output.
+/// Returns the state of the output in a frame.
 export function outputOf(frame: Frame): Output {
   const { run } = frame;
   if (run.muted) return { state: "muted", why: "by you or another page" };
@@ -35,7 +35,7 @@ export function sourceOf({ source, hand_page: holder }: State["transport"], page
   return holder === page ? "hand from this page" : "hand from another page";
 }
 
-/// What helps, by where the hands come from.
+/// Returns advice, by the source of the hands.
 export function advice(state: State | null): string {
   if (state === null) return "";
   const { tracker, transport } = state;

@@ -1,4 +1,4 @@
-/// What a ray of the eye meets: the skin of a hand as the program computes with it.
+/// The point that a ray of the eye meets: the skin of a hand as the program computes with it.
 
 import { Matrix4, Vector3 } from "three";
 import { cellAt } from "../panels/plane_layout";

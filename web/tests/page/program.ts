@@ -51,7 +51,7 @@ export class Program {
       child.on("exit", () => reject(new Error(`the program ended before it said where its page is:\n${this.output}`)));
     });
   }
-  /// What it has said so far.
+  /// Its output so far.
   get printed(): string { return this.output; }
   get port(): number { return Number(new URL(this.address).port); }
 
@@ -77,7 +77,7 @@ export async function openBrowser(): Promise<Browser> {
   });
 }
 
-/// What a page did that it should not.
+/// The faults of a page.
 export class Watch {
   readonly complaints: string[] = [];
   readonly requests: string[] = [];

@@ -24,8 +24,8 @@ Colour mix(const Colour& from, const Colour& to, double share);
 /// as sRGB holds along the way.
 Colour field_colour(double t);
 
-/// Of path i: told apart by people of any colour vision (M. Okabe and K. Ito, "Color universal
-/// design", 2008).
+/// The colour of path i: told apart by people of any colour vision (M. Okabe and K. Ito, "Color
+/// universal design", 2008).
 Colour path_colour(std::size_t i);
 
 }  // namespace prostm::figure

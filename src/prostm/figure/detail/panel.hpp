@@ -28,7 +28,7 @@ double tick_step(double range, double wanted);
 /// A multiple of a step as it stands on an axis, without the rounding error of a sum of steps.
 std::string tick_text(double value);
 
-/// What is written around a panel.
+/// The text around a panel.
 struct PanelText {
   std::string title;
   std::string x_label = "x / mm", y_label = "y / mm";

@@ -1,5 +1,5 @@
 #pragma once
-/// What the readers of hand recordings share. Private to io.
+/// Code that the readers of hand recordings share. Private to io.
 
 #include "prostm/core/json.hpp"
 #include "prostm/track/hand_source.hpp"

@@ -43,7 +43,7 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// What a dataset holds in each of its rows.
+/// The description of a dataset's rows.
 struct Column {
   const char* name;
   hid_t type;                  ///< native, of a number; files hold it as it is in memory

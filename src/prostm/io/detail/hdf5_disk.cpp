@@ -43,7 +43,7 @@ const Disk& disk_of(const H5FD_t* file) {
   return *reinterpret_cast<const Disk*>(file);
 }
 
-/// What the disk holds; zeros beyond its end. False when it cannot be read.
+/// Reads from the disk; zeros beyond its end. Returns false if that fails.
 bool load(int fd, haddr_t at, char* out, std::size_t size) {
   while (size > 0) {
     const ssize_t n = ::pread(fd, out, size, static_cast<off_t>(at));

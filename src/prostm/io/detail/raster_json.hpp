@@ -1,5 +1,5 @@
 #pragma once
-/// What field and plan files share: the raster, its heights and its plane. Private to io.
+/// The parts that field and plan files share: the raster, its heights and its plane. Private to io.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -16,7 +16,7 @@ h5::Column weight_column();                ///< of /target too, once a patch has
 std::vector<h5::Column> hand_columns();    ///< of /hand, a row for each frame
 std::vector<h5::Column> plan_columns();    ///< of /plan, a row for each frame
 
-/// What the column counts of /plan holds, in this order; stage_time holds plan_stages().
+/// The quantities in the column counts of /plan, in order; stage_time holds plan_stages().
 std::vector<Quantity<PlanStats>> plan_counts();
 
 }  // namespace prostm::recording

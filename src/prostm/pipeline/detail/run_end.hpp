@@ -30,7 +30,7 @@ class RunEnd {
 
   bool over() const noexcept { return over_.load(std::memory_order_acquire); }
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
-  /// What failed; null where nothing did. @pre no other thread of the run is there any more.
+  /// The first failure; null without one. @pre no other thread of the run is there any more.
   const std::exception_ptr& failure() const noexcept { return failure_; }
 
  private:

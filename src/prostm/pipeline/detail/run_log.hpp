@@ -1,5 +1,5 @@
 #pragma once
-/// What the threads of a run count. Private to pipeline.
+/// The counters of a run's threads. Private to pipeline.
 
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a live tracker does that whoever waits for its hands has to hear, each change once.
+/// The news of a live tracker for those who wait for its hands, each change once.
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-/// What pages ask of a run, on its way there. Private to viewer.
+/// The queue of commands from the pages to a run. Private to viewer.
 
 #include <chrono>
 #include <vector>

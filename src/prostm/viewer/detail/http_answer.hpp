@@ -1,5 +1,5 @@
 #pragma once
-/// What the server says to a request: no sockets, so that every case can be tried.
+/// The server's answer to a request: no sockets, so that every case can be tried.
 
 #include <functional>
 #include <span>

@@ -1,6 +1,6 @@
 #pragma once
-/// What the connections of one server share. Used by the server's thread alone, the counters
-/// excepted.
+/// The state that the connections of one server share. Used by the server's thread alone, the
+/// counters excepted.
 
 #include <array>
 #include <atomic>

@@ -253,7 +253,7 @@ void Session::check_stall(Clock::time_point now) {
   drop();
 }
 
-/// What is under way ends with an error, and nothing follows it.
+/// Ends all operations with an error; nothing follows them.
 void Session::drop() {
   beast::get_lowest_layer(*socket_).close();
 }
