@@ -220,10 +220,6 @@ void flush(std::FILE* out) {
                   error != 0 ? std::generic_category().message(error) : "a write before failed"));
 }
 
-void say_written(std::FILE* out, const std::string& path) {
-  if (!path.empty() && path != "-") fmt::print(out, "wrote {}\n", path);
-}
-
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value) {
   if (!json_option.empty()) write_file(json_option, to_text(value));
 }
