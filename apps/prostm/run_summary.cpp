@@ -40,7 +40,8 @@ void print_foci(std::FILE* out, const RunSummary& s, const PipelineSettings& set
 void print_output(std::FILE* out, const RunSummary& s) {
   const EmitStats& e = s.emit;
   print_row(out, "samples",
-            fmt::format("{} of all focal points; {:.1f} % at full scale ({:.3g} Pa), {:.1f} % "
+            fmt::format("{} of all focal points; {:.1f} % at full scale ({:.3g} Pa; stronger "
+                        "pressure feels no stronger), {:.1f} % "
                         "weakened by the power limit; largest step {:.3f} mm",
                         e.samples, percent(e.saturated, e.samples), s.full_scale_pressure,
                         percent(e.limited, e.samples), e.max_focus_step * 1e3));

@@ -42,15 +42,15 @@ std::vector<std::string> extras_of(const CLI::App& app) {
   return extras;
 }
 
-/// @param page the command as it is typed, e.g. "prostm plan".
-std::string about_extras(const CLI::App& command, const std::string& page,
+/// @param name of the command, or of the program.
+std::string about_extras(const CLI::App& command, const std::string& name,
                          const std::vector<std::string>& extras) {
   // a value that is left over belongs to an option that is misspelled
   const auto is_dashed = [](const std::string& extra) { return extra.starts_with("-"); };
   const auto option = std::ranges::find_if(extras, is_dashed);
   const bool is_option = option != extras.end();
   const std::string& extra = is_option ? *option : extras.front();
-  return fmt::format("{} {} \"{}\"{}", page, is_option ? "has no option" : "does not expect",
+  return fmt::format("{} {} \"{}\"{}", name, is_option ? "has no option" : "does not expect",
                      shown_name(extra),
                      did_you_mean(is_option ? extra : "--" + extra, option_names(command)));
 }
@@ -106,18 +106,19 @@ std::string about_error(const CLI::App& command, const CLI::ParseError& error) {
 std::string usage_sentence(const CLI::App& program, const CLI::ParseError& error) {
   const auto parsed = program.get_subcommands();
   const CLI::App& command = parsed.empty() ? program : *parsed.front();
-  const std::string page = parsed.empty() ? "prostm" : "prostm " + command.get_name();
+  const std::string name = parsed.empty() ? "the program" : command.get_name();
   const std::vector<std::string> strays = extras_of(program), extras = extras_of(command);
   std::string sentence;
   if (!strays.empty() && !strays.front().starts_with("-")) {
     sentence = unknown_command(program, strays.front());
   } else if (!strays.empty()) {
-    sentence = about_extras(program, "prostm", strays);
+    sentence = about_extras(program, "the program", strays);
   } else {
-    sentence = extras.empty() ? about_error(command, error) : about_extras(command, page, extras);
+    sentence = extras.empty() ? about_error(command, error) : about_extras(command, name, extras);
   }
-  const char* see = sentence.ends_with('?') ? " See" : "; see";
-  return fmt::format("{}{} {} --help", sentence, see, strays.empty() ? page : "prostm");
+  const bool about_command = strays.empty() && !parsed.empty();
+  return fmt::format("{}{} prostm{} --help", sentence, sentence.ends_with('?') ? " See" : "; see",
+                     about_command ? " " + name : "");
 }
 
 std::string help_page(const CLI::App& program, const std::string& command) {

@@ -288,10 +288,10 @@ TEST(HandFile, TellsTheFormatsApartByTheirContent) {
   EXPECT_THROW(read_hand_recording(folder.file("none")), InputError);
   for (const char* other : {"\x89HDF\r\n\x1a\n[[[[[", "1 2 3", "   "}) {
     EXPECT_THAT(test::input_error([&] { read(other); }),
-                HasSubstr("a hand recording is hand-frames JSON Lines"));
+                testing::HasSubstr("a hand recording is hand-frames JSON Lines"));
   }
   EXPECT_THAT(test::input_error([&] { read("\x89HDF\r\n\x1a\n"); }),
-              HasSubstr("is a recording of prostm (HDF5), not a hand recording"));
+              testing::HasSubstr("is a recording of prostm (HDF5), not a hand recording"));
 }
 
 struct Difference {

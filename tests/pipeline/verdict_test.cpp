@@ -68,7 +68,7 @@ TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {
               ElementsAre("The rates were not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz; a "
                           "step of the smoke took 23.0 ms at the median, of the 20 ms there are: "
                           "use --grid 48, or close what else runs."));
-  // 63 ms fit with none
+  // no grid is small enough
   EXPECT_THAT(said([](RunSummary& s) {
                 s.world_steps = 1000;
                 s.skipped_world_steps = 2000;
@@ -146,6 +146,8 @@ TEST(Verdict, WithoutAClockThePaceIsTold) {
                 s.took = 90.0;
               }).front(),
               HasSubstr("computed in 90.0 s, 1.5 times slower than real time"));
+  EXPECT_THAT(said([](RunSummary& s) { s.mode = RunMode::Stepped; }).front(),
+              HasSubstr("computed in 60.0 s, as fast as real time; "));
 }
 
 TEST(Verdict, ARunWithoutAStepSaysSo) {

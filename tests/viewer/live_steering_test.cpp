@@ -105,12 +105,12 @@ TEST(LiveSteering, APageThatLosesTheHandIsTold) {
   EXPECT_TRUE(transport_becomes(second, "hand_page", one));
   second.say(hand(false));
   EXPECT_THAT(second.next_text("error").at("sentence").get<std::string>(),
-              HasSubstr("another page moves the hand"));
+              HasSubstr("another page has the hand"));
   second.say(hand(true));
   EXPECT_TRUE(transport_becomes(first, "hand_page", two));
   first.say(hand(false));
   EXPECT_THAT(first.next_text("error").at("sentence").get<std::string>(),
-              HasSubstr("another page moves the hand"));
+              HasSubstr("another page has the hand"));
   second.say(R"({"type":"hand","release":true})");
   EXPECT_TRUE(transport_becomes(second, "hand_page", nullptr));
 }

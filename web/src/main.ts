@@ -28,10 +28,10 @@ import { View } from "./scene/view";
 import "./inspection";
 import type { Hello, PageMessage, State } from "./messages";
 import "./styles/base.css";
-import "./styles/layout.css";
 import "./styles/controls.css";
 import "./styles/stage.css";
 import "./styles/panels.css";
+import "./styles/layout.css"; // last: what depends on the page's width wins
 import type { Frame } from "./wire";
 
 const address = new Address();

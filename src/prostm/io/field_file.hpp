@@ -12,7 +12,7 @@ namespace prostm {
 struct FieldFileOptions {
   /// Edge of a cell, or width of the whole field: one of them is needed for .npy and .png, and both
   /// are refused elsewhere.
-  std::optional<double> cell_mm, width_mm;
+  std::optional<double> cell_mm = {}, width_mm = {};
   int frame = 0;        ///< of a recording
   bool invert = false;  ///< a picture is drawn black on white: black is the pressure
 };

@@ -104,7 +104,7 @@ std::string PipelineView::Impl::take(std::uint32_t page, const HandMessage& m) {
     return {};
   }
   const bool anothers = hand_holder != 0 && hand_holder != page && link.snapshots.run().page_hand;
-  if (anothers && !m.take) return "another page moves the hand now; switch it on here to take it";
+  if (anothers && !m.take) return "another page has the hand; switch it on here to take it";
   hand_holder = page;
   PagePose pose;
   pose.p_D = {m.palm[0], m.palm[1], m.palm[2]};

@@ -73,7 +73,7 @@ export class PageHand {
       this.held = true;
     } else if (this.held && holder !== null) {
       this.end();
-      this.say("Another page has taken the hand; switch it on here to take it back.");
+      this.say("Another page has the hand; switch it on here to take it back.");
     }
   }
   /// The program is gone, and the hand with it.

@@ -15,7 +15,7 @@ export interface StripsView {
   at: number | null; // where the pointer is [s before `now`, at most 0]
 }
 
-const kBetter = { higher: "↑ higher is better", lower: "↓ lower is better" } as const;
+const kBetter = { higher: "↑ better", lower: "↓ better" } as const;
 const kIncrements: Record<number, number[]> = { 10: [2, 5], 30: [10, 15], 120: [30, 60] }; // of the time's axis [s]
 const kMarkGap = 4; // pixels between marks of what is cut off, at least
 
@@ -74,7 +74,7 @@ export class Strip {
           values: (_, ticks) => ticks.map((t) => (this.last ? label(t) : "")),
           incrs: () => kIncrements[this.view.span] ?? [10, 30],
         },
-        { ...axis, size: 38, gap: 4, space: 22 },
+        { ...axis, size: 38, gap: 4, space: 16 },
       ],
       series: [
         {},

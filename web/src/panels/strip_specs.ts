@@ -54,9 +54,9 @@ export const kStrips: StripSpec[] = [
     ],
   },
   {
-    id: "blocks", title: "Blocks", unit: "late and missed per second; in the queue", atLeast: 5, series: [
-      { label: "late", value: of("late_blocks"), counts: true, colour: kYellow, digits: 0 },
-      { label: "missed", value: of("missed_blocks"), counts: true, colour: kOrange, digits: 0 },
+    id: "blocks", title: "Blocks", unit: "", atLeast: 5, series: [
+      { label: "late/s", value: of("late_blocks"), counts: true, colour: kYellow, digits: 0 },
+      { label: "missed/s", value: of("missed_blocks"), counts: true, colour: kOrange, digits: 0 },
       { label: "queue", value: of("queue_blocks"), colour: kGrey, digits: 0 },
     ],
   },

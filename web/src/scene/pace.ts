@@ -10,6 +10,7 @@ const kSlow = 40; // [ms] a picture from which drawing counts as slow
 const kShare = 0.25, kLeastShare = 0.04; // of the time that slow pictures may take
 const kPatience = 2500; // [ms] of missed rates, after which pictures take half their time
 const kEnough = 6; // pictures
+const kSlowest = 1000; // [ms] between pictures, at most
 const kLongest = 1500; // [ms] between pictures, from which there is no use in them
 
 export class Pace {
@@ -46,7 +47,7 @@ export class Pace {
       this.missed = now;
     }
     const interval = Math.max(this.software ? 80 : 0, this.cost / this.share);
-    return { interval, off: off || (this.measured && interval > kLongest) };
+    return { interval: Math.min(kSlowest, interval), off: off || (this.measured && interval > kLongest) };
   }
 
   /// Somebody wants pictures in spite of all.

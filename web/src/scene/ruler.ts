@@ -9,6 +9,22 @@ import type { Label } from "./labels";
 
 const kTick = 0.05, kNumber = 0.1; // between ticks, and between numbers [m]
 const kTickLength = 0.008; // [m]
+const kSeen = 0.2; // height up to which the ruler is to be in the picture [m]
+const kRoom = 0.86; // share of the picture's half in which there is room for numbers
+
+/// The corner whose upright edge is leftmost in the picture, of those whose lower part is in it.
+function leftmost(corners: Vector3[], camera: Camera): Vector3 {
+  const seen = corners.map((corner) => {
+    const ends = [0, kSeen].map((z) => corner.clone().setZ(corner.z + z).project(camera));
+    const x = Math.min(...ends.map((p) => p.x));
+    const inside = ends.every((p) => Math.abs(p.x) < kRoom && Math.abs(p.y) < kRoom);
+    return { corner, x, inside };
+  });
+  const inside = seen.filter((s) => s.inside);
+  // where none is, the one that is least far outside
+  if (inside.length === 0) return seen.reduce((a, b) => (Math.abs(b.x) < Math.abs(a.x) ? b : a)).corner;
+  return inside.reduce((a, b) => (b.x < a.x ? b : a)).corner;
+}
 
 export class Ruler {
   readonly group = new Group();
@@ -48,8 +64,7 @@ export class Ruler {
     const { low, edge } = this;
     const middle = low.clone().addScalar(edge / 2);
     const corners = [0, 1, 2, 3].map((i) => new Vector3(low.x + (i & 1 ? edge : 0), low.y + (i & 2 ? edge : 0), low.z));
-    const across = (p: Vector3) => p.clone().project(camera).x;
-    const corner = corners.reduce((a, b) => (across(b) < across(a) ? b : a));
+    const corner = leftmost(corners, camera);
     this.group.position.set(corner.x, corner.y, 0);
     // ticks point away from the box
     this.group.rotation.z = Math.atan2(corner.y - middle.y, corner.x - middle.x) - Math.PI;

@@ -49,9 +49,9 @@ describe("a page with a hand", () => {
     await page.locator('label[for="skin-difference"]').click();
     await expect.poll(names).toContain("rendered less target");
     await page.locator('label[for="skin-rendered"]').click();
-    const labels = await page.locator("#labels span:visible").allTextContents();
-    expect(labels).toContain("100");
-    expect(labels).toContain("palm 190 mm");
+    const labels = () => page.locator("#labels span:visible").allTextContents();
+    await expect.poll(labels).toContain("100");
+    await expect.poll(labels).toContain("palm 190 mm");
   });
 
   it("mutes the array with its button and with M", async () => {
