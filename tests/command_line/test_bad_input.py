@@ -143,7 +143,7 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
         (["run", "--method", "am", "--paths", "9"], ["foci = 9", "between 1 and 8"]),
         (["run", "--hand", "leap://"], ["names no host", "leap://127.0.0.1:6437"]),
         (["run", "--hand", "leap://127.0.0.1:many"], ["port", "1 to 65535"]),
-        (["run", "--hand", "leap://nonsense.invalid"], ["no host", "nonsense.invalid"]),
+        (["run", "--hand", "leap://nonsense.invalid"], ["host", "nonsense.invalid", "is unknown"]),
         (["run", "--hand", "leap://127.0.0.1:6437", "--stepped"], ["real time", "--stepped"]),
         (["capture", "--hand", "openxr", "--out", "x.h5"], ["real time"]),
         (["run", "--hand", "page"], ["--hand page", "--view"]),

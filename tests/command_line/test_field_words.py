@@ -109,7 +109,7 @@ def test_a_plan_that_loses_to_a_control(prostm, tmp_path):
 def test_sizes_that_cannot_be(refuses, tmp_path):
     np.save(tmp_path / "a.npy", np.ones((4, 5)))
     (tmp_path / "a.json").write_text(json.dumps(blob_field()))
-    refuses("plan", "a.npy", "--cell-mm", "5", "--width-mm", "20", words=["--width-mm and --cell-mm exclude each other"])
+    refuses("plan", "a.npy", "--cell-mm", "5", "--width-mm", "20", words=["--cell-mm and --width-mm exclude each other"])
     refuses("plan", "a.npy", "--width-mm", "0", words=["--width-mm 0 over 5 columns"])
     refuses("plan", "a.npy", "--width-mm", "20", "--invert", words=["a.npy is no picture; leave out --invert"])
     refuses("plan", "a.json", "--width-mm", "20", words=["says itself how large", "--width-mm"])

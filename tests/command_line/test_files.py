@@ -11,7 +11,7 @@ import pytest
 
 from test_bad_input import foci_file, hand_lines
 
-COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices", "settings"]
+COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices", "check", "settings"]
 # options that are texts and yet no files; one that is not among these must say that it is INPUT or OUTPUT
 WORDS = {"NAME", "ADDRESS"}
 
@@ -54,6 +54,8 @@ def test_no_output_may_be_another_file_of_the_command(program, refuses, tmp_path
             arguments += ["--out", "o.h5"]
         if command == "run":
             arguments += ["--view"]
+        if other == "--beside" and output != "--figure":
+            arguments += ["--figure", "f.png"]
         arguments += [path] if not other.startswith("--") else [other, path]
         arguments += [output, f"inner/../{path.name}"]
         refuses(*arguments, words=["one file", path.name])
