@@ -562,7 +562,7 @@ TEST(PathEmitter, SettingsAreChecked) {
   EXPECT_EQ(refused([](EmitSettings&) {}), "accepted");
   EXPECT_EQ(refused([](EmitSettings& s) { s.foci = 9; }), "foci = 9 must be between 1 and 8");
   EXPECT_EQ(refused([](EmitSettings& s) { s.stall_fade_time = 1.0; }),
-            "stall_fade_time = 1 s must be between 1e-06 and 0.04 s");
+            "stall_fade_time = 1 s must be between 1e-6 and 0.04 s");
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (double EmitSettings::*field :
        {&EmitSettings::full_scale_pressure, &EmitSettings::silent_below, &EmitSettings::power_limit,

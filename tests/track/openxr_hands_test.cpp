@@ -137,7 +137,7 @@ TEST_F(OpenXr, ALostSessionIsAskedForAgain) {
   ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 2; }));
   ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 0; }));
   EXPECT_FALSE(hands->tracker_status()->connected);
-  EXPECT_THAT(hands->tracker_status()->sentence, testing::HasSubstr("is over"));
+  EXPECT_THAT(hands->tracker_status()->sentence, testing::HasSubstr("has ended"));
   ASSERT_TRUE(eventually([&] { return hands_of(*hands) == 2; }));
   EXPECT_GE(hands->tracker_status()->reconnects, 1);
 }
