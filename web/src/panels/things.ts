@@ -8,7 +8,8 @@ import type { Frame } from "../wire";
 
 const kNames = {
   array: "array of transducers", box: "box of the smoke", smoke: "smoke", hand: "hand", target: "",
-  path: "path of a focal point", focus: "focal point", ruler: "height above the array [mm]", under: "place under the palm",
+  path: "path of a focal point", focus: "focal point", ruler: "height above the array [mm]",
+  under: "place under the palm",
 } as const;
 type Thing = keyof typeof kNames;
 

@@ -2,8 +2,8 @@
 
 import {
   BufferGeometry, Color, DepthTexture, DirectionalLight, Float32BufferAttribute, GLSL3, HalfFloatType, HemisphereLight,
-  LinearFilter, Matrix4, Mesh, OrthographicCamera, Raycaster, RawShaderMaterial, Scene, UnsignedIntType, Vector2, Vector3,
-  WebGLRenderer, WebGLRenderTarget, type Texture,
+  LinearFilter, Matrix4, Mesh, OrthographicCamera, Raycaster, RawShaderMaterial, Scene, UnsignedIntType, Vector2,
+  Vector3, WebGLRenderer, WebGLRenderTarget, type Texture,
 } from "three";
 import type { Hello } from "../messages";
 import type { Frame } from "../wire";
@@ -26,8 +26,8 @@ function target(samples: number): WebGLRenderTarget {
   return made;
 }
 
-/// By what a picture costs: the least and the most share of the screen's pixels along a side, and the time of a picture from
-/// which there are to be fewer, and up to which more [ms].
+/// Least and most share of the screen's pixels along a side; time of a picture above which there are fewer of them, and
+/// below which more [ms].
 const kQuality = {
   graphics: { least: 0.6, most: 1, slow: 66, fast: 30 }, processor: { least: 0.35, most: 0.8, slow: 90, fast: 45 },
 };
@@ -144,7 +144,7 @@ export class View {
     return pick(this.field, caster.ray.origin, caster.ray.direction);
   }
 
-  /// Whether the next picture may be drawn: none is heaped upon one that is not done, and `interval` [ms] lies between them.
+  /// Whether the next picture may be drawn: the one before is done, and was begun `interval` [ms] ago.
   ready(now: number, interval: number): boolean {
     if (this.fence !== null) {
       const gl = this.renderer.getContext() as WebGL2RenderingContext;

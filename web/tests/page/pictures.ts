@@ -21,7 +21,12 @@ try {
       const tip = hands[0]?.joints.subarray(8 * 15, 8 * 15 + 3), palm = hands[0]?.joints;
       const open = tip !== undefined && palm !== undefined && Math.hypot(tip[0]! - palm[0]!, tip[1]! - palm[1]!, tip[2]! - palm[2]!) > 0.11;
       const good = open && plan.length === 4 && numbers[24]! > 0.45 && numbers[18]! > 0.94;
-      if (good) location.hash = "still";
+      if (good) {
+        const mode = document.querySelector<HTMLSelectElement>("#picture-mode")!;
+        mode.value = "auto";
+        mode.dispatchEvent(new Event("change"));
+        location.hash = "still";
+      }
       return good;
     }, 0, "four paths where the smoke presses", 180_000);
     const drawn = await page.evaluate(() => window.prostm.pictures);
