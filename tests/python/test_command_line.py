@@ -1,13 +1,12 @@
 """The module and the command line are the same planner: equal fields give equal numbers, to the bit."""
 
 import json
-import re
 
 import numpy as np
 import prostm
 import pytest
 
-from conftest import ROOT, blobs, shared_file
+from conftest import blobs, shared_file
 
 def assert_same_plan(result, document):
     """Checks that a PlanResult and a plan file have the same paths, metrics and counts."""
@@ -106,14 +105,3 @@ def test_plans_written_here_and_there_are_the_same_file(program, tmp_path, field
     text = prostm.plan_to_json(result.plan, field, result.settings, result.stats, result.metrics(),
                                prostm.controls(field))
     assert len(json.loads(text)["controls"]) == 3
-
-
-def test_the_example_of_the_page_works(tmp_path, monkeypatch):
-    """Runs every block of docs/python.md, one after the other, in a folder that has its field."""
-    monkeypatch.chdir(tmp_path)
-    np.save("palm.npy", blobs())
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), flags=re.S)
-    assert len(blocks) >= 3
-    names = {}
-    for block in blocks:
-        exec(compile(block, "docs/python.md", "exec"), names)
