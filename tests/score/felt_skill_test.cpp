@@ -65,6 +65,19 @@ TEST(FeltSkill, IsUnknownWithoutPressureOrAPlan) {
   EXPECT_TRUE(std::isnan(felt(planned, planned.plan)));
 }
 
+TEST(FeltSkill, IsUnknownOnceItIsStopped) {
+  const Planned planned;
+  WorkerPool pool(1);
+  std::stop_source stop;
+  const auto skill = [&] {
+    return felt_skill(planned.plan, planned.frame, 0, {}, kRate, usx_array(), pool,
+                      stop.get_token());
+  };
+  EXPECT_FALSE(std::isnan(skill()));
+  stop.request_stop();
+  EXPECT_TRUE(std::isnan(skill()));
+}
+
 TEST(FeltSkill, IsUnknownOfAPlanThatNoArrayPlays) {
   Planned planned;
   EmitSettings unheard;

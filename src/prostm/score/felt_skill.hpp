@@ -1,6 +1,8 @@
 #pragma once
 /// Skill of the percept of a plan that an array plays.
 
+#include <stop_token>
+
 #include "prostm/acoustics/array.hpp"
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/emit/emitter.hpp"
@@ -17,11 +19,11 @@ LoopSamples plan_loop(const Plan& plan, const TargetFrame& frame, const EmitSett
 
 /// Returns skill_8 of the percept against the target of one patch: plan_loop() as `array` plays it
 /// with the solver Weighted in still air of 20 °C, felt by a FeelingSkin. Returns NaN for a plan or
-/// target without pressure, a loop that is silent throughout, a lap above kLongestFelt, or if
-/// is_felt() is false. Takes about 0.25 s for a hand.
+/// target without pressure, a loop that is silent throughout, a lap above kLongestFelt, if
+/// is_felt() is false, or once `stop` is requested. Takes about 0.25 s for a hand.
 /// @throws std::invalid_argument as loop_samples() and loop_drives() do.
 double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
                   const EmitSettings& settings, double sample_rate, const TransducerArray& array,
-                  WorkerPool& pool);
+                  WorkerPool& pool, const std::stop_token& stop = {});
 
 }  // namespace prostm

@@ -12,12 +12,13 @@ namespace {
 // a plan takes about 0.25 s: 5 % of a core
 constexpr std::chrono::seconds kPause{5};
 
-double skill_of(const PlanSnapshot& plan, int patch, WorkerPool& pool) {
+double skill_of(const PlanSnapshot& plan, int patch, WorkerPool& pool,
+                const std::stop_token& stop) {
   EmitSettings emit = plan.settings->emit;
   emit.full_scale_pressure = plan.full_scale_pressure;
   try {
     return felt_skill(plan.plan, plan.target, patch, emit, plan.emission_rate,
-                      plan.settings->transducers, pool);
+                      plan.settings->transducers, pool, stop);
   } catch (const std::invalid_argument&) {
     return std::numeric_limits<double>::quiet_NaN();  // an array that reaches no focal point of it
   }
@@ -54,7 +55,7 @@ void FeltWatch::work(const std::stop_token& stop) {
       plan = std::move(plan_);
       patch = patch_;
     }
-    skill_.store(skill_of(plan, patch, pool), std::memory_order_relaxed);
+    skill_.store(skill_of(plan, patch, pool, stop), std::memory_order_relaxed);
   }
 }
 
