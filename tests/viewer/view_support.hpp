@@ -161,6 +161,13 @@ class Page {
       if (json.at("type") == type) return json;
     }
   }
+  /// Reads the messages that have arrived.
+  void catch_up() {
+    while (socket_.next_layer().available() > 0) {
+      beast::flat_buffer buffer;
+      socket_.read(buffer);
+    }
+  }
   /// Reads until the server closes the connection.
   void read_to_the_end() {
     boost::system::error_code wrong;

@@ -52,7 +52,7 @@ LoopSamples plan_loop(const Plan& plan, const TargetFrame& frame, const EmitSett
 
 double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
                   const EmitSettings& settings, double sample_rate, const TransducerArray& array,
-                  WorkerPool& pool, const std::stop_token& stop) {
+                  WorkerPool& pool, const std::function<bool()>& go_on) {
   const TargetField& target = frame.patches[static_cast<std::size_t>(patch)];
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const LiftedPlan on_skin = lifted(plan, frame, settings);
@@ -62,8 +62,8 @@ double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
   if (is_silent(loop) || !is_felt(target, loop)) return kUnknown;
   const Medium air;
   LoopDriveResult drives;
-  const auto go_on = [&](int, int) { return !stop.stop_requested(); };
-  if (!loop_drives(array, air, loop, {}, go_on, drives)) return kUnknown;
+  const auto progress = [&](int, int) { return go_on(); };
+  if (!loop_drives(array, air, loop, {}, progress, drives)) return kUnknown;
   const FeltField felt =
       FeelingSkin(target).feel(PackedArray(array, air), air, target, loop, drives, pool);
   return score_physical(target, felt.percept, 0.0).skill_8;

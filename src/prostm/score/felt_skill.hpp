@@ -1,7 +1,7 @@
 #pragma once
 /// Skill of the percept of a plan that an array plays.
 
-#include <stop_token>
+#include <functional>
 
 #include "prostm/acoustics/array.hpp"
 #include "prostm/core/worker_pool.hpp"
@@ -20,10 +20,12 @@ LoopSamples plan_loop(const Plan& plan, const TargetFrame& frame, const EmitSett
 /// Returns skill_8 of the percept against the target of one patch: plan_loop() as `array` plays it
 /// with the solver Weighted in still air of 20 °C, felt by a FeelingSkin. Returns NaN for a plan or
 /// target without pressure, a loop that is silent throughout, a lap above kLongestFelt, if
-/// is_felt() is false, or once `stop` is requested. Takes about 0.25 s for a hand.
+/// is_felt() is false, or if `go_on` returns false, which is asked often. Takes about 0.25 s for a
+/// hand.
 /// @throws std::invalid_argument as loop_samples() and loop_drives() do.
-double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
-                  const EmitSettings& settings, double sample_rate, const TransducerArray& array,
-                  WorkerPool& pool, const std::stop_token& stop = {});
+double felt_skill(
+    const Plan& plan, const TargetFrame& frame, int patch, const EmitSettings& settings,
+    double sample_rate, const TransducerArray& array, WorkerPool& pool,
+    const std::function<bool()>& go_on = [] { return true; });
 
 }  // namespace prostm

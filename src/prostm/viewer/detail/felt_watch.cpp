@@ -18,7 +18,7 @@ double skill_of(const PlanSnapshot& plan, int patch, WorkerPool& pool,
   emit.full_scale_pressure = plan.full_scale_pressure;
   try {
     return felt_skill(plan.plan, plan.target, patch, emit, plan.emission_rate,
-                      plan.settings->transducers, pool, stop);
+                      plan.settings->transducers, pool, [&] { return !stop.stop_requested(); });
   } catch (const std::invalid_argument&) {
     return std::numeric_limits<double>::quiet_NaN();  // an array that reaches no focal point of it
   }
