@@ -42,6 +42,26 @@ prostm::TargetField any_field(std::string_view& bytes) {
   return field;
 }
 
+/// Makes a plan whose paths may lie on no patch and hold any numbers.
+prostm::RecordedPlan any_plan(std::string_view& bytes) {
+  prostm::RecordedPlan made;
+  made.full_scale_pressure = take<double>(bytes);
+  for (double& sigma : made.sigma) sigma = take<double>(bytes);
+  for (int paths = take<std::uint8_t>(bytes) % 9; paths > 0; --paths) {
+    prostm::FocalPath path;
+    path.patch = take<std::int8_t>(bytes);
+    for (int points = take<std::uint8_t>(bytes) % 65; points > 0; --points) {
+      path.points.emplace_back(take<double>(bytes), take<double>(bytes));
+      path.pressure.push_back(take<double>(bytes));
+    }
+    path.length = take<double>(bytes);
+    path.speed = take<double>(bytes);
+    path.period = take<double>(bytes);
+    made.plan.paths.push_back(path);
+  }
+  return made;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -54,13 +74,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     frame.time = take<double>(bytes);
     const int patches = take<std::uint8_t>(bytes) % 3;
     for (int p = 0; p < patches; ++p) frame.patches.push_back(any_field(bytes));
-    recorder.append(frame, {}, nullptr, nullptr);
+    const RecordedPlan made = any_plan(bytes);
+    recorder.append(frame, {}, made.plan.paths.empty() ? nullptr : &made);
   }
   recorder.close();
   const RecordingReader reader(path);
   for (int i = 0; i < reader.frames(); ++i) {
     try {
       for (const TargetField& field : reader.frame(i).patches) validate(field);
+      static_cast<void>(reader.plan(i));
     } catch (const InputError&) {
       // the required answer to bad input
     }

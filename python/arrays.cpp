@@ -13,9 +13,20 @@ std::string shape_text(const py::array& array) {
 
 }  // namespace
 
+std::string described(py::handle value) {
+  const bool is_short = value.is_none() || py::isinstance<py::str>(value) ||
+                        py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value);
+  const std::string text = is_short ? py::repr(value) : py::str("");
+  constexpr std::size_t kLongest = 60;
+  if (is_short && text.size() <= kLongest) return text;
+  if (py::isinstance<py::array>(value)) return "an array";
+  const std::string type = py::str(py::type::of(value).attr("__name__"));
+  return (std::string("aeiouAEIOU").find(type[0]) == std::string::npos ? "a " : "an ") + type;
+}
+
 Numbers numbers(py::handle value, const std::string& name, int dimensions, std::size_t most) {
   const py::array given = py::array::ensure(value);
-  if (!given) throw py::type_error(name + " must be an array of numbers");
+  if (!given) throw py::type_error(name + " must be an array of numbers, not " + described(value));
   if (std::string("fiub").find(given.dtype().kind()) == std::string::npos) {
     throw py::type_error(name + " must be an array of numbers, not of dtype " +
                          std::string(py::str(given.dtype())));

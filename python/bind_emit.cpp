@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "plan_result.hpp"
 #include "prostm/core/require.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "settings.hpp"
@@ -35,10 +36,22 @@ std::unique_ptr<LiftedPlan> lift_on_frame(const Plan& plan, const TargetFrame& f
   return lifted;
 }
 
-std::unique_ptr<LiftedPlan> lift_on_field(const Plan& plan, const TargetField& field) {
+/// Lifts a Plan for a target, or a PlanResult for its own.
+std::unique_ptr<LiftedPlan> lift_any(const py::object& plan, const py::object& target) {
+  if (py::isinstance<PlanResult>(plan)) {
+    if (!target.is_none()) {
+      throw std::invalid_argument(
+          "a PlanResult holds the target that it was made for; leave out target, or give the "
+          "result's plan");
+    }
+    const auto& result = plan.cast<const PlanResult&>();
+    return lift_on_frame(result.plan, result.frame());
+  }
+  if (!py::isinstance<Plan>(plan))
+    throw py::type_error("plan must be a Plan or a PlanResult, not " + described(plan));
   TargetFrame frame;
-  frame.patches.push_back(field);
-  return lift_on_frame(plan, frame);
+  for (const TargetField* patch : patches_of(target)) frame.patches.push_back(*patch);
+  return lift_on_frame(plan.cast<const Plan&>(), frame);
 }
 
 void bind_lifted(py::module_& m) {
@@ -67,8 +80,8 @@ void bind_lifted(py::module_& m) {
             return view({static_cast<py::ssize_t>(s.size())}, s.data(), self);
           },
           "(n,) arc length of each point [m], s[0] = 0; a view.")
-      .def_readonly("length", &LiftedPath::length, "On the skin [m].")
-      .def_readonly("speed", &LiftedPath::speed, "Of the focal point [m/s].");
+      .def_readonly("length", &LiftedPath::length, "Length on the skin [m].")
+      .def_readonly("speed", &LiftedPath::speed, "Speed of the focal point [m/s].");
 
   py::class_<LiftedFocus>(m, "LiftedFocus", "A focal point that stands still on the skin.")
       .def_property_readonly(
@@ -78,7 +91,7 @@ void bind_lifted(py::module_& m) {
           },
           "(3,) in the device's frame [m]; a view.")
       .def_readonly("pressure", &LiftedFocus::pressure,
-                    "Rendered at the peak of the modulation, in the target's unit.");
+                    "Rendered pressure at the peak of the modulation, in the target's unit.");
 
   py::class_<LiftedPlan>(m, "LiftedPlan", "A plan on the skin, ready to be emitted; see lift().")
       .def_property_readonly(
@@ -101,15 +114,14 @@ void bind_lifted(py::module_& m) {
             return foci;
           },
           "The LiftedFoci, as a new list.")
-      .def_readwrite("id", &LiftedPlan::id, "Number of the plan, as TakeOver repeats it.");
+      .def_readwrite("id", &LiftedPlan::id, "Number of the plan, which TakeOver repeats.");
 
   m.def(
-      "lift", &lift_on_field,
+      "lift", &lift_any,
       "Lifts a plan back to the skin: each segment is cut in five, each point gets the height of\n"
-      "the skin there, in the device's frame. target: the TargetField or TargetFrame that was\n"
-      "planned. Returns a LiftedPlan.",
-      py::arg("plan"), py::arg("target"));
-  m.def("lift", &lift_on_frame, py::arg("plan"), py::arg("target"));
+      "the skin there, in the device's frame. plan: a PlanResult, or a Plan with the TargetField\n"
+      "or TargetFrame that it was made for as target. Returns a LiftedPlan.",
+      py::arg("plan"), py::arg("target") = py::none());
 }
 
 /// An emitter and a lock for each of its two sides, so that any Python threads may call it.
@@ -122,7 +134,7 @@ struct SharedEmitter {
   std::mutex planners_side, devices_side;
 };
 
-/// The emitter of a method, a class of its own in Python.
+/// The emitter of a method; each has its own class in Python.
 template <Method kMethod>
 struct SharedEmitterOf : SharedEmitter {
   SharedEmitterOf(const EmitSettings& s, double rate) : SharedEmitter(kMethod, s, rate) {}
@@ -136,8 +148,9 @@ void bind_emitter_of(py::module_& m, const char* name, const char* doc) {
              set_settings(group_of("EmitSettings", own), values);
              return std::make_unique<SharedEmitterOf<kMethod>>(own, sample_rate);
            }),
-           "settings: EmitSettings, copied; None: the defaults. sample_rate: of the device [Hz].\n"
-           "Further keywords are settings. Raises ValueError that names the setting and its bound.",
+           "settings: EmitSettings, copied; None: the defaults. sample_rate: that of the device\n"
+           "[Hz]. Further keywords are settings. Raises ValueError that names the setting and its\n"
+           "bound.",
            py::arg("settings") = py::none(), py::arg("sample_rate") = 40e3);
 }
 
@@ -182,10 +195,12 @@ void bind_emitter(py::module_& m) {
       "played at intensity 1, must be given.");
 
   Record<EmitStats>(m, "EmitStats", "Counters of an emission.")
-      .field("samples", &EmitStats::samples, "Emitted, summed over focal points.")
-      .field("saturated", &EmitStats::saturated, "Clipped at full scale.")
-      .field("limited", &EmitStats::limited, "Scaled down by the power limit.")
-      .field("faded", &EmitStats::faded, "In a fade of a transition.")
+      .field("samples", &EmitStats::samples, "Samples emitted, summed over focal points.")
+      .field("saturated", &EmitStats::saturated,
+             "Samples whose path asks for more than full scale, clipped to intensity 1. A path at\n"
+             "full scale itself, as planned for the largest pressures, is not counted.")
+      .field("limited", &EmitStats::limited, "Samples scaled down by the power limit.")
+      .field("faded", &EmitStats::faded, "Samples in a fade of a transition.")
       .field("laps_started", &EmitStats::laps_started, "Laps that began.")
       .field("laps_cut", &EmitStats::laps_cut, "Laps that were cut short.")
       .field("stalls", &EmitStats::stalls, "Fade-outs because no plan came.")
@@ -197,12 +212,12 @@ void bind_emitter(py::module_& m) {
              "Largest step between samples while the intensity is above 1 % [m].")
       .done();
   Record<TakeOver>(m, "TakeOver", "When a plan took over, in counts of samples.")
-      .field("plan", &TakeOver::plan, "Its id.")
+      .field("plan", &TakeOver::plan, "Id of the plan.")
       .field("arrival_sample", &TakeOver::arrival_sample,
-             "The first sample that was made after it had arrived.")
-      .field("first_sample", &TakeOver::first_sample, "The first sample that follows it.")
+             "First sample that was made after the plan arrived.")
+      .field("first_sample", &TakeOver::first_sample, "First sample that follows the plan.")
       .field("redrawn_sample", &TakeOver::redrawn_sample,
-             "When 90 % of its path length was drawn; -1: never.")
+             "Sample at which 90 % of its path length was drawn; -1: never.")
       .done();
 
   py::class_<SharedEmitter>(
@@ -212,7 +227,8 @@ void bind_emitter(py::module_& m) {
       "at most 1/40 per sample and the sum of their squares stays within power_limit. A plan that\n"
       "no other follows fades out after stall_time.")
       .def("submit", &submit,
-           "Hands a LiftedPlan over, which is copied; one that no fill() fetched yet is replaced.",
+           "Hands over a LiftedPlan, which is copied; it replaces a plan that no fill() has "
+           "fetched.",
            py::arg("plan"))
       .def(
           "lose",
@@ -221,11 +237,11 @@ void bind_emitter(py::module_& m) {
             const std::lock_guard lock(self.planners_side);
             self.emitter->lose();
           },
-          "The hand is gone: fades out within 50 ms, until the next plan.")
+          "Fades out within 50 ms, until the next plan: the hand is gone.")
       .def(
           "fill", &fill,
-          "The next samples, first ... first + samples - 1; call it with consecutive samples. A\n"
-          "plan that was submitted is fetched at the start of a call.\n\n"
+          "Makes the samples first ... first + samples - 1; call it with consecutive samples. A\n"
+          "submitted plan is fetched at the start of a call.\n\n"
           "Returns (positions, intensities): (samples, foci, 3) float32 in the device's frame [m]\n"
           "and (samples, foci) float32 in 0..1, linear in acoustic pressure amplitude. Both are\n"
           "views of one array of (x, y, z, intensity).",
@@ -233,7 +249,7 @@ void bind_emitter(py::module_& m) {
       .def_property_readonly(
           "foci", [](const SharedEmitter& self) { return self.emitter->foci(); },
           "Focal points per sample.")
-      .def_readonly("sample_rate", &SharedEmitter::sample_rate, "[Hz].")
+      .def_readonly("sample_rate", &SharedEmitter::sample_rate, "Samples a second [Hz].")
       .def_property_readonly(
           "settings", [](const SharedEmitter& self) { return EmitSettings(self.settings); },
           "A copy of the settings.")
@@ -246,7 +262,7 @@ void bind_emitter(py::module_& m) {
             if (!self.emitter->next_take_over(out)) return std::nullopt;
             return out;
           },
-          "The oldest TakeOver that was not read, or None.")
+          "The oldest unread TakeOver, or None.")
       .def(
           "stats",
           [](SharedEmitter& self) {
@@ -254,7 +270,7 @@ void bind_emitter(py::module_& m) {
             const std::lock_guard lock(self.planners_side);
             return self.emitter->stats();
           },
-          "EmitStats as of the last fill().");
+          "The EmitStats after the last fill().");
   bind_emitter_of<Method::ProStm>(m, "PathEmitter",
                                   "Plans of paths as samples: speed, transitions, drive law, "
                                   "fade-out; docs/design.md, section\n"
@@ -299,8 +315,8 @@ void bind_emit(py::module_& m) {
         require_between("power_limit", power_limit, 1e-6, double{kMaxPaths});
         return even_share(paths, power_limit);
       },
-      "min(1, power_limit / paths): the share of full scale's radiation pressure that so many\n"
-      "focal points may have at the same time when they want the same.",
+      "min(1, power_limit / paths): the share of full scale's radiation pressure that each of so\n"
+      "many focal points may have when all want the same.",
       py::arg("paths"), py::arg("power_limit") = EmitSettings{}.power_limit);
 }
 

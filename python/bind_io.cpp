@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "hdf5_turn.hpp"
 #include "plan_result.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/io/field_file.hpp"
@@ -17,9 +18,18 @@ namespace {
 using Path = std::filesystem::path;
 constexpr std::size_t kMaxPlanBytes = std::size_t{64} << 20;
 
+/// Whether HDF5 reads the file.
+bool is_recording(const Path& path) {
+  return path.extension() == ".h5" || path.extension() == ".H5";
+}
+
 TargetField read_field_file(const Path& path, std::optional<double> cell_mm, int frame, bool invert,
                             std::optional<double> width_mm) {
   const FieldFileOptions options{cell_mm, width_mm, frame, invert};
+  if (is_recording(path)) {
+    const Hdf5Turn turn;
+    return read_field(path.string(), options);
+  }
   const py::gil_scoped_release unlocked;
   return read_field(path.string(), options);
 }
@@ -71,10 +81,10 @@ void bind_fields(py::module_& m) {
 }
 
 void bind_plans(py::module_& m) {
-  py::class_<PlanFile>(m, "PlanFile", "What a plan file says.")
+  py::class_<PlanFile>(m, "PlanFile", "The contents of a plan file.")
       .def_readonly("plan", &PlanFile::plan, "The Plan.")
       .def_readonly("raster", &PlanFile::raster,
-                    "TargetField with plane, skin and heights; its pressure is 0.");
+                    "TargetField with plane, skin and heights; its pressure is 0 on the skin.");
   m.def(
       "read_plan",
       [](const Path& path) {
@@ -90,16 +100,24 @@ void bind_plans(py::module_& m) {
       "write_plan", &write_plan_file,
       "Writes a plan file (prostm-plan/1). target: the TargetField that was planned, whose plane\n"
       "and heights are repeated in the file. settings: PlanSettings for paths, AmSettings for\n"
-      "foci. What is None is left out.",
+      "foci. Arguments that are None are left out.",
       py::arg("path"), py::arg("plan"), py::arg("target"), py::arg("settings"),
       py::arg("stats") = py::none(), py::arg("metrics") = py::none(),
       py::arg("controls") = py::none());
-  m.def("plan_to_json", &plan_text, "What write_plan() writes, as a text.", py::arg("plan"),
-        py::arg("target"), py::arg("settings"), py::arg("stats") = py::none(),
+  m.def("plan_to_json", &plan_text, "The plan as prostm-plan/1, a text, as write_plan() writes it.",
+        py::arg("plan"), py::arg("target"), py::arg("settings"), py::arg("stats") = py::none(),
         py::arg("metrics") = py::none(), py::arg("controls") = py::none());
 }
 
 }  // namespace
+
+py::object target_of(const py::object& target, std::optional<double> cell_mm, int frame) {
+  if (py::isinstance<py::str>(target) || py::hasattr(target, "__fspath__"))
+    return py::cast(read_field_file(target.cast<Path>(), cell_mm, frame, false, std::nullopt));
+  if (!cell_mm && frame == 0) return target;
+  throw std::invalid_argument("cell_mm and frame belong to the name of a file, not to " +
+                              described(target));
+}
 
 void bind_io(py::module_& m) {
   bind_fields(m);

@@ -121,12 +121,13 @@ void bind_focus(py::module_& m) {
   py::class_<FocalPoint>(m, "FocalPoint",
                          "A focal point that stands still in a target's plane, modulated (AM).")
       .def(py::init(&make_focus),
-           "position: (2,) in the plane [m]. pressure: rendered at the peak of the modulation,\n"
-           ">= 0. patch: index of the target patch (hand). Raises ValueError, TypeError.",
+           "position: (2,) in the plane [m]. pressure: rendered pressure at the peak of the\n"
+           "modulation, >= 0. patch: index of the target patch (hand). Raises ValueError, "
+           "TypeError.",
            py::arg("position"), py::arg("pressure"), py::arg("patch") = 0)
       .def_property_readonly("position", &position_of, "(2,) in the plane [m]; a view.")
       .def_readonly("pressure", &FocalPoint::pressure,
-                    "Rendered at the peak of the modulation, in the target's unit.")
+                    "Rendered pressure at the peak of the modulation, in the target's unit.")
       .def_readonly("patch", &FocalPoint::patch, "Index of the target patch (hand).")
       .def("__repr__",
            [](const py::object& self) {
@@ -149,7 +150,7 @@ void bind_classes(py::module_& m) {
       .def(py::init(&make_path),
            "points: (n, 2), n from 1 to 64, in the plane [m].\n"
            "pressure: (n,) rendered at each point, >= 0, or one number for all.\n"
-           "speed: of the focal point [m/s]. patch: index of the target patch (hand).\n"
+           "speed: speed of the focal point [m/s]. patch: index of the target patch (hand).\n"
            "Length and period follow from these. Raises ValueError, TypeError.",
            py::arg("points"), py::arg("pressure"), py::arg("speed") = PlanSettings{}.speed,
            py::arg("patch") = 0)
@@ -157,11 +158,11 @@ void bind_classes(py::module_& m) {
       .def_property_readonly("pressure", &pressure_of,
                              "(n,) rendered pressure p_i = gain * p*, in the target's unit, linear "
                              "between points; a view.")
-      .def_readonly("length", &FocalPath::length, "Of the closed polygon in the plane [m].")
-      .def_readonly("speed", &FocalPath::speed, "Of the focal point [m/s].")
+      .def_readonly("length", &FocalPath::length, "Length of the closed polygon in the plane [m].")
+      .def_readonly("speed", &FocalPath::speed, "Speed of the focal point [m/s].")
       .def_readonly("period", &FocalPath::period,
-                    "Of a lap [s]: length / speed, or longer where the presets best and fast "
-                    "planned for uneven skin.")
+                    "Duration of a lap [s]: length / speed, or longer where the presets best and "
+                    "fast planned for uneven skin.")
       .def_readonly("patch", &FocalPath::patch, "Index of the target patch (hand).")
       .def("__repr__", &path_repr)
       .def(py::pickle(
@@ -177,7 +178,7 @@ void bind_classes(py::module_& m) {
           }));
 
   py::class_<Plan>(m, "Plan",
-                   "What the focal points are to do: at most 8 closed paths, or 8 foci (AM).")
+                   "A plan for the focal points: at most 8 closed paths, or 8 foci (AM).")
       .def(py::init(&make_plan), "paths: FocalPaths, or foci: FocalPoints, which are copied.",
            py::arg("paths") = py::list(), py::arg("foci") = py::list())
       .def_property_readonly("paths", &paths_of, "The FocalPaths, as a new list.")

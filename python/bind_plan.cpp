@@ -58,19 +58,10 @@ void check_status(PlanStatus status) {
 template <class P, class Call>
 std::unique_ptr<PlanResult> plan_with(SharedPlanner<P>& self, const py::object& target,
                                       const Call& call) {
+  for (const TargetField* patch : patches_of(target)) check_cells(*patch, self);
   const auto* field =
       py::isinstance<TargetField>(target) ? target.cast<const TargetField*>() : nullptr;
-  const auto* frame =
-      py::isinstance<TargetFrame>(target) ? target.cast<const TargetFrame*>() : nullptr;
-  if (field == nullptr && frame == nullptr) {
-    throw py::type_error("target must be a TargetField or a TargetFrame, not " +
-                         std::string(py::repr(py::type::of(target))));
-  }
-  if (field != nullptr) {
-    check_cells(*field, self);
-  } else {
-    for (const TargetField& patch : frame->patches) check_cells(patch, self);
-  }
+  const auto* frame = field == nullptr ? target.cast<const TargetFrame*>() : nullptr;
   auto result = std::make_unique<PlanResult>(target, self.planner.settings());
   {
     const py::gil_scoped_release unlocked;
@@ -81,8 +72,9 @@ std::unique_ptr<PlanResult> plan_with(SharedPlanner<P>& self, const py::object& 
   return result;
 }
 
-std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::object& target,
-                                       bool trace) {
+std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::object& given,
+                                       bool trace, std::optional<double> cell_mm, int frame_index) {
+  const py::object target = target_of(given, cell_mm, frame_index);
   if (trace && py::isinstance<TargetFrame>(target))
     throw std::invalid_argument("a trace is kept of a TargetField only");
   return plan_with(self, target,
@@ -93,8 +85,9 @@ std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::o
                    });
 }
 
-std::unique_ptr<PlanResult> plan_foci(SharedPlanner<AmPlanner>& self, const py::object& target) {
-  return plan_with(self, target,
+std::unique_ptr<PlanResult> plan_foci(SharedPlanner<AmPlanner>& self, const py::object& target,
+                                      std::optional<double> cell_mm, int frame_index) {
+  return plan_with(self, target_of(target, cell_mm, frame_index),
                    [&](const TargetField* field, const TargetFrame* frame, PlanResult& r) {
                      return frame != nullptr ? self.planner.plan(*frame, r.plan, r.stats)
                                              : self.planner.plan(*field, r.plan, r.stats);
@@ -102,13 +95,6 @@ std::unique_ptr<PlanResult> plan_foci(SharedPlanner<AmPlanner>& self, const py::
 }
 
 void bind_planner(py::module_& m) {
-  py::enum_<PlanStatus>(m, "PlanStatus", "How a call of the planner ended.")
-      .value("Planned", PlanStatus::Planned, "the plan holds 1..paths paths")
-      .value("EmptyTarget", PlanStatus::EmptyTarget,
-             "no skin, or no pressure on it that counts: the plan holds no path")
-      .value("InvalidTarget", PlanStatus::InvalidTarget,
-             "raised as ValueError in Python, never returned");
-
   py::class_<SharedPlanner<Planner>>(
       m, "Planner",
       "PRO-STM: from a target pressure field to a few closed focal-point paths.\n\n"
@@ -139,12 +125,15 @@ void bind_planner(py::module_& m) {
           },
           "Forgets the plan before, which the presets best and fast continue from.")
       .def("plan", &plan_paths,
-           "Plans a TargetField, or a TargetFrame (the paths are shared out between its patches,\n"
-           "and no path spans two). trace=True keeps the intermediate results of a field.\n\n"
+           "Plans a TargetField, a TargetFrame (the paths are shared out between its patches, and\n"
+           "no path spans two), or the file of a field, given by its name. A .npy or .png file\n"
+           "needs cell_mm; frame is that of a .h5 file. trace=True keeps the intermediate results\n"
+           "of a field.\n\n"
            "Returns a PlanResult. A field without pressure gives a plan without paths. Raises\n"
            "ValueError for more than max_cells cells, a pressure above 1e300, a cell that is not\n"
            "1e-6 to 1 m wide.",
-           py::arg("target"), py::arg("trace") = false);
+           py::arg("target"), py::arg("trace") = false, py::kw_only(),
+           py::arg("cell_mm") = py::none(), py::arg("frame") = 0);
 }
 
 void bind_am_planner(py::module_& m) {
@@ -165,12 +154,12 @@ void bind_am_planner(py::module_& m) {
           [](const SharedPlanner<AmPlanner>& self) { return AmSettings(self.planner.settings()); },
           "A copy of the settings.")
       .def_readonly("max_cells", &SharedPlanner<AmPlanner>::max_cells, "The largest raster.")
-      .def(
-          "plan", &plan_foci,
-          "Plans a TargetField, or a TargetFrame (the foci are shared out between its patches).\n\n"
-          "Returns a PlanResult. A field without pressure gives a plan without foci. Raises\n"
-          "ValueError as Planner.plan() does.",
-          py::arg("target"));
+      .def("plan", &plan_foci,
+           "Plans a TargetField, a TargetFrame (the foci are shared out between its patches), or\n"
+           "the file of a field, given by its name as for Planner.plan().\n\n"
+           "Returns a PlanResult. A field without pressure gives a plan without foci. Raises\n"
+           "ValueError as Planner.plan() does.",
+           py::arg("target"), py::kw_only(), py::arg("cell_mm") = py::none(), py::arg("frame") = 0);
 }
 
 // ---- what came out
@@ -190,7 +179,14 @@ py::array array_of(const std::vector<T>& values) {
 }
 
 void bind_stats(py::module_& m) {
-  Record<PlanStats>(m, "PlanStats", "What a call did and how long each stage took [s].")
+  py::enum_<PlanStatus>(m, "PlanStatus", "How a call of the planner ended.")
+      .value("Planned", PlanStatus::Planned, "the plan holds 1..paths paths")
+      .value("EmptyTarget", PlanStatus::EmptyTarget,
+             "no skin, or no pressure on it that counts: the plan holds no path")
+      .value("InvalidTarget", PlanStatus::InvalidTarget,
+             "raised as ValueError in Python, never returned");
+
+  Record<PlanStats>(m, "PlanStats", "Counts of a call, and the time of each stage [s].")
       .quantities()
       .done();
 
@@ -223,6 +219,9 @@ void bind_plan(py::module_& m) {
       "help(PlanSettings) lists them with bounds and meaning.");
   bind_settings<AmSettings>(m, "AmSettings", "Settings of amplitude modulation, in SI units.");
   bind_stats(m);
+}
+
+void bind_planners(py::module_& m) {
   bind_planner(m);
   bind_am_planner(m);
 }

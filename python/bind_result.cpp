@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
@@ -17,13 +16,13 @@
 namespace prostm::python {
 namespace {
 
-constexpr double kSampleRate = 40e3;  // unless another is given [Hz]
+constexpr double kSampleRate = 40e3;  // default [Hz]
 
 Metrics metrics_of(const PlanResult& result, int patch, const EmitSettings* emission,
                    double sample_rate, const std::optional<std::string>& array) {
   const TargetField& field = result.patch(patch);
   const SegmentPressures played = result.played(emission, sample_rate);
-  const double sigma = result.sigma();
+  const double sigma = result.sigma(patch);
   const GainLaw gain = result.gain_law();
   Metrics metrics;
   {
@@ -45,7 +44,8 @@ py::array field_of(const PlanResult& result, int patch, const EmitSettings* emis
                    double sample_rate) {
   const TargetField& field = result.patch(patch);
   const SegmentPressures played = result.played(emission, sample_rate);
-  return quasi_static_array(result.plan, field, result.sigma(), result.gain_law(), patch, &played);
+  return quasi_static_array(result.plan, field, result.sigma(patch), result.gain_law(), patch,
+                            &played);
 }
 
 void write(const PlanResult& result, const std::filesystem::path& path) {
@@ -55,7 +55,7 @@ void write(const PlanResult& result, const std::filesystem::path& path) {
   const TargetField& field = result.patch(0);
   const SegmentPressures played = result.played(nullptr, kSampleRate);
   PlanQuality quality;
-  quality.sigma = result.sigma();
+  quality.sigma = result.sigma(0);
   quality.full_scale_pressure = result.emission(nullptr).full_scale_pressure;
   const py::gil_scoped_release unlocked;
   const GainLaw gain = result.gain_law();
@@ -84,7 +84,8 @@ SettingsInFile::SettingsInFile(const AnySettings& settings) {
   }
 }
 
-double PlanResult::sigma() const {
+double PlanResult::sigma(int patch) const {
+  if (recorded) return recorded->sigma[static_cast<std::size_t>(patch)];
   return std::visit([](const auto& s) { return s.sigma; }, settings);
 }
 
@@ -94,25 +95,16 @@ GainLaw PlanResult::gain_law() const {
 }
 
 const TargetField& PlanResult::patch(int index) const {
-  if (py::isinstance<TargetField>(target)) {
-    require_between("patch", index, 0, 0);
-    return target.cast<const TargetField&>();
-  }
-  const auto& frame = target.cast<const TargetFrame&>();
-  require_between("patch", index, 0, static_cast<int>(frame.patches.size()) - 1);
-  return frame.patches[static_cast<std::size_t>(index)];
+  const std::vector<const TargetField*> patches = patches_of(target);
+  require_between("patch", index, 0, static_cast<int>(patches.size()) - 1);
+  return *patches[static_cast<std::size_t>(index)];
 }
 
 EmitSettings PlanResult::emission(const EmitSettings* given) const {
-  EmitSettings emit = given != nullptr ? *given : EmitSettings{};
+  EmitSettings emit = recorded ? recorded->emission : EmitSettings{};
+  if (given != nullptr) emit = *given;
   if (emit.full_scale_pressure != 0.0) return emit;
-  const bool one = py::isinstance<TargetField>(target);
-  const std::size_t patches = one ? 1 : target.cast<const TargetFrame&>().patches.size();
-  double largest = 0.0;
-  for (std::size_t i = 0; i < patches; ++i) {
-    largest = std::max(largest, max_pressure(patch(static_cast<int>(i))));
-  }
-  emit.full_scale_pressure = own_full_scale(gain_law().gain, largest);
+  emit.full_scale_pressure = own_full_scale(gain_law().gain, largest_pressure(target));
   return emit;
 }
 
@@ -132,7 +124,8 @@ SegmentPressures PlanResult::played(const EmitSettings* given, double sample_rat
 }
 
 void bind_result(py::module_& m) {
-  py::class_<PlanResult>(m, "PlanResult", "What one call of the planner gave, and was given.")
+  py::class_<PlanResult>(m, "PlanResult",
+                         "A plan with its target, its settings and how it was made.")
       .def_readonly("status", &PlanResult::status, "PlanStatus: Planned or EmptyTarget.")
       .def_readonly("plan", &PlanResult::plan, "The Plan.")
       .def_property_readonly(
@@ -145,25 +138,31 @@ void bind_result(py::module_& m) {
           "The plan's FocalPoints, as a new list.")
       .def_readonly("stats", &PlanResult::stats, "PlanStats: counts, and times [s].")
       .def_readonly("trace", &PlanResult::trace,
-                    "PlanTrace of the intermediate results, or None when none was asked for.")
+                    "PlanTrace of the intermediate results; None unless it was asked for.")
       .def_readonly("target", &PlanResult::target, "The TargetField or TargetFrame.")
       .def_property_readonly(
           "settings", [](const PlanResult& r) { return AnySettings(r.settings); },
           "A copy of the PlanSettings or AmSettings.")
+      .def_property_readonly(
+          "emission", [](const PlanResult& r) { return r.emission(nullptr); },
+          "EmitSettings that play the plan, as a copy: the defaults with a full scale of the gain\n"
+          "times the target's largest pressure, or those of the recording that it was read from.")
       .def(
           "metrics", &metrics_of,
-          "Metrics of what is played, with the planner's sigma and gain. emission: EmitSettings;\n"
-          "None: the defaults. Without a full scale it is the gain times the target's largest\n"
-          "pressure. array: usx, autd3 or a file of an array; felt_skill is of what it plays, and\n"
-          "NaN without. score_plan() gives the metrics of the pressures as planned.",
+          "Metrics of the field that is played, with the planner's sigma and gain.\n\n"
+          "emission: EmitSettings; None: the attribute emission. A full scale of 0 is the gain\n"
+          "times the target's largest pressure. array: usx, autd3 or the file of an array, whose\n"
+          "output felt_skill judges; without it felt_skill is NaN. score_plan() gives the metrics\n"
+          "of the planned pressures.",
           py::arg("patch") = 0, py::arg("emission") = py::none(),
           py::arg("sample_rate") = kSampleRate, py::arg("array") = py::none())
-      .def("quasi_static_field", &field_of,
-           "Eq. (1) of what is played on the target's raster, with the planner's sigma and gain:\n"
-           "(rows, cols). emission, sample_rate: as of metrics(). The function of this name takes\n"
-           "the pressures as planned.",
-           py::arg("patch") = 0, py::arg("emission") = py::none(),
-           py::arg("sample_rate") = kSampleRate)
+      .def(
+          "quasi_static_field", &field_of,
+          "The reconstruction: Eq. (1) with the played pressures on the target's raster, (rows,\n"
+          "cols), with the planner's sigma and gain. emission, sample_rate: as for metrics(). The\n"
+          "function of this name takes the planned pressures.",
+          py::arg("patch") = 0, py::arg("emission") = py::none(),
+          py::arg("sample_rate") = kSampleRate)
       .def("write", &write,
            "Writes a plan file (prostm-plan/1) with stage times, metrics and the planner's "
            "settings.",

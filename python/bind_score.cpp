@@ -51,8 +51,8 @@ void bind_score(py::module_& m) {
                   "(docs/design.md, Quality).")
       .quantities()
       .done();
-  Record<Control>(m, "Control", "What the metrics say about something that must lose.")
-      .field("name", &Control::name, "What it is.")
+  Record<Control>(m, "Control", "The metrics of a field or plan that a good plan must beat.")
+      .field("name", &Control::name, "Its name.")
       .field("metrics", &Control::metrics, "Its Metrics.")
       .done();
 

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -11,7 +12,7 @@ namespace prostm::python {
 namespace {
 
 const char* const kTargetFieldDoc =
-    R"(What is to be felt: a pressure on the skin, on a regular raster of a plane.
+    R"(The target: the pressure that is to be felt on the skin, on a regular raster of a plane.
 
 Row-major: the centre of cell (row, col) lies at origin + cell * (col, row) in the plane, row 0 has
 the smallest y. A field does not change once it is made: its arrays are read-only views, and one
@@ -31,11 +32,21 @@ weight: None (1 everywhere) or (rows, cols), how much the error of each cell cou
 
 A masked array's masked cells are no skin. Raises ValueError, TypeError.)";
 
-/// The user's pressure as numbers; what a numpy.ma array masks is NaN.
+/// Returns the user's pressure as numbers; masked cells of a numpy.ma array are NaN.
 Numbers pressures(py::handle given) {
   if (!py::hasattr(given, "filled")) return numbers(given, "pressure", 2, kMaxFieldCells);
   return numbers(given.attr("astype")("float64").attr("filled")(std::nan("")), "pressure", 2,
                  kMaxFieldCells);
+}
+
+/// Returns the pressures as users give them: NaN where there is no skin. Read-only.
+py::array_t<double> pressures_of(const TargetField& field) {
+  py::array_t<double> pressure({field.rows, field.cols}, field.pressure.data());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.skin[i] == 0) pressure.mutable_data()[i] = std::nan("");
+  }
+  py::detail::array_proxy(pressure.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return pressure;
 }
 
 void set_shape(TargetField& field, const Numbers& pressure) {
@@ -71,11 +82,11 @@ void set_weights(TargetField& field, const py::object& weight) {
 TargetField make_field(const py::object& pressure, std::optional<double> cell,
                        std::optional<double> cell_mm, const py::object& origin,
                        const py::object& height, const py::object& X_DP, const py::object& weight) {
+  const Numbers p = pressures(pressure);
   if (cell.has_value() == cell_mm.has_value()) {
     throw std::invalid_argument(
         "the edge of a cell must be given once: as cell in metres or as cell_mm in millimetres");
   }
-  const Numbers p = pressures(pressure);
   TargetField field;
   set_shape(field, p);
   // a file's millimetres become metres by the same division
@@ -149,12 +160,8 @@ void bind_field(py::module_& m) {
           },
           "(2,) centre of cell (0, 0) in the plane [m]; a view.")
       .def_property_readonly(
-          "pressure",
-          [](const py::object& self) {
-            const auto& f = self.cast<const TargetField&>();
-            return view(shape_of(f), f.pressure.data(), self);
-          },
-          "(rows, cols) target pressure p*, >= 0, 0 where there is no skin; a view.")
+          "pressure", &pressures_of,
+          "(rows, cols) target pressure p*, >= 0, NaN where there is no skin; a copy.")
       .def_property_readonly(
           "skin",
           [](const py::object& self) {
@@ -192,13 +199,9 @@ void bind_field(py::module_& m) {
             const auto copy = [&](const std::vector<double>& values) {
               return py::array_t<double>(shape_of(f), values.data());
             };
-            py::array_t<double> pressure = copy(f.pressure);
-            for (std::size_t i = 0; i < f.size(); ++i) {
-              if (f.skin[i] == 0) pressure.mutable_data()[i] = std::nan("");
-            }
-            return py::make_tuple(pressure, f.cell, py::make_tuple(f.origin.x(), f.origin.y()),
-                                  copy(f.height), pose_matrix(f.X_DP),
-                                  f.weight.empty() ? py::object(py::none()) : copy(f.weight));
+            return py::make_tuple(
+                pressures_of(f), f.cell, py::make_tuple(f.origin.x(), f.origin.y()), copy(f.height),
+                pose_matrix(f.X_DP), f.weight.empty() ? py::object(py::none()) : copy(f.weight));
           },
           [](const py::tuple& t) {
             return make_field(t[0], t[1].cast<double>(), std::nullopt, t[2], t[3], t[4], t[5]);
@@ -207,6 +210,26 @@ void bind_field(py::module_& m) {
 
 }  // namespace
 
+std::vector<const TargetField*> patches_of(py::handle target) {
+  if (py::isinstance<TargetField>(target)) return {target.cast<const TargetField*>()};
+  if (!py::isinstance<TargetFrame>(target)) {
+    throw py::type_error(
+        "target must be a TargetField, a TargetFrame or, to be planned, the name of a file, not " +
+        described(target));
+  }
+  std::vector<const TargetField*> patches;
+  for (const TargetField& patch : target.cast<const TargetFrame&>().patches)
+    patches.push_back(&patch);
+  return patches;
+}
+
+double largest_pressure(py::handle target) {
+  double largest = 0.0;
+  for (const TargetField* patch : patches_of(target))
+    largest = std::max(largest, max_pressure(*patch));
+  return largest;
+}
+
 void bind_target(py::module_& m) {
   m.attr("kMaxFieldCells") = kMaxFieldCells;
   m.attr("kMaxPatches") = kMaxPatches;
@@ -214,9 +237,9 @@ void bind_target(py::module_& m) {
   py::class_<TargetFrame>(m, "TargetFrame",
                           "One frame of targets: a patch per hand, each with its own plane.")
       .def(py::init(&make_frame),
-           "patches: at most 2 TargetFields, which are copied. time: of the hand frame [s].",
+           "patches: at most 2 TargetFields, which are copied. time: time of the hand frame [s].",
            py::arg("patches"), py::arg("time") = 0.0)
-      .def_readonly("time", &TargetFrame::time, "[s].")
+      .def_readonly("time", &TargetFrame::time, "Time of the hand frame [s].")
       .def_property_readonly(
           "patches",
           [](const py::object& self) {
@@ -228,8 +251,8 @@ void bind_target(py::module_& m) {
           },
           "The TargetFields, as a new list.");
 
-  m.def("max_pressure", &max_pressure, "Largest pressure; 0 for a field without skin.",
-        py::arg("field"));
+  m.def("max_pressure", &largest_pressure,
+        "Largest pressure of a TargetField or a TargetFrame; 0 without skin.", py::arg("target"));
   m.def("height_at", &heights_at,
         "Height of the skin at points of the plane: x (n, 2) [m] gives (n,) [m], bilinear between "
         "cell centres, clamped to the raster's border.",

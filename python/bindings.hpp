@@ -2,18 +2,20 @@
 /// The parts of the module `prostm`, one function for each source file, and what they share.
 ///
 /// Conventions: the names of C++, SI units; lengths in millimetres only where a name ends in _mm.
-/// Objects of data (fields, paths, plans) do not change once made, so that arrays are views of
-/// their memory and the interpreter's lock can be released while they are read.
+/// Fields, paths and plans do not change once made. So arrays are views of their memory, and the
+/// interpreter's lock can be released while they are read.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "prostm/core/geometry.hpp"
 #include "prostm/core/quantity.hpp"
+#include "prostm/target/target_field.hpp"
 
 namespace prostm::python {
 
@@ -22,15 +24,30 @@ namespace py = pybind11;
 void bind_target(py::module_& m);
 void bind_paths(py::module_& m);
 void bind_plan(py::module_& m);
+void bind_planners(py::module_& m);
 void bind_result(py::module_& m);
 void bind_score(py::module_& m);
 void bind_emit(py::module_& m);
 void bind_io(py::module_& m);
+void bind_recording(py::module_& m);
+
+/// Names a value in a message: "None", "3", "'palm'", else its type, "an array".
+std::string described(py::handle value);
+
+/// Returns the patches of a TargetField or a TargetFrame. @throws py::type_error for anything else.
+std::vector<const TargetField*> patches_of(py::handle target);
+/// Largest pressure of a TargetField or a TargetFrame; 0 without skin.
+double largest_pressure(py::handle target);
+
+/// Reads the field if a target is given by the name of a file; returns other targets as they are.
+/// @throws InputError as read_field() does, std::invalid_argument for a cell or a frame without a
+/// file.
+py::object target_of(const py::object& target, std::optional<double> cell_mm, int frame);
 
 /// Numbers given by the user: any array or nested sequence of booleans, integers or floats, as
 /// doubles in rows.
-/// @throws py::type_error when it holds no numbers, std::invalid_argument unless it has
-/// `dimensions` dimensions.
+/// @throws py::type_error if it holds no numbers, std::invalid_argument unless it has `dimensions`
+/// dimensions.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 inline constexpr std::size_t kMostNumbers = 100'000'000;
 Numbers numbers(py::handle value, const std::string& name, int dimensions,
@@ -48,7 +65,7 @@ py::array view(const std::vector<py::ssize_t>& shape, const double* data, py::ha
 py::array pose_matrix(const Pose& pose);
 Pose pose_from(py::handle matrix, const std::string& name);
 
-/// A struct of results: its fields as attributes, in a repr and as a dictionary.
+/// Binds a struct of results: its fields as attributes, in a repr and as a dictionary.
 template <class S>
 class Record {
  public:
@@ -60,7 +77,7 @@ class Record {
     names_.append(name);
     return *this;
   }
-  /// Every number of the list of S, in SI.
+  /// Adds every number of the list of S, in SI.
   Record& quantities() {
     for (const Quantity<S>& quantity : prostm::quantities<S>()) {
       class_.def_property_readonly(
@@ -87,7 +104,7 @@ class Record {
           }
           return values;
         },
-        "The fields by name, as a new dictionary, but for those that nobody asked for (NaN).");
+        "The fields by name, as a new dictionary, without those that were not asked for (NaN).");
     class_.def("__repr__", [names](const py::object& self) {
       std::string text = py::str(py::type::of(self).attr("__name__"));
       const char* before = "(";

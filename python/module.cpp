@@ -1,4 +1,4 @@
-/// import prostm._prostm: what the package prostm/ shows under its own name.
+/// The compiled module prostm._prostm, whose names the package prostm shows as its own.
 
 #include "bindings.hpp"
 #include "prostm/core/input_error.hpp"
@@ -8,18 +8,22 @@ PYBIND11_MODULE(_prostm, m) {
   namespace py = pybind11;
   using namespace prostm::python;
 
-  // classes and signatures are to say prostm.Plan: a class takes its module's name when it is made
+  // a class takes its module's name when it is made, and should say prostm.Plan
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "prostm";
   m.attr("__version__") = PROSTM_VERSION;
   py::register_exception<prostm::InputError>(m, "InputError", PyExc_ValueError).doc() =
-      "A file that is wrong: one sentence that says what, where, and what would be right.";
+      "An invalid file: one sentence that says what is wrong, where, and what would be right.";
+  m.def("_described", &described, "Names a value in a message.", py::arg("value"));
+  // a signature names the classes that are bound before it
   bind_target(m);
   bind_paths(m);
   bind_plan(m);
   bind_score(m);
-  bind_result(m);
   bind_emit(m);
+  bind_result(m);
+  bind_planners(m);
   bind_io(m);
+  bind_recording(m);
   m.attr("__name__") = own_name;
 }

@@ -1,6 +1,7 @@
 #pragma once
-/// The result of one call of the planner, with its arguments.
+/// A plan and what it was made from: the result of a planner, or a recorded plan.
 
+#include <array>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -16,12 +17,12 @@ namespace prostm::python {
 /// The settings of a planner, which say the method too.
 using AnySettings = std::variant<PlanSettings, AmSettings>;
 
-/// The settings of a plan file. @param settings are listed as {"plan": …} or {"am": …}, and
-/// outlive it.
+/// The settings of a plan file, listed as {"plan": …} or {"am": …}.
 struct SettingsInFile {
+  /// @param settings outlive it.
   explicit SettingsInFile(const AnySettings& settings);
   Method method;
-  std::optional<Preset> preset;  ///< none for AM
+  std::optional<Preset> preset;  ///< empty for AM
   std::vector<SettingsGroup> groups;
 };
 
@@ -29,20 +30,20 @@ struct PlanResult {
   PlanResult(py::object planned, AnySettings s)
       : target(std::move(planned)), settings(std::move(s)) {}
 
-  /// The width and the gain that fields are rendered and scored with.
-  double sigma() const;
+  /// The width and the gain that a patch is rendered and scored with.
+  double sigma(int patch) const;
   GainLaw gain_law() const;
 
   /// @throws std::invalid_argument for a patch that the target does not have.
   const TargetField& patch(int index) const;
 
-  /// The target as a frame, of one patch where it is a TargetField.
+  /// Returns the target as a frame, with one patch if it is a TargetField.
   TargetFrame frame() const;
 
-  /// The emission that it is taken to be played with: `given`, or the defaults. Where they give no
-  /// full scale, γ times the target's largest pressure.
+  /// Returns the emission that plays the plan: `given`, else the recorded one, else the defaults. A
+  /// full scale of 0 becomes γ times the target's largest pressure.
   EmitSettings emission(const EmitSettings* given) const;
-  /// The pressures that are played. @throws as played_pressures() does.
+  /// Returns the pressures that are played. @throws as played_pressures() does.
   SegmentPressures played(const EmitSettings* given, double sample_rate) const;
 
   py::object target;  ///< the TargetField or TargetFrame
@@ -51,11 +52,19 @@ struct PlanResult {
   Plan plan;
   PlanStats stats;
   std::optional<PlanTrace> trace;
+
+  /// How a recorded plan was played, and the σ that each patch was planned with [m].
+  struct Recorded {
+    EmitSettings emission;
+    std::array<double, kMaxPatches> sigma;
+  };
+  std::optional<Recorded> recorded;  ///< empty for a plan that was made here
 };
 
-/// Bounds of what Eq. (1) is evaluated with, those of PlanSettings. @throws std::invalid_argument.
+/// Checks the parameters of Eq. (1) against the bounds of PlanSettings.
+/// @throws std::invalid_argument.
 void check_model(double sigma, const GainLaw& gain, int patch);
-/// Eq. (1) as an array of rows and columns.
+/// Computes Eq. (1) as an array of rows and columns.
 py::array quasi_static_array(const Plan& plan, const TargetField& raster, double sigma,
                              const GainLaw& gain, int patch,
                              const SegmentPressures* instead = nullptr);

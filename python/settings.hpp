@@ -9,7 +9,7 @@
 
 namespace prostm::python {
 
-/// The name of a group is what messages call the settings, e.g. "PlanSettings".
+/// Messages call the settings by the name of the group, e.g. "PlanSettings".
 /// @throws std::invalid_argument for an unknown name, py::type_error for a value of another type.
 void set_setting(const SettingsGroup& group, const std::string& name, py::handle value);
 void set_settings(const SettingsGroup& group, const py::dict& values);

@@ -243,11 +243,12 @@ int bench_command(const BenchOptionsGiven& given) {
     const auto fields = columns.am.stage[kStages - 1].summary().n;
     if (complete && fields == 0)
       throw InputError(file + ": none of its fields has pressure to plan for");
-    fmt::print(out, "{} ({}): {} fields, median of {} runs each, one thread, interleaved\n", file,
-               recording.scene().empty() ? "no scene named" : recording.scene(), fields,
-               given.repeats);
-    print_columns(out, recording.scene(), columns);
-    append_rows(rows, file, recording.scene(), columns);
+    fmt::print(
+        out, "{} ({}): {} fields, median of {} runs each, one thread, interleaved\n", file,
+        recording.attribute("scene").empty() ? "no scene named" : recording.attribute("scene"),
+        fields, given.repeats);
+    print_columns(out, recording.attribute("scene"), columns);
+    append_rows(rows, file, recording.attribute("scene"), columns);
     if (!complete) break;
   }
   write_json(given.common.json, rows);

@@ -44,8 +44,8 @@ class Observer final : public RunObserver {
   bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
     if (recorder_ != nullptr) {
       const bool planned = plan.status == PlanStatus::Planned;
-      recorder_->append(contact.target, contact.hands, planned ? &plan.plan : nullptr,
-                        planned ? &plan.stats : nullptr);
+      const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
+      recorder_->append(contact.target, contact.hands, planned ? &made : nullptr);
     }
     if (picture_at_ && plan.status == PlanStatus::Planned) {
       const double away = std::abs(contact.target.time - *picture_at_);

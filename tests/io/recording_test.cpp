@@ -1,3 +1,7 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <fstream>
 
@@ -51,15 +55,24 @@ void expect_same(const TargetFrame& a, const TargetFrame& b) {
   }
 }
 
+RecordedPlan some_plan() {
+  RecordedPlan made;
+  made.plan = test::triangle_plan();
+  made.stats.total = 3e-3;
+  made.stats.leaves = 5;
+  made.stats.cost = 0.25;
+  made.full_scale_pressure = 0.7;
+  made.sigma = {8e-3, 9e-3};
+  return made;
+}
+
 std::string record(const std::string& path, const std::vector<TargetFrame>& frames) {
   Recorder recorder(path, {});
   recorder.set_attribute("scene", "one-plume");
-  const Plan plan = test::triangle_plan();
-  const PlanStats stats;
+  const RecordedPlan plan = some_plan();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const bool planned = i % 2 == 1;
-    recorder.append(frames[i], hand_at(frames[i].time), planned ? &plan : nullptr,
-                    planned ? &stats : nullptr);
+    recorder.append(frames[i], hand_at(frames[i].time), planned ? &plan : nullptr);
   }
   recorder.set_attribute("scene", "four-plumes");
   recorder.close();
@@ -71,9 +84,74 @@ TEST(Recording, ReadsBackWhatWasWritten) {
   const std::vector<TargetFrame> frames = random_frames(200);
   const RecordingReader reader(record(folder.file("r.h5"), frames));
   EXPECT_EQ(folder.entries(), 1u);
-  EXPECT_EQ(reader.scene(), "four-plumes");
+  EXPECT_EQ(reader.attribute("scene"), "four-plumes");
   ASSERT_EQ(reader.frames(), 200);
   for (int i = 199; i >= 0; --i) expect_same(reader.frame(i), frames[static_cast<std::size_t>(i)]);
+}
+
+TEST(Recording, ReadsThePlanOfAFrame) {
+  const test::TemporaryFolder folder;
+  std::vector<TargetFrame> frames = random_frames(4);
+  Random random(3);
+  for (TargetFrame& frame : frames) frame.patches.assign(1, test::random_field(random));
+  const RecordingReader reader(record(folder.file("r.h5"), frames));
+  EXPECT_FALSE(reader.plan(0));
+  const std::optional<RecordedPlan> read = reader.plan(3);
+  ASSERT_TRUE(read);
+  const RecordedPlan made = some_plan();
+  ASSERT_EQ(read->plan.paths.size(), 1u);
+  EXPECT_TRUE(read->plan.foci.empty());
+  const FocalPath &path = read->plan.paths[0], &expected = made.plan.paths[0];
+  EXPECT_EQ(path.patch, expected.patch);
+  EXPECT_EQ(path.points, expected.points);
+  EXPECT_EQ(path.pressure, expected.pressure);
+  EXPECT_EQ(path.length, expected.length);
+  EXPECT_EQ(path.speed, expected.speed);
+  EXPECT_EQ(path.period, expected.period);
+  for (const Quantity<PlanStats>& number : quantities<PlanStats>())
+    EXPECT_EQ(value_of(number, read->stats), value_of(number, made.stats)) << number.name;
+  EXPECT_EQ(read->full_scale_pressure, 0.7);
+  EXPECT_EQ(read->sigma[0], 8e-3);
+  EXPECT_EQ(read->sigma[1], 0.0);  // the frame has one patch
+  EXPECT_THAT(input_error([&] { static_cast<void>(reader.plan(4)); }),
+              HasSubstr("no frame 4; it has 4 frames"));
+}
+
+TEST(Recording, ReadsThePlanOfFoci) {
+  const test::TemporaryFolder folder;
+  Random random(4);
+  TargetFrame frame;
+  frame.patches.assign(2, test::random_field(random));
+  RecordedPlan made = some_plan();
+  made.plan.clear();
+  made.plan.foci.push_back({1, Vec2(0.01, -0.02), 3.5});
+  const std::string path = folder.file("r.h5");
+  Recorder recorder(path, {});
+  recorder.append(frame, hand_at(0.0), &made);
+  made.plan.foci[0].patch = 2;  // a patch that the frame does not have
+  recorder.append(frame, hand_at(0.02), &made);
+  recorder.close();
+  const RecordingReader reader(path);
+  const std::optional<RecordedPlan> read = reader.plan(0);
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(read->plan.paths.empty());
+  ASSERT_EQ(read->plan.foci.size(), 1u);
+  EXPECT_EQ(read->plan.foci[0].patch, 1);
+  EXPECT_EQ(read->plan.foci[0].position, Vec2(0.01, -0.02));
+  EXPECT_EQ(read->plan.foci[0].pressure, 3.5);
+  EXPECT_EQ(read->sigma, made.sigma);
+  EXPECT_THAT(input_error([&] { static_cast<void>(reader.plan(1)); }), HasSubstr("is broken"));
+}
+
+TEST(Recording, SaysThatItIsStillBeingWritten) {
+  const test::TemporaryFolder folder;
+  const std::string path = record(folder.file("r.h5"), random_frames(3));
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(fd, LOCK_EX | LOCK_NB), 0);  // as HDF5 does to write
+  EXPECT_THAT(input_error([&] { const RecordingReader reader(path); }),
+              HasSubstr("is open for writing in another program"));
+  ::close(fd);
+  EXPECT_EQ(RecordingReader(path).frames(), 3);
 }
 
 TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
@@ -151,8 +229,7 @@ TEST(Recording, OpensAfterItsWriterDiedWithWhatWasFlushed) {
   const std::vector<TargetFrame> frames = random_frames(160);  // 3.2 s
   const std::string path = folder.file("r.h5"), copy = folder.file("copy.h5");
   Recorder recorder(path, {});
-  for (const TargetFrame& frame : frames)
-    recorder.append(frame, hand_at(frame.time), nullptr, nullptr);
+  for (const TargetFrame& frame : frames) recorder.append(frame, hand_at(frame.time), nullptr);
   EXPECT_FALSE(std::filesystem::exists(path));
   std::filesystem::copy_file(path + ".part.h5", copy);
   const RecordingReader reader(copy);

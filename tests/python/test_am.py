@@ -43,13 +43,13 @@ def test_foci_are_modulated_in_place(field):
     result = prostm.plan(field, method="am", foci=2)
     lifted = prostm.lift(result.plan, field)
     assert len(lifted.foci) == 2 and not lifted.paths
-    positions, intensities = prostm.emit(result.plan, field, 0.02, 2 * field.pressure.max())
+    positions, intensities = prostm.emit(result.plan, field, 0.02, 2 * prostm.max_pressure(field))
     assert positions.shape == (800, 2, 3) and (positions == positions[0]).all()
     np.testing.assert_allclose(intensities[200:400], intensities[400:600], atol=1e-7)
     assert (intensities[::200] == 0).all()
     for k, focus in enumerate(lifted.foci):
         mine = np.linalg.norm(positions[0] - focus.p_D, axis=1).argmin()
-        peak = prostm.drive_intensity(focus.pressure, 2 * field.pressure.max())
+        peak = prostm.drive_intensity(focus.pressure, 2 * prostm.max_pressure(field))
         assert intensities[100, mine] == pytest.approx(float(peak), abs=1e-6), k
     cosine = prostm.emit(result.plan, field, 0.005, 1e3, am_waveform="raised-cosine", silent_below=0.0)[1]
     np.testing.assert_allclose(cosine[:, 0] / cosine[100, 0], np.sin(np.pi * np.arange(200) / 200) ** 2, atol=1e-6)

@@ -36,6 +36,8 @@ def test_arrays_that_are_no_field(pressure, words):
 def test_things_that_are_no_numbers(pressure):
     with pytest.raises(TypeError, match="pressure must be an array of numbers"):
         prostm.TargetField(pressure, 5e-3)
+    with pytest.raises(TypeError, match="pressure must be an array of numbers"):
+        prostm.TargetField(pressure)
 
 
 @pytest.mark.parametrize("options, words", [

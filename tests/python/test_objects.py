@@ -19,14 +19,14 @@ from conftest import ROOT, blobs
 
 def test_views_are_read_only_and_keep_what_they_show(field):
     points = prostm.plan(field).paths[0].points
-    pressure, skin = prostm.TargetField(blobs(), cell_mm=5).pressure, field.skin
-    before = points.copy(), pressure.copy()
+    height, skin = prostm.TargetField(blobs(), cell_mm=5, height=np.ones((24, 30))).height, field.skin
+    before = points.copy(), height.copy()
     gc.collect()
     churn = [prostm.plan(field, paths=k).plan for k in (1, 2, 3)]
     np.testing.assert_array_equal(points, before[0])
-    np.testing.assert_array_equal(pressure, before[1])
+    np.testing.assert_array_equal(height, before[1])
     assert len(churn) == 3 and skin.dtype == bool
-    for array in (points, pressure, skin, field.height, field.origin):
+    for array in (points, height, skin, field.height, field.origin):
         assert not array.flags.writeable and array.base is not None
         with pytest.raises(ValueError):
             array[...] = 0
@@ -36,7 +36,7 @@ def test_views_are_read_only_and_keep_what_they_show(field):
 
 def test_the_array_that_a_field_was_made_from_may_change(pressure):
     field = prostm.TargetField(pressure, 5e-3)
-    kept = field.pressure.copy()
+    kept = field.pressure
     pressure[:] = 7
     np.testing.assert_array_equal(field.pressure, kept)
 
@@ -57,6 +57,20 @@ def test_any_layout_of_the_same_numbers(pressure, make):
     np.testing.assert_array_equal(field.skin, expected.skin)
 
 
+def test_pressure_is_nan_where_there_is_no_skin(pressure):
+    field = prostm.TargetField(pressure, 5e-3)
+    np.testing.assert_array_equal(field.pressure, pressure)
+    np.testing.assert_array_equal(np.isnan(field.pressure), ~field.skin)
+    np.testing.assert_array_equal(prostm.TargetField(field.pressure, 5e-3).pressure, pressure)
+    assert np.isfinite(field.height).all()  # continued off the skin
+    with pytest.raises(ValueError):
+        field.pressure[0, 5] = 7
+    assert prostm.max_pressure(field) == np.nanmax(pressure)
+    both = prostm.TargetFrame([field, prostm.TargetField(2 * pressure, 5e-3)])
+    assert prostm.max_pressure(both) == 2 * np.nanmax(pressure)
+    assert prostm.max_pressure(prostm.TargetFrame([])) == 0
+
+
 def test_whole_numbers_and_truth_values_are_pressures():
     for dtype in (bool, np.uint8, np.int16, np.int64):
         ones = np.ones((6, 6), dtype)
@@ -69,8 +83,8 @@ def test_a_field_without_pressure_gives_a_plan_without_paths():
         assert result.status == prostm.PlanStatus.EmptyTarget and len(result.plan) == 0 and result.paths == []
         assert not result.quasi_static_field().any() and set(result.metrics().as_dict().values()) == {0.0}
         assert prostm.controls(result.target) == []
-        _, intensities = prostm.emit(result.plan, result.target, 0.01, 1.0)
-        assert not intensities.any()
+        for emission in (prostm.emit(result.plan, result.target, 0.01, 1.0), prostm.emit(result, seconds=0.01)):
+            assert emission[1].shape == (400, 1) and not emission[1].any()
 
 
 def test_settings_follow_the_header():
@@ -281,7 +295,8 @@ def test_the_types_name_what_there_is():
             continue
         for member in vars(value):
             if not member.startswith("_") and name not in ("PlanStatus",):
-                assert re.search(rf"\b{member}\b", block.group() + stub.split("class PlanSettings")[0]), f"{name}.{member}"
+                declared_in = block.group() + stub.split("class PlanSettings")[0]
+                assert re.search(rf"\b{member}\b", declared_in), f"{name}.{member}"
         for member in re.findall(r"^    (\w+):", block.group(), flags=re.M):
             assert hasattr(value, member) or member in dir(value()), f"{name}.{member} is declared and not there"
 

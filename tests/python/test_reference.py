@@ -39,7 +39,7 @@ def test_quasi_static_field_is_eq_1(field, preset, sigma, gain):
 
 @pytest.mark.parametrize("preset", ["paper", "best"])
 def test_every_path_has_the_gain_of_its_period(field, preset):
-    ample = 1e5 * field.pressure[field.skin].max()  # full output that limits no pressure
+    ample = 1e5 * prostm.max_pressure(field)  # full output that limits no pressure
     settings = prostm.PlanSettings(preset=preset, gain_exponent=-0.7, draw_rate=60, full_scale_pressure=ample)
     result = prostm.plan(field, settings=settings)
     constant = prostm.plan(field, preset, draw_rate=60, full_scale_pressure=ample)
@@ -92,21 +92,22 @@ def second_lap(field, plan, full_scale):
 def test_the_quality_of_a_result_is_that_of_what_is_played(preset):
     # contacts so thin that the pressures along a path change faster than an intensity may
     x = 2e-3 * np.arange(50)
-    thin = [np.exp(-((x - a) ** 2)[None] / 2e-5 - ((x - b) ** 2)[:, None] / 2e-5) for a, b in [(0.03, 0.03), (0.06, 0.05)]]
+    thin = [np.exp(-((x - a) ** 2)[None] / 2e-5 - ((x - b) ** 2)[:, None] / 2e-5)
+            for a, b in [(0.03, 0.03), (0.06, 0.05)]]
     field = prostm.TargetField(sum(thin), cell=2e-3)
     result = prostm.plan(field, preset)
     for factor in (GAIN, 2.0, 0.7):
-        full_scale = factor * field.pressure.max()
+        full_scale = factor * prostm.max_pressure(field)
         settings = prostm.EmitSettings(full_scale_pressure=full_scale)
         played = eq1(second_lap(field, result.plan, full_scale), field)
         ours = result.quasi_static_field(emission=settings)
         metrics = result.metrics(emission=settings)
         assert prostm.score_field(field, ours, metrics.coverage).as_dict() == metrics.as_dict()
         # cells equally near to two paths may belong to either
-        assert np.quantile(np.abs(ours - played), 0.99) < 0.02 * field.pressure.max()
+        assert np.quantile(np.abs(ours - played), 0.99) < 0.02 * prostm.max_pressure(field)
         assert prostm.score_field(field, played).rmse == pytest.approx(metrics.rmse, rel=0.05)
     # the default full scale is the gain times the largest pressure
-    settings = prostm.EmitSettings(full_scale_pressure=GAIN * field.pressure.max())
+    settings = prostm.EmitSettings(full_scale_pressure=GAIN * prostm.max_pressure(field))
     assert result.metrics().as_dict() == result.metrics(emission=settings).as_dict()
 
 
@@ -174,7 +175,7 @@ def test_a_frame_of_two_hands(field):
         own = [path for path in result.paths if path.patch == patch]
         planned = prostm.quasi_static_field(result.plan, field, patch=patch)
         np.testing.assert_allclose(planned, eq1(own, field), rtol=1e-9, atol=1e-12)
-        np.testing.assert_allclose(result.quasi_static_field(patch), planned, atol=0.1 * field.pressure.max())
+        np.testing.assert_allclose(result.quasi_static_field(patch), planned, atol=0.1 * prostm.max_pressure(field))
         played = prostm.score_field(field, result.quasi_static_field(patch), result.metrics(patch).coverage)
         assert result.metrics(patch).as_dict() == played.as_dict()
     with pytest.raises(ValueError, match="patch"):
@@ -185,7 +186,7 @@ def test_a_frame_of_two_hands(field):
 
 def test_emission_follows_the_path_at_its_speed(field):
     result = prostm.plan(field, paths=1)
-    full_scale = 1.4 * field.pressure.max()
+    full_scale = 1.4 * prostm.max_pressure(field)
     positions, intensities = prostm.emit(result.plan, field, 0.1, full_scale)
     assert positions.shape == (4000, 1, 3) and intensities.shape == (4000, 1)
     assert positions.dtype == intensities.dtype == np.float32
@@ -244,7 +245,7 @@ def test_the_trace_holds_the_stages_of_fig_2(field):
     trace = result.trace
     k = result.stats.clusters
     assert trace.clusters.shape == (k, 2) and trace.cluster_mass.shape == (k,)
-    p = field.pressure / field.pressure.max()
+    p = field.pressure[field.skin] / prostm.max_pressure(field)
     assert trace.cluster_mass.sum() == pytest.approx(p[p >= 0.01].sum())
     assert sorted(trace.tour) == list(range(k))
     assert len(trace.split) == len(result.paths)

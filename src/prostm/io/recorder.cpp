@@ -106,7 +106,8 @@ struct Recorder::Impl {
   void append_target(const TargetField& field);
   void append_weights(const TargetField& field);
   void append_hands(const HandFrame& hands);
-  void append_plan(const Plan* p, const PlanStats* stats);
+  void append_plan(const RecordedPlan* made, std::size_t patches_now);
+  void append_how(const RecordedPlan* made, std::size_t patches_now);
   void append_foci(const Plan* p);
   bool ok() const { return error == 0 && frame.ok() && target.ok() && hand.ok() && plan.ok(); }
   bool close_all();
@@ -193,7 +194,9 @@ void Recorder::Impl::append_hands(const HandFrame& hands) {
   hand.append("velocity", velocity, 1);
 }
 
-void Recorder::Impl::append_plan(const Plan* p, const PlanStats* stats) {
+/// @param patches_now number of patches in the frame.
+void Recorder::Impl::append_plan(const RecordedPlan* made, std::size_t patches_now) {
+  const Plan* p = made == nullptr ? nullptr : &made->plan;
   const std::size_t paths = p == nullptr ? 0 : p->paths.size();
   std::vector<std::int32_t> samples(kMaxPaths, 0), patch(kMaxPaths, -1);
   std::vector<double> length(kMaxPaths, kNan), speed = length, period = length;
@@ -222,16 +225,24 @@ void Recorder::Impl::append_plan(const Plan* p, const PlanStats* stats) {
   plan.append("speed", speed, 1);
   plan.append("period", period, 1);
   append_foci(p);
+  append_how(made, patches_now);
+}
 
-  std::vector<double> stage;
+/// Appends how a plan was made, and what its reconstruction depends on.
+void Recorder::Impl::append_how(const RecordedPlan* made, std::size_t patches_now) {
+  std::vector<double> stage, sigma(kMaxPatches, kNan);
   std::vector<std::int32_t> counts;
   for (const Quantity<PlanStats>& time : plan_stages())
-    stage.push_back(stats == nullptr ? kNan : value_of(time, *stats));
-  for (const Quantity<PlanStats>& count : recording::plan_counts())
-    counts.push_back(stats == nullptr ? 0 : static_cast<std::int32_t>(value_of(count, *stats)));
+    stage.push_back(made == nullptr ? kNan : value_of(time, made->stats));
+  for (const Quantity<PlanStats>& count : recording::plan_counts()) {
+    counts.push_back(made == nullptr ? 0 : static_cast<std::int32_t>(value_of(count, made->stats)));
+  }
+  if (made != nullptr) std::copy_n(made->sigma.begin(), patches_now, sigma.begin());
   plan.append("stage_time", stage, 1);
   plan.append("counts", counts, 1);
-  plan.append("cost", stats == nullptr ? kNan : stats->cost);
+  plan.append("cost", made == nullptr ? kNan : made->stats.cost);
+  plan.append("full_scale_pressure", made == nullptr ? kNan : made->full_scale_pressure);
+  plan.append("sigma", sigma, 1);
 }
 
 void Recorder::Impl::append_foci(const Plan* p) {
@@ -305,8 +316,7 @@ Recorder::~Recorder() {
   }
 }
 
-void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const Plan* plan,
-                      const PlanStats* stats) {
+void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const RecordedPlan* plan) {
   if (!impl_->file.valid()) throw std::logic_error("a closed recording cannot be appended to");
   const h5::Quiet quiet;
   Impl& r = *impl_;
@@ -315,7 +325,7 @@ void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const Pl
   r.frame.append<std::int32_t>("patches", static_cast<std::int32_t>(frame.patches.size()));
   for (const TargetField& field : frame.patches) r.append_target(field);
   r.append_hands(hands);
-  r.append_plan(plan, stats);
+  r.append_plan(plan, frame.patches.size());
 
   // every second of data reaches the file; time that runs backwards is a recording that starts
   // again

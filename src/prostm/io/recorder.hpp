@@ -1,7 +1,10 @@
 #pragma once
 /// HDF5 recordings: target fields, hands, plans and run statistics, for Python, MATLAB and Julia.
 
+#include <array>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "prostm/plan/planner.hpp"
@@ -9,6 +12,14 @@
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
+
+/// A plan of a recording, and what its reconstruction depends on.
+struct RecordedPlan {
+  Plan plan;
+  PlanStats stats;
+  double full_scale_pressure = 0.0;            ///< rendered, at intensity 1 [Pa]
+  std::array<double, kMaxPatches> sigma = {};  ///< σ that each patch was planned with [m]
+};
 
 /// Tries whether a recording could be made there, before the work that fills it. @throws
 /// InputError: as check_writable, no ordinary file, or a name that does not end in .h5.
@@ -26,8 +37,7 @@ class Recorder {
   /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when
   /// there is one (its points and pressures, padded with NaN to kMaxPathPoints). @throws InputError
   /// when the disk is full.
-  void append(const TargetFrame& frame, const HandFrame& hands, const Plan* plan,
-              const PlanStats* stats);
+  void append(const TargetFrame& frame, const HandFrame& hands, const RecordedPlan* plan);
   /// Writes an attribute of the whole recording, e.g. the run's summary.
   void set_attribute(const std::string& name, const std::string& value);
   void close();
@@ -38,16 +48,20 @@ class Recorder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads the target fields of a recording.
+/// Reads the targets and plans of a recording, each when it is asked for.
 class RecordingReader {
  public:
-  /// @throws InputError: not a recording, truncated, of another version.
+  /// @throws InputError: not a recording, truncated, of another version, open for writing.
   explicit RecordingReader(const std::string& path);
   ~RecordingReader();
   int frames() const;
-  std::string scene() const;  ///< of the attribute "scene", empty when absent
-  /// @throws InputError for a frame that is not there.
+  std::span<const double> times() const;  ///< time of each frame [s]
+  /// Returns a text of the whole recording, e.g. "scene"; empty if it is absent.
+  std::string attribute(const char* name) const;
+  /// @throws InputError for a frame that does not exist or is broken.
   TargetFrame frame(int i) const;
+  /// Returns the plan made in a frame, if one was made. @throws InputError as frame() does.
+  std::optional<RecordedPlan> plan(int i) const;
 
  private:
   struct Impl;

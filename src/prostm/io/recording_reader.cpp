@@ -1,18 +1,44 @@
 /// The layout is described in docs/recordings.md.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
+#include <variant>
 #include <vector>
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/hdf5.hpp"
+#include "prostm/io/detail/recording_layout.hpp"
 #include "prostm/io/recorder.hpp"
 
 namespace prostm {
+namespace {
+
+bool is_number(double x) {
+  return std::isfinite(x) && x >= 0.0;
+}
+
+/// Whether a path can be drawn on one of so many patches.
+bool is_path(const FocalPath& path, int patches) {
+  return !path.points.empty() && path.patch >= 0 && path.patch < patches && path.speed > 0.0 &&
+         is_number(path.speed) && is_number(path.length) && is_number(path.period) &&
+         std::all_of(path.points.begin(), path.points.end(),
+                     [](const Vec2& x) { return x.allFinite(); }) &&
+         std::all_of(path.pressure.begin(), path.pressure.end(), is_number);
+}
+
+bool is_focus(const FocalPoint& focus, int patches) {
+  return focus.patch >= 0 && focus.patch < patches && focus.position.allFinite() &&
+         is_number(focus.pressure);
+}
+
+}  // namespace
 
 struct RecordingReader::Impl {
   std::string path;
@@ -30,11 +56,38 @@ struct RecordingReader::Impl {
     out.resize(count * row_values);
     if (!h5::read_rows(file.get(), name, type, shape, 0, count, out.data())) broken();
   }
+  /// Returns the values of one row of a dataset of /plan, as the layout lists it.
+  template <class T>
+  std::vector<T> plan_row(const std::string& name, std::size_t i) const;
+  std::size_t checked(int i) const;
   void read_index();
   TargetField read_patch(std::size_t i) const;
   void read_weights(hsize_t first, TargetField& field) const;
+  void read_paths(std::size_t i, std::size_t count, Plan& plan) const;
+  void read_foci(std::size_t i, std::size_t count, Plan& plan) const;
+  PlanStats read_stats(std::size_t i) const;
   bool has_weights = false;  // any patch
 };
+
+template <class T>
+std::vector<T> RecordingReader::Impl::plan_row(const std::string& name, std::size_t i) const {
+  const std::vector<h5::Column> columns = recording::plan_columns();
+  const auto column = std::find_if(columns.begin(), columns.end(),
+                                   [&](const h5::Column& c) { return name == c.name; });
+  std::vector<T> row(std::accumulate(column->shape.begin(), column->shape.end(), std::size_t{1},
+                                     std::multiplies<>()));
+  const std::string dataset = "/plan/" + name;
+  if (!h5::read_rows(file.get(), dataset.c_str(), column->type, column->shape, i, 1, row.data()))
+    broken();
+  return row;
+}
+
+/// Returns the index of a frame. @throws InputError if it does not exist.
+std::size_t RecordingReader::Impl::checked(int i) const {
+  if (i >= 0 && static_cast<std::size_t>(i) < time.size()) return static_cast<std::size_t>(i);
+  throw InputError(
+      fmt::format("{} has no frame {}; it has {} frames, counted from 0", path, i, time.size()));
+}
 
 void RecordingReader::Impl::read_index() {
   constexpr long long kMaxFrames = 10'000'000;  // more than two days
@@ -111,13 +164,61 @@ void RecordingReader::Impl::read_weights(hsize_t first, TargetField& field) cons
   if (!any) field.weight.clear();
 }
 
+void RecordingReader::Impl::read_paths(std::size_t i, std::size_t count, Plan& plan) const {
+  const auto samples = plan_row<std::int32_t>("samples", i);
+  const auto patch = plan_row<std::int32_t>("patch", i);
+  const auto points = plan_row<double>("points", i), pressure = plan_row<double>("pressure", i);
+  const auto length = plan_row<double>("length", i), speed = plan_row<double>("speed", i);
+  const auto period = plan_row<double>("period", i);
+  for (std::size_t k = 0; k < count; ++k) {
+    FocalPath path_now;
+    path_now.patch = patch[k];
+    for (int j = 0; j < std::clamp(samples[k], 0, kMaxPathPoints); ++j) {
+      const std::size_t at = k * kMaxPathPoints + static_cast<std::size_t>(j);
+      path_now.points.push_back(Vec2(points[2 * at], points[2 * at + 1]));
+      path_now.pressure.push_back(pressure[at]);
+    }
+    path_now.length = length[k];
+    path_now.speed = speed[k];
+    path_now.period = period[k];
+    if (samples[k] > kMaxPathPoints || !is_path(path_now, patches[i])) broken();
+    plan.paths.push_back(path_now);
+  }
+}
+
+void RecordingReader::Impl::read_foci(std::size_t i, std::size_t count, Plan& plan) const {
+  const auto patch = plan_row<std::int32_t>("focus_patch", i);
+  const auto position = plan_row<double>("focus_position", i);
+  const auto pressure = plan_row<double>("focus_pressure", i);
+  for (std::size_t k = 0; k < count; ++k) {
+    const FocalPoint focus{patch[k], Vec2(position[2 * k], position[2 * k + 1]), pressure[k]};
+    if (!is_focus(focus, patches[i])) broken();
+    plan.foci.push_back(focus);
+  }
+}
+
+PlanStats RecordingReader::Impl::read_stats(std::size_t i) const {
+  PlanStats stats;
+  const auto times = plan_row<double>("stage_time", i);
+  const auto counts = plan_row<std::int32_t>("counts", i);
+  std::size_t k = 0;
+  for (const Quantity<PlanStats>& stage : plan_stages())
+    stats.*std::get<double PlanStats::*>(stage.value) = times[k++];
+  k = 0;
+  for (const Quantity<PlanStats>& count : recording::plan_counts())
+    stats.*std::get<int PlanStats::*>(count.value) = counts[k++];
+  stats.cost = plan_row<double>("cost", i)[0];
+  return stats;
+}
+
 RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   check_readable(path);
   const h5::Quiet quiet;
   impl_->path = path;
-  const h5::Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  impl_->file = h5::Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  impl_->file = h5::open_to_read(path);
+  if (!impl_->file.valid() && h5::is_open_for_writing(path)) {
+    throw InputError(path + " is open for writing in another program; close it there first");
+  }
   if (!impl_->file.valid()) {
     throw InputError(path + " " + is_not(read_head(path), "an HDF5 file") +
                      ", or is cut off; it must be a recording of prostm (.h5)");
@@ -137,18 +238,18 @@ int RecordingReader::frames() const {
   return static_cast<int>(impl_->time.size());
 }
 
-std::string RecordingReader::scene() const {
+std::span<const double> RecordingReader::times() const {
+  return impl_->time;
+}
+
+std::string RecordingReader::attribute(const char* name) const {
   const h5::Quiet quiet;
-  return h5::read_text(impl_->file.get(), "scene");
+  return h5::read_text(impl_->file.get(), name);
 }
 
 TargetFrame RecordingReader::frame(int i) const {
-  if (i < 0 || i >= frames()) {
-    throw InputError(fmt::format("{} has no frame {}; it has {} frames, counted from 0",
-                                 impl_->path, i, frames()));
-  }
+  const std::size_t at = impl_->checked(i);
   const h5::Quiet quiet;
-  const auto at = static_cast<std::size_t>(i);
   TargetFrame frame;
   frame.time = impl_->time[at];
   for (std::int32_t k = 0; k < impl_->patches[at]; ++k) {
@@ -161,6 +262,30 @@ TargetFrame RecordingReader::frame(int i) const {
     }
   }
   return frame;
+}
+
+std::optional<RecordedPlan> RecordingReader::plan(int i) const {
+  const std::size_t at = impl_->checked(i);
+  const h5::Quiet quiet;
+  const std::int32_t paths = impl_->plan_row<std::int32_t>("paths", at)[0];
+  const std::int32_t foci = impl_->plan_row<std::int32_t>("foci", at)[0];
+  if (paths == -1 && foci == -1) return std::nullopt;
+  if (paths < 0 || paths > kMaxPaths || foci < 0 || foci > kMaxPaths || (paths > 0 && foci > 0)) {
+    impl_->broken();
+  }
+  RecordedPlan recorded;
+  impl_->read_paths(at, static_cast<std::size_t>(paths), recorded.plan);
+  impl_->read_foci(at, static_cast<std::size_t>(foci), recorded.plan);
+  recorded.stats = impl_->read_stats(at);
+  recorded.full_scale_pressure = impl_->plan_row<double>("full_scale_pressure", at)[0];
+  const auto sigma = impl_->plan_row<double>("sigma", at);
+  const auto patches = static_cast<std::size_t>(impl_->patches[at]);
+  std::copy_n(sigma.begin(), patches, recorded.sigma.begin());
+  const bool sound = is_number(recorded.full_scale_pressure) &&
+                     std::all_of(sigma.begin(), sigma.begin() + impl_->patches[at],
+                                 [](double x) { return is_number(x) && x > 0.0; });
+  if (!sound) impl_->broken();
+  return recorded;
 }
 
 }  // namespace prostm

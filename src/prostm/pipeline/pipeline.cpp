@@ -51,6 +51,12 @@ std::unique_ptr<Device> device_of(const PipelineSettings& settings, std::unique_
   return make_device(settings.device, settings.device_setup());
 }
 
+/// The σ that a planner counts on for a target [m].
+double sigma_on(const TargetField& target, const std::variant<Planner, AmPlanner>& planner) {
+  if (const auto* of_foci = std::get_if<AmPlanner>(&planner)) return of_foci->settings().sigma;
+  return std::get<Planner>(planner).settings().sigma_on(target);
+}
+
 /// The planner of the method.
 std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
                                               std::size_t max_cells, double scene_full_scale,
@@ -181,6 +187,8 @@ void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
   if (out.status != PlanStatus::Planned) {
     emitter_->lose();
   } else {
+    for (std::size_t i = 0; i < contact.target.patches.size(); ++i)
+      out.sigma[i] = sigma_on(contact.target.patches[i], planner_);
     LiftedPlan& lifted = emitter_->draft();
     lift(out.plan, contact.target, lifted);
     compensate_tilt(lifted, contact.target, emit_settings_.tilt_bound);

@@ -1,6 +1,7 @@
 #pragma once
 /// The one place that knows all stages: hand → world → contact → plan → emit → device.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -110,6 +111,8 @@ struct PlanFrame {
   double max_skin_length = 0.0;             ///< longest path on the skin [m]
   double full_scale_pressure = 0.0;         ///< rendered, at intensity 1 [Pa]
   double emission_rate = 0.0;               ///< samples of the emission [Hz]
+  /// σ that each patch was planned with, if there is a plan [m].
+  std::array<double, kMaxPatches> sigma = {};
 };
 
 /// Paths or foci from targets: the stages that run at the planner's rate.

@@ -1,6 +1,11 @@
 #include "prostm/io/detail/hdf5.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -43,6 +48,25 @@ Id& Id::operator=(Id&& other) noexcept {
 bool Id::close() {
   const hid_t id = std::exchange(id_, H5I_INVALID_HID);
   return id < 0 || close_(id) >= 0;
+}
+
+Id open_to_read(const std::string& path) {
+  // a file that is open in this process already opens again only with its own close degree
+  for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG, H5F_CLOSE_SEMI}) {
+    const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fclose_degree(access.get(), degree);
+    Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+    if (file.valid()) return file;
+  }
+  return {};
+}
+
+bool is_open_for_writing(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool locked = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(fd);
+  return locked;
 }
 
 Table::Table(hid_t group, const Column& column) : type_(column.type), size_{0} {

@@ -43,6 +43,11 @@ class Id {
   Close close_ = nullptr;
 };
 
+/// Opens a file to read it, even if this process has it open elsewhere; invalid on failure.
+Id open_to_read(const std::string& path);
+/// Returns whether anyone holds the lock that HDF5 takes to write a file.
+bool is_open_for_writing(const std::string& path);
+
 /// The description of a dataset's rows.
 struct Column {
   const char* name;

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "prostm/plan/plan.hpp"
+#include "prostm/target/target_field.hpp"
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm::recording {
@@ -137,7 +138,13 @@ std::vector<h5::Column> plan_columns() {
        "rendered at the peak of the modulation, padded with NaN"},
       {"stage_time", H5T_NATIVE_DOUBLE, {kPlanStages}, "s", names_of(plan_stages())},
       {"counts", H5T_NATIVE_INT32, {plan_counts().size()}, "1", names_of(plan_counts())},
-      {"cost", H5T_NATIVE_DOUBLE, {}, "1", "of Eqs. (2) to (5) after refinement"}};
+      {"cost", H5T_NATIVE_DOUBLE, {}, "1", "of Eqs. (2) to (5) after refinement"},
+      {"full_scale_pressure", H5T_NATIVE_DOUBLE, {}, "Pa", "rendered pressure at intensity 1"},
+      {"sigma",
+       H5T_NATIVE_DOUBLE,
+       {kMaxPatches},
+       "m",
+       "fall-off of a focal point that each patch was planned with, padded with NaN"}};
 }
 
 }  // namespace prostm::recording
