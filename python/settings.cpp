@@ -85,7 +85,7 @@ class Writer : public SettingsWriter {
   }
   void field(const Setting& s, std::string& value) override {
     if (s.name != name_) return;
-    if (!py::isinstance<py::str>(value_)) refuse("a text");
+    if (!py::isinstance<py::str>(value_)) refuse("a string");
     value = value_.cast<std::string>();
     found = true;
   }

@@ -13,7 +13,7 @@ _PLAIN = {
     "float": ("a number", numbers.Real),
     "int": ("a whole number", numbers.Integral),
     "bool": ("True or False", bool),
-    "str": ("a text", str),
+    "str": ("a string", str),
     "os.PathLike": ("the name of a file", (str, os.PathLike)),
     "object": ("anything", object),
 }

@@ -84,7 +84,7 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {"\xff\xfe", "JSON object"},
       {std::string(4097, ' '), "4096 bytes"},
       {"{}", "lacks \"type\""},
-      {R"({"type":7})", "\"type\" must be a text"},
+      {R"({"type":7})", "\"type\" must be a string"},
       {R"({"type":"reset"})", "set, transport, hand, calibration, mute or rate"},
       {R"({"type":"set","value":1})", "lacks \"id\""},
       {R"({"type":"set","id":"gain"})", "lacks \"value\""},

@@ -46,7 +46,7 @@ class LiveFocusSolver {
   LiveFocusSolver(const TransducerArray& array, const Medium& medium,
                   const LiveFocusSettings& settings);
 
-  /// Finds the drives for these focal points. Focal points with an amplitude below 1e-4 are silent
+  /// Finds the drives for these focal points. Focal points with an amplitude up to 1e-4 are silent
   /// and do not count. Nor do invalid ones: with a position or an amplitude that is out of range or
   /// not finite, behind the array, nearer than kNearestPoint to a transducer, or beyond
   /// kMaxLiveFoci. Allocates and throws nothing.

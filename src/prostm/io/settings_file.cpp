@@ -62,7 +62,7 @@ class TomlReader : public SettingsWriter {
   void field(const Setting& s, std::string& value) override {
     const toml::node* node = table_.get(s.name);
     if (node == nullptr) return;
-    if (!node->is_string()) fail(s.name, *node, "must be a text in quotes");
+    if (!node->is_string()) fail(s.name, *node, "must be a string in quotes");
     value = node->as_string()->get();
   }
 

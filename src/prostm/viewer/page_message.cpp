@@ -26,7 +26,7 @@ const Json& member(const Json& json, const char* name) {
 
 std::string text(const Json& json, const char* name) {
   const Json& value = member(json, name);
-  if (!value.is_string()) throw Wrong(fmt::format("\"{}\" must be a text", name));
+  if (!value.is_string()) throw Wrong(fmt::format("\"{}\" must be a string", name));
   return value.get<std::string>();
 }
 

@@ -55,12 +55,15 @@ export class Program {
   get printed(): string { return this.output; }
   get port(): number { return Number(new URL(this.address).port); }
 
-  async stop(signal: NodeJS.Signals = "SIGKILL"): Promise<void> {
+  /// Waits until it has ended by itself.
+  async ended(): Promise<void> {
     const child = this.child;
-    if (child === null || child.exitCode !== null || child.signalCode !== null) return;
-    const gone = new Promise((resolve) => child.once("exit", resolve));
-    child.kill(signal);
-    await gone;
+    if (child !== null && child.exitCode === null && child.signalCode === null) await new Promise((resolve) => child.once("exit", resolve));
+  }
+
+  async stop(signal: NodeJS.Signals = "SIGKILL"): Promise<void> {
+    this.child?.kill(signal);
+    await this.ended();
   }
 
   async numbers(): Promise<Json> { return (await fetch(`${this.address}/numbers.json`)).json() as Promise<Json>; }
