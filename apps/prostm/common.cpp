@@ -89,19 +89,14 @@ FocusMethod solver_of(const std::string& name) {
   return from_name<FocusMethod>(name, "--solver");
 }
 
-std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
-                                       double& duration) {
-  if (name == "scripted") {
-    duration = std::numeric_limits<double>::infinity();
-    return make_scripted_hand(settings.scripted_hand, settings.track);
-  }
+std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings) {
+  if (name == "scripted") return make_scripted_hand(settings.scripted_hand, settings.track);
   if (!names_recording(name)) {
     if (!settings.simulated_array.realtime) {
       throw InputError("--hand " + name +
                        " is live, so it needs prostm run in real time, without "
                        "--as-fast-as-possible and --stepped");
     }
-    duration = std::numeric_limits<double>::infinity();
     if (name == "page") return make_absent_hand();
     return make_live_hand(
         name == "openxr" ? make_openxr_tracker() : make_leap_tracker(leap_address(name)),
@@ -113,9 +108,7 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
   HandRecording recording = read_hand_recording(name, [&](std::size_t done, std::size_t all) {
     progress.show(1e-6 * static_cast<double>(done), 1e-6 * static_cast<double>(all), "MB");
   });
-  auto hands = make(std::move(recording), settings.track, true, 1.0 / settings.world_rate);
-  duration = hands->duration();
-  return hands;
+  return make(std::move(recording), settings.track, true, 1.0 / settings.world_rate);
 }
 
 Interrupt::Interrupt() {

@@ -30,9 +30,8 @@ bool names_recording(const std::string& hand);
 /// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
 FocusMethod solver_of(const std::string& name);
 
-/// The hands that `--hand` names. `duration` gets the recording's length, or infinity [s].
-std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
-                                       double& duration);
+/// The hands that `--hand` names. A recording starts again at its end.
+std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings);
 
 /// From construction on, Ctrl-C (SIGINT), SIGTERM and a terminal that goes (SIGHUP, unless it is
 /// ignored, as under nohup) only set a flag; a second one ends the program at once. And a reader of

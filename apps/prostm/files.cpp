@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "prostm/core/input_error.hpp"
@@ -46,6 +47,10 @@ void Files::check() const {
     }
     if (entry.check != nullptr) entry.check(entry.path);
   }
+}
+
+bool Files::any_output() const {
+  return std::ranges::any_of(entries_, [](const Entry& e) { return e.output && e.path != "-"; });
 }
 
 }  // namespace prostm::app

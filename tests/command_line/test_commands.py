@@ -199,6 +199,12 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("options, seconds", [([], 8.0), (["--seconds", "9"], 9.0)])
+def test_a_recording_sets_the_length_of_a_run(prostm, options, seconds):
+    done = prostm("run", "--hand", ROOT / "data/wave.hands.jsonl", "--as-fast-as-possible", "--grid", "32", *options, "--json", "-")
+    assert json.loads(done.stdout)["seconds"] == pytest.approx(seconds, abs=0.03)
+
+
 def test_in_still_air_the_hand_feels_its_own_movement(prostm):
     still = run_summary(prostm, "--as-fast-as-possible", "--scene", "still-air")
     assert still["world_steps"] == 400 and still["plans"] > 50

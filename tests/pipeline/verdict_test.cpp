@@ -114,8 +114,9 @@ TEST(Verdict, MissedBlocksAreToldAsWhatIsFelt) {
   const Verdict many = judged([](RunSummary& s) { s.device.missed_blocks = 475; });
   EXPECT_EQ(many.held, false);
   EXPECT_THAT(many.sentences,
-              ElementsAre(AllOf(StartsWith("The rates were held but for the samples: smoke 50.0"),
-                                HasSubstr("missed 475 of 60000 blocks and was silent"),
+              ElementsAre(AllOf(StartsWith("Smoke and plans kept their rates (smoke 50.0"),
+                                HasSubstr("silent for 475 ms in all"),
+                                HasSubstr("too late for 475 of 60000 blocks"),
                                 HasSubstr("ulimit -r 10"))));
   EXPECT_THAT(said([](RunSummary& s) {
                 s.device.missed_blocks = 475;
@@ -123,7 +124,7 @@ TEST(Verdict, MissedBlocksAreToldAsWhatIsFelt) {
                 s.skipped_world_steps = 1000;
               }),
               ElementsAre(StartsWith("The rates were not held: "),
-                          StartsWith("The array missed 475 of 60000 blocks")));
+                          StartsWith("The array fell silent for 475 ms in all")));
 }
 
 TEST(Verdict, LateBlocksThatTheQueueCoveredAreNotUnusual) {
@@ -245,8 +246,19 @@ TEST(Verdict, HasFourSentencesAtMostTheMostImportantFirst) {
     s.world_resets = 1;
   });
   EXPECT_THAT(all,
-              ElementsAre(StartsWith("The rates were not held"), StartsWith("The array missed"),
+              ElementsAre(StartsWith("The rates were not held"), StartsWith("The array fell silent"),
                           StartsWith("The smoke went wrong"), HasSubstr("of the hand's joints")));
+}
+
+TEST(Verdict, AHandThatIsComingInIsNoWarning) {
+  const auto outside_for = [](double seconds) {
+    return said([seconds](RunSummary& s) {
+      s.seconds = seconds;
+      s.contact_stats.joints_outside = s.contact_stats.joints / 2;
+    });
+  };
+  EXPECT_THAT(outside_for(8.0).back(), "Nothing was unusual.");
+  EXPECT_THAT(outside_for(12.0).back(), HasSubstr("of the hand's joints were outside"));
 }
 
 }  // namespace
