@@ -74,7 +74,8 @@ void bind_fields(py::module_& m) {
         write_file(path.string(), field_to_json(field));
       },
       "Writes prostm-field/1 (JSON).", py::arg("path"), py::arg("field"));
-  m.def("field_to_json", &field_to_json, "The field as prostm-field/1, a string.", py::arg("field"));
+  m.def("field_to_json", &field_to_json, "The field as prostm-field/1, a string.",
+        py::arg("field"));
   m.def("field_from_json", &field_from_json,
         "Parses prostm-field/1; `name` stands for the file in messages.", py::arg("text"),
         py::arg("name") = "the text");
@@ -104,8 +105,9 @@ void bind_plans(py::module_& m) {
       py::arg("path"), py::arg("plan"), py::arg("target"), py::arg("settings"),
       py::arg("stats") = py::none(), py::arg("metrics") = py::none(),
       py::arg("controls") = py::none());
-  m.def("plan_to_json", &plan_text, "The plan as prostm-plan/1, a string, as write_plan() writes it.",
-        py::arg("plan"), py::arg("target"), py::arg("settings"), py::arg("stats") = py::none(),
+  m.def("plan_to_json", &plan_text,
+        "The plan as prostm-plan/1, a string, as write_plan() writes it.", py::arg("plan"),
+        py::arg("target"), py::arg("settings"), py::arg("stats") = py::none(),
         py::arg("metrics") = py::none(), py::arg("controls") = py::none());
 }
 

@@ -227,6 +227,10 @@ nlohmann::ordered_json to_json(const Summary& s, double unit) {
           {"max", s.max * unit}};
 }
 
+std::string thousandths(double value) {
+  return fmt::format("{:.3f}", std::round(1e3 * value) / 1e3 + 0.0);  // -0 + 0 is 0
+}
+
 void print_metrics(std::FILE* out, const std::string& heading,
                    const std::vector<MetricsRow>& rows) {
   std::vector<const Quantity<Metrics>*> columns;
@@ -243,7 +247,7 @@ void print_metrics(std::FILE* out, const std::string& heading,
     fmt::print(out, "\n  {:<44}", row.name);
     for (const Quantity<Metrics>* column : columns) {
       const double value = value_of(*column, row.metrics);
-      fmt::print(out, " {:>7}", std::isfinite(value) ? fmt::format("{:.3f}", value) : "–");
+      fmt::print(out, " {:>7}", std::isfinite(value) ? thousandths(value) : "–");
     }
   }
   fmt::print(out, "\n");

@@ -111,6 +111,9 @@ struct MetricsRow {
 };
 void print_metrics(std::FILE* out, const std::string& heading, const std::vector<MetricsRow>& rows);
 
+/// Three decimals; what rounds to zero has no sign.
+std::string thousandths(double value);
+
 inline constexpr int kBadInput = 2;  ///< exit status, also for files that cannot be written
 
 }  // namespace prostm::app

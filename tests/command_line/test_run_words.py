@@ -14,7 +14,7 @@ import time
 
 import pytest
 
-from conftest import wait_for
+from conftest import ROOT, wait_for
 
 SMALL = ["run", "--grid", "32"]
 
@@ -33,6 +33,12 @@ def test_the_verdict_stands_before_the_numbers(prostm, tmp_path):
     assert re.match(r"4\.0 s of the scene were computed in \d+\.\d s, (as fast as|\d+\.\d times (faster|slower) than) real time; ", lines[0])
     for heading in ["The run: one-plume, 4.0 s", "Latency, from ", "Work, how long "]:
         assert any(line.startswith(heading) for line in lines)
+
+
+def test_no_number_is_minus_zero(prostm):
+    done = prostm(*SMALL, "--stepped", "--seconds", "4")
+    assert "latency" in done.stdout and not re.search(r"-0\.0*\s", done.stdout)
+    assert not re.search(r"-0\.0*\s", prostm("plan", ROOT / "data/palm.npy", "--cell-mm", "5").stdout)
 
 
 def test_in_real_time_the_verdict_is_of_the_rates(prostm, tmp_path):

@@ -24,7 +24,8 @@ constexpr int kLeastCells = 32, kCellsStep = 16;
 // scenes, at most 16 % of the samples at full scale, none limited, 7 % of the joints outside the
 // box as it comes in, 11 % of its skin steep.
 constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5;
-constexpr double kComesIn = 10.0;  // a hand that comes in is outside; a short run sees little else [s]
+constexpr double kComesIn =
+    10.0;  // a hand that comes in is outside; a short run sees little else [s]
 // Share of a tracker's frames.
 constexpr double kMostDropped = 0.01;
 
@@ -55,20 +56,22 @@ std::string reason(const RunSummary& s, const PipelineSettings& settings) {
   if (step > kBusy * due) {
     const int grid = smaller_grid(settings.fluid.cells, step, due);
     return fmt::format(
-        "a step of the smoke took {:.1f} ms at the median, of the {:.0f} ms there are: {}close "
-        "what else runs",
+        "half of the smoke's steps took longer than {:.1f} ms, and there are {:.0f} ms for each: "
+        "{}close what else runs",
         1e3 * step, 1e3 * due, grid > 0 ? fmt::format("use --grid {}, or ", grid) : "");
   }
   const double plan = s.plan.p50 + s.lift.p50, between = due * steps_per_plan;
   if (plan > kBusy * between) {
     const bool is_slow = settings.method == Method::ProStm && settings.plan.preset != Preset::Fast;
-    return fmt::format("a plan took {:.1f} ms at the median, of the {:.0f} ms there are: use {}",
-                       1e3 * plan, 1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
+    return fmt::format(
+        "half of the plans took longer than {:.1f} ms, and there are {:.0f} ms for each: use {}",
+        1e3 * plan, 1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
   }
   return fmt::format(
-      "a step of the smoke took {:.1f} ms at the median, of the {:.0f} ms there are, and up to "
-      "{:.0f} ms: another program takes the processor now and then; close what else runs, or try a "
-      "smaller --grid",
+      "half of the smoke's steps took less than {:.1f} ms of the {:.0f} ms that there are, but "
+      "some "
+      "up to {:.0f} ms: another program takes the processor now and then; close what else runs, or "
+      "try a smaller --grid",
       1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
 }
 
@@ -237,7 +240,8 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   std::vector<std::string> unusual;
   judge_faults(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
-  if (!tracker || tracker->frames > 0) judge_contact(s.contact_stats, s.seconds, s.plans > 0, unusual);
+  if (!tracker || tracker->frames > 0)
+    judge_contact(s.contact_stats, s.seconds, s.plans > 0, unusual);
   judge_output(s, unusual);
   if (unusual.empty() && verdict.held.value_or(true))
     verdict.sentences.emplace_back("Nothing was unusual.");

@@ -89,7 +89,6 @@ class ScriptedHand final : public HandSource {
     out.hands.back().id = static_cast<std::int64_t>(std::min(cycle, 1e15)) + 1;
   }
 
-
  private:
   static bool visible(double phase) {
     return phase >= std::begin(kScript)->phase && phase <= std::prev(std::end(kScript))->phase;
