@@ -100,8 +100,8 @@ def on_a_terminal(program, folder, *arguments):
 
 
 @pytest.mark.parametrize("arguments, first_word", [
-    ([*SMALL, "--as-fast-as-possible", "--seconds", "60"], "60.0 s of the scene"),
-    (["capture", "--grid", "32", "--frames", "200", "--out", "c.h5"], "200 fields"),
+    ([*SMALL, "--as-fast-as-possible", "--seconds", "3"], "3.0 s of the scene"),
+    (["capture", "--grid", "32", "--frames", "20", "--out", "c.h5"], "20 fields"),
 ])
 def test_the_progress_line_is_gone_before_anything_else_is_printed(program, tmp_path, arguments, first_word):
     shown = on_a_terminal(program, tmp_path, *arguments)
