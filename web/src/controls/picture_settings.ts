@@ -8,7 +8,7 @@ import type { View } from "../scene/view";
 
 const kSlowest = [1, 2, 5, 10, 20, 50, 100];
 const kFieldNames: Record<FieldMode, string> = {
-  target: "Target", rendered: "Rendered", difference: "Difference", none: "None",
+  target: "Target", rendered: "Reconstruction", difference: "Difference", none: "None",
 };
 const kThrough = 0.62; // opacity of a hand that is seen through
 

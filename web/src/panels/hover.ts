@@ -25,7 +25,7 @@ export function cellWords(patch: Patch, cell: number): string[] {
   const { target, rendered } = pressures(patch, cell);
   const difference = rendered - target;
   return [
-    `target ${short(target)} Pa`, `rendered ${short(rendered)} Pa`,
+    `target ${short(target)} Pa`, `reconstruction ${short(rendered)} Pa`,
     `difference ${difference < 0 ? "−" : "+"}${short(Math.abs(difference))} Pa`,
   ];
 }

@@ -6,7 +6,7 @@ import type { FieldMode } from "../scene/field_maps";
 import { short } from "../text";
 
 const kTitles: Record<FieldMode, string> = {
-  target: "Target pressure", rendered: "Rendered pressure", difference: "Rendered less target", none: "",
+  target: "Target pressure", rendered: "Reconstruction", difference: "Reconstruction less target", none: "",
 };
 
 export function paintBar(canvas: HTMLCanvasElement, table: Uint8ClampedArray): void {

@@ -53,7 +53,7 @@ export function under(placed: Placed[], px: number, py: number): Under | null {
   return null;
 }
 
-/// Target and rendered pressure of a cell [Pa].
+/// Target and reconstruction at a cell [Pa].
 export function pressures(patch: Patch, cell: number): { target: number; rendered: number } {
   const unit = patch.scale / 65535;
   return { target: patch.target[cell]! * unit, rendered: patch.rendered[cell]! * unit };

@@ -1,4 +1,5 @@
-/// The field of each hand flattened to its plane: target, rendered, and their difference, in one scale, with the paths.
+/// The field of each hand flattened to its plane: target, reconstruction and their difference, in one scale, with the
+/// paths.
 
 import type { Address } from "../address";
 import { css, kDifferenceTables, kFieldTable, pathColour } from "../colours";
@@ -12,7 +13,7 @@ import { PressureScale } from "./scale";
 
 type Kind = "target" | "rendered" | "difference";
 const kKinds: { kind: Kind; title: string }[] = [
-  { kind: "target", title: "Target" }, { kind: "rendered", title: "Rendered" },
+  { kind: "target", title: "Target" }, { kind: "rendered", title: "Reconstruction" },
   { kind: "difference", title: "Difference" },
 ];
 const kBar = { class: "bar", width: 256, height: 1, role: "img" };

@@ -19,7 +19,7 @@ export class PressureScale {
   /// [Pa]
   get end(): number { return this.locked ?? this.automatic; }
 
-  /// One end for target and rendered of all hands; it grows at once, and shrinks after some seconds.
+  /// One end for target and reconstruction of all hands; it grows at once, and shrinks after some seconds.
   measure(frame: Frame, now: number): void {
     let most = 0;
     for (const p of frame.field) {

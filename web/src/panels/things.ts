@@ -14,8 +14,8 @@ const kNames = {
 type Thing = keyof typeof kNames;
 
 const kTarget: Record<FieldMode, string> = {
-  target: "target pressure on the skin", rendered: "rendered pressure on the skin",
-  difference: "rendered less target, on the skin", none: "",
+  target: "target pressure on the skin", rendered: "reconstruction on the skin",
+  difference: "reconstruction less target, on the skin", none: "",
 };
 
 export class Things {

@@ -45,9 +45,9 @@ describe("a page with a hand", () => {
 
   it("names what is drawn", async () => {
     const names = async () => (await page.locator("#things li:visible").allTextContents()).join("; ");
-    await expect.poll(names).toMatch(/array.*box of the smoke, 360 mm wide.*hand, 1\d\d mm long.*rendered pressure.*path.*focal point.*height.*under the palm/);
+    await expect.poll(names).toMatch(/array.*box of the smoke, 360 mm wide.*hand, 1\d\d mm long.*reconstruction on the skin.*path.*focal point.*height.*under the palm/);
     await page.locator('label[for="skin-difference"]').click();
-    await expect.poll(names).toContain("rendered less target");
+    await expect.poll(names).toContain("reconstruction less target");
     await page.locator('label[for="skin-rendered"]').click();
     const labels = () => page.locator("#labels span:visible").allTextContents();
     await expect.poll(labels).toContain("100");
@@ -70,7 +70,7 @@ describe("a page with a hand", () => {
     const box = (await page.locator('canvas[data-kind="rendered"]').boundingBox())!;
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await says("hover", "Pa");
-    expect(await text("hover")).toMatch(/^target \d+(\.\d+)? Pa\nrendered \d+(\.\d+)? Pa\ndifference [−+]\d+(\.\d+)? Pa\nx −?-?\d+, y -?\d+ mm in the plane$/);
+    expect(await text("hover")).toMatch(/^target \d+(\.\d+)? Pa\nreconstruction \d+(\.\d+)? Pa\ndifference [−+]\d+(\.\d+)? Pa\nx −?-?\d+, y -?\d+ mm in the plane$/);
     // from below, the palm is in the middle
     await page.locator('[data-view="below"]').click();
     await page.waitForTimeout(1500);
@@ -82,7 +82,7 @@ describe("a page with a hand", () => {
       }
       return "";
     };
-    await expect.poll(seen).toMatch(/^target .* Pa\nrendered .* Pa\ndifference .* Pa\nx -?\d+, y -?\d+ mm, 1\d\d mm over the array$/);
+    await expect.poll(seen).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx -?\d+, y -?\d+ mm, 1\d\d mm over the array$/);
     await page.mouse.move(view.x + 5, view.y + view.height / 2);
     await expect.poll(() => page.locator("#hover").isHidden()).toBe(true);
     await page.locator('[data-view="home"]').click();
