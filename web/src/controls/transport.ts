@@ -2,7 +2,7 @@
 
 import { find, make, setText } from "../dom";
 import type { PageMessage, State } from "../messages";
-import { sourceOf } from "../panels/words";
+import { placeOf, sourceOf } from "../panels/words";
 import { fixed } from "../text";
 import type { Frame } from "../wire";
 
@@ -61,7 +61,6 @@ export class Transport {
   private showPlace(at: number): void {
     this.scrub.style.setProperty("--share", `${(100 * at) / (this.length || 1)}%`);
     this.scrub.setAttribute("aria-valuetext", `${fixed(at, 1)} of ${fixed(this.length, 1)} seconds`);
-    // a recording begins again at its end, and is played as fast as it was taken
-    setText(this.place, `${fixed(at, 1)} / ${fixed(this.length, 1)} s · repeats · 1×`);
+    setText(this.place, placeOf(at, this.length));
   }
 }

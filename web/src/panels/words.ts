@@ -1,6 +1,7 @@
 /// The page's words about the run.
 
 import type { State } from "../messages";
+import { fixed } from "../text";
 import { numberOf, type Frame } from "../wire";
 
 export interface Output {
@@ -33,6 +34,11 @@ const kSources: Record<string, string> = {
 export function sourceOf({ source, hand_page: holder }: State["transport"], page: number): string {
   if (source !== "page") return kSources[source] ?? source;
   return holder === page ? "hand from this page" : "hand from another page";
+}
+
+/// Returns the place in a recording [s].
+export function placeOf(at: number, length: number): string {
+  return `${fixed(at, 1)} / ${fixed(length, 1)} s · repeats`;
 }
 
 /// Returns advice, by the source of the hands.

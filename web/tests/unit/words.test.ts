@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { caption } from "../../src/controls/caption";
 import { commandLine } from "../../src/controls/command_line";
 import { RateWatch } from "../../src/panels/rates";
-import { advice, outputOf, sourceOf } from "../../src/panels/words";
+import { advice, outputOf, placeOf, sourceOf } from "../../src/panels/words";
 import { handLength } from "../../src/scene/hand_bones";
 import { frameWith, paths, scene, speed, stateWith } from "../support/frames";
 import { skeleton } from "../support/skeleton";
@@ -36,6 +36,12 @@ describe("the source of the hands", () => {
     expect(advice(stateWith([], { tracker }))).toBe("no tracker at 127.0.0.1");
     expect(advice(stateWith([], { tracker: { ...tracker, connected: true } }))).toContain("over the array");
     expect(advice(stateWith([], { transport: { ...transport, base: "page" } }))).toContain("mouse");
+  });
+});
+
+describe("the place in a recording", () => {
+  it("has its length, and says that it repeats", () => {
+    expect(placeOf(2.54, 8)).toBe("2.5 / 8.0 s · repeats");
   });
 });
 
