@@ -2,13 +2,7 @@
 
 import { Vector3, type Camera } from "three";
 import { find, make, setText } from "../dom";
-
-export interface Label {
-  text: string;
-  at: Vector3; // in D [m]
-  side: "left" | "right" | "middle"; // of the place, where the text stands
-  strong?: boolean;
-}
+import { readable, type Label } from "./label";
 
 export class Labels {
   private readonly root = find("labels");
@@ -33,5 +27,10 @@ export class Labels {
       span.style.setProperty("left", `${Math.round(0.5 * (place.x + 1) * width)}px`);
       span.style.setProperty("top", `${Math.round(0.5 * (1 - place.y) * height)}px`);
     });
+    const box = (element: Element) => element.getBoundingClientRect();
+    const over = [...document.querySelectorAll("#picture .hand-box, #views button, #legend")].map(box);
+    const picture = box(canvas), shown = this.spans.filter((span) => !span.hidden);
+    const seen = shown.map((span) => readable(box(span), picture, over));
+    shown.forEach((span, i) => span.classList.toggle("covered", !seen[i]));
   }
 }

@@ -1,29 +1,31 @@
-/// Lengths in the picture: heights above the array along an edge of the box, the box's width, and how high the palm is.
+/// Lengths in the picture: heights above the array at its left, the box's width, and how high the palm is.
 
 import {
   BufferGeometry, Color, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments, Vector3, type Camera,
 } from "three";
 import type { Hello } from "../messages";
 import type { Hand } from "../wire";
-import type { Label } from "./labels";
+import type { Label } from "./label";
 
 const kTick = 0.05, kNumber = 0.1; // between ticks, and between numbers [m]
 const kTickLength = 0.008; // [m]
-const kSeen = 0.2; // height up to which the ruler is to be in the picture [m]
-const kRoom = 0.86; // share of the picture's half in which there is room for numbers
+const kParts = [[0, 0.2], [0.1, 0.3], [0.2, 0.3]] as const; // heights of which the first is to be in the picture [m]
+const kBeside = 45; // room that the numbers take beside the ruler [pixels]
+const kUpAndDown = 0.86; // share of the picture's half, up and down, in which the ruler is to be
+const kShares = Array.from({ length: 15 }, (_, i) => 1 - i / 20); // of the way from the floor's middle to a corner
 
-/// The corner whose upright edge is leftmost in the picture, of those whose lower part is in it.
-function leftmost(corners: Vector3[], camera: Camera): Vector3 {
-  const seen = corners.map((corner) => {
-    const ends = [0, kSeen].map((z) => corner.clone().setZ(corner.z + z).project(camera));
-    const x = Math.min(...ends.map((p) => p.x));
-    const inside = ends.every((p) => Math.abs(p.x) < kRoom && Math.abs(p.y) < kRoom);
-    return { corner, x, inside };
-  });
-  const inside = seen.filter((s) => s.inside);
-  // where none is, the one that is least far outside
-  if (inside.length === 0) return seen.reduce((a, b) => (Math.abs(b.x) < Math.abs(a.x) ? b : a)).corner;
-  return inside.reduce((a, b) => (b.x < a.x ? b : a)).corner;
+/// The place that is leftmost in the picture, of those between the floor's corners and its middle at which a part of the
+/// ruler is in it, the lowest if it can be. A corner itself is often beside a narrow picture.
+function leftmost(corners: Vector3[], middle: Vector3, camera: Camera, width: number): Vector3 {
+  const room = 1 - (2 * kBeside) / width;
+  const feet = corners.flatMap((corner) => kShares.map((share) => middle.clone().lerp(corner, share)));
+  for (const part of kParts) {
+    const seen = feet.map((foot) => ({ foot, ends: part.map((z) => foot.clone().setZ(z).project(camera)) }));
+    const inside = seen.filter(({ ends }) => ends.every((p) => Math.abs(p.x) < room && Math.abs(p.y) < kUpAndDown));
+    const left = ({ ends }: typeof seen[number]) => Math.min(...ends.map((p) => p.x));
+    if (inside.length > 0) return inside.reduce((a, b) => (left(b) < left(a) ? b : a)).foot;
+  }
+  return corners[0]!; // the eye looks elsewhere
 }
 
 export class Ruler {
@@ -48,7 +50,9 @@ export class Ruler {
     const top = this.low.z + this.edge;
     const points = [0, 0, 0, 0, 0, top];
     for (let z = 0; z <= top + 1e-9; z += kTick) points.push(0, 0, z, -kTickLength, 0, z);
-    this.upright.geometry.setAttribute("position", new Float32BufferAttribute(points, 3));
+    const { geometry } = this.upright;
+    geometry.setAttribute("position", new Float32BufferAttribute(points, 3));
+    geometry.computeBoundingSphere(); // a picture drawn before this knew it without points, as out of sight
   }
 
   setHand(hand: Hand | undefined): void { this.palmHeight = hand === undefined ? null : hand.joints[2]!; }
@@ -58,26 +62,27 @@ export class Ruler {
     this.accent.color = new Color(dark ? "#ffb454" : "#b84e00");
   }
 
-  /// Puts the ruler on that edge of the box which is leftmost in the picture. @return the numbers on it.
-  update(camera: Camera): Label[] {
+  /// Puts the ruler at the left of the picture, on an edge of the box where there is room. @return the numbers on it.
+  /// @param width of the picture [pixels].
+  update(camera: Camera, width: number): Label[] {
     if (this.edge === 0) return [];
     const { low, edge } = this;
-    const middle = low.clone().addScalar(edge / 2);
+    const middle = new Vector3(low.x + edge / 2, low.y + edge / 2, low.z);
     const corners = [0, 1, 2, 3].map((i) => new Vector3(low.x + (i & 1 ? edge : 0), low.y + (i & 2 ? edge : 0), low.z));
-    const corner = leftmost(corners, camera);
-    this.group.position.set(corner.x, corner.y, 0);
+    const foot = leftmost(corners, middle, camera, width);
+    this.group.position.set(foot.x, foot.y, 0);
     // ticks point away from the box
-    this.group.rotation.z = Math.atan2(corner.y - middle.y, corner.x - middle.x) - Math.PI;
+    this.group.rotation.z = Math.atan2(foot.y - middle.y, foot.x - middle.x) - Math.PI;
     const labels: Label[] = [];
     for (let z = 0; z <= low.z + edge + 1e-9; z += kNumber) {
       const last = z + kNumber > low.z + edge + 1e-9;
       const text = `${Math.round(1000 * z)}${last ? " mm" : ""}`;
-      labels.push({ text, at: new Vector3(corner.x, corner.y, z), side: "left" });
+      labels.push({ text, at: new Vector3(foot.x, foot.y, z), side: "left" });
     }
     this.palm.visible = this.palmHeight !== null;
     if (this.palmHeight !== null) {
       this.palm.position.z = this.palmHeight;
-      const at = new Vector3(corner.x, corner.y, this.palmHeight);
+      const at = new Vector3(foot.x, foot.y, this.palmHeight);
       labels.push({ text: `palm ${Math.round(1000 * this.palmHeight)} mm`, at, side: "right", strong: true });
     }
     return [...labels, ...this.widths(camera)];

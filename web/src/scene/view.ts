@@ -165,7 +165,7 @@ export class View {
     this.resize();
     const { width, height } = this.backTarget;
     this.eye.update(dt, width / height);
-    this.labels.show(this.ruler.update(this.eye.camera), this.eye.camera, this.canvas);
+    this.labels.show(this.ruler.update(this.eye.camera, this.canvas.clientWidth), this.eye.camera, this.canvas);
     this.paths.advance(dt);
     const { renderer } = this;
     const camera = this.eye.camera;
