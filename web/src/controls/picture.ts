@@ -11,8 +11,7 @@ export interface PictureSource {
 }
 
 const kGap = 18, kLine = 20; // [pixels of the page]
-const kText = "13px system-ui, sans-serif", kSmall = "11px system-ui, sans-serif";
-const kNames = "600 13px system-ui, sans-serif";
+const kText = "13px system-ui, sans-serif";
 
 /// Parts of text in as many lines as their width needs.
 export function wrapped(parts: string[], width: number, widthOf: (text: string) => number): string[] {
@@ -25,71 +24,42 @@ export function wrapped(parts: string[], width: number, widthOf: (text: string) 
   return lines;
 }
 
-interface Sheet {
-  context: CanvasRenderingContext2D;
-  ink: string;
-  faint: string;
+/// The texts of a part of the page as they look there, at `left` and `top` for what is at the corner of `frame`.
+function drawTexts(context: CanvasRenderingContext2D, part: Element, frame: DOMRect, left: number, top: number): void {
+  const texts = document.createTreeWalker(part, NodeFilter.SHOW_TEXT);
+  const range = document.createRange();
+  context.textBaseline = "middle";
+  for (let node = texts.nextNode(); node !== null; node = texts.nextNode()) {
+    range.selectNodeContents(node);
+    const element = node.parentElement, box = range.getBoundingClientRect(), text = node.textContent ?? "";
+    if (element === null || box.width === 0 || element.closest("button, .segments")) continue;
+    const { fontWeight, fontSize, fontFamily, color, textTransform } = getComputedStyle(element);
+    context.font = `${fontWeight} ${fontSize} ${fontFamily}`;
+    context.fillStyle = color;
+    const words = textTransform === "uppercase" ? text.toUpperCase() : text;
+    context.fillText(words.trim(), left + box.left - frame.left, top + (box.top + box.bottom) / 2 - frame.top);
+  }
+  context.textBaseline = "alphabetic";
 }
 
-/// A text of the page, where it is on it.
-function drawText({ context, ink, faint }: Sheet, element: HTMLElement, x: number, y: number): void {
-  const small = element.matches("#scales span, small, .legend li, #labels span");
-  context.font = small ? kSmall : kNames;
-  context.fillStyle = small ? faint : ink;
-  context.fillText((element.textContent ?? "").trim(), x, y);
+function drawPanels(context: CanvasRenderingContext2D, left: number, top: number): void {
+  const panels = find("panels"), side = panels.getBoundingClientRect();
+  for (const part of panels.querySelectorAll<HTMLElement>("canvas, .swatch")) {
+    const box = part.getBoundingClientRect(), x = left + box.left - side.left, y = top + box.top - side.top;
+    context.fillStyle = part.style.getPropertyValue("--swatch");
+    if (box.width === 0) continue;
+    if (part instanceof HTMLCanvasElement) context.drawImage(part, x, y, box.width, box.height);
+    else context.fillRect(x, y, box.width, box.height);
+  }
+  drawTexts(context, panels, side, left, top);
 }
 
-/// The name of a strip, its unit, and the colour, name and value of each of its lines, in one row.
-function drawStripHead(sheet: Sheet, strip: Element, left: number, right: number, y: number): void {
-  const { context, ink, faint } = sheet;
-  const write = (text: string, font: string, colour: string, x: number) => {
-    context.font = font;
-    context.fillStyle = colour;
-    context.fillText(text, x, y);
-    return context.measureText(text).width;
-  };
-  let x = left + write(strip.querySelector("h3")?.textContent ?? "", kNames, ink, left) + 8;
-  let end = right;
-  for (const item of [...strip.querySelectorAll<HTMLElement>(".legend li")].reverse()) {
-    const words = (item.textContent ?? "").trim();
-    context.font = kSmall;
-    end -= context.measureText(words).width;
-    write(words, kSmall, ink, end);
-    context.fillStyle = item.querySelector<HTMLElement>(".swatch")?.style.getPropertyValue("--swatch") ?? ink;
-    context.fillRect(end - 14, y - 6, 10, 4);
-    end -= 22;
-  }
-  // the unit, where there is room for it
-  const unit = strip.querySelector("small")?.textContent ?? "";
-  context.font = kSmall;
-  if (x + context.measureText(unit).width < end - 6) x += write(unit, kSmall, faint, x);
-}
-
-function drawPanels(sheet: Sheet, left: number, top: number): void {
-  const { context } = sheet;
-  const side = find("panels").getBoundingClientRect();
-  const x = (at: number) => left + at - side.left, y = (at: number) => top + at - side.top;
-  for (const image of document.querySelectorAll<HTMLCanvasElement>("#panels canvas")) {
-    const box = image.getBoundingClientRect();
-    if (box.width > 0) context.drawImage(image, x(box.left), y(box.top), box.width, box.height);
-  }
-  for (const name of document.querySelectorAll<HTMLElement>("#panels figcaption, #scales span")) {
-    const box = name.getBoundingClientRect();
-    drawText(sheet, name, x(box.left), y(box.bottom) - 4);
-  }
-  for (const strip of document.querySelectorAll("#strips .strip")) {
-    const box = strip.getBoundingClientRect();
-    drawStripHead(sheet, strip, x(box.left), x(box.right) - 14, y(box.top) + 13);
-  }
-}
-
-function drawScene(sheet: Sheet, source: PictureSource, left: number, top: number): void {
+function drawScene(context: CanvasRenderingContext2D, source: PictureSource, left: number, top: number): void {
   const view = source.canvas.getBoundingClientRect();
   source.render();
-  sheet.context.drawImage(source.canvas, left, top, view.width, view.height);
-  for (const label of document.querySelectorAll<HTMLElement>("#labels span:not([hidden])")) {
-    const box = label.getBoundingClientRect();
-    drawText(sheet, label, left + box.left - view.left, top + box.bottom - view.top - 3);
+  context.drawImage(source.canvas, left, top, view.width, view.height);
+  for (const label of document.querySelectorAll("#labels span:not([hidden], .covered)")) {
+    drawTexts(context, label, view, left, top);
   }
 }
 
@@ -103,7 +73,6 @@ export function compose(source: PictureSource): HTMLCanvasElement {
   const context = out.getContext("2d");
   if (context === null) return out;
 
-  const sheet = { context, ink: colour("--ink"), faint: colour("--faint") };
   const width = view.width + side.width + 3 * kGap;
   context.font = kText;
   const lines = wrapped(parts, width - 2 * kGap, (text) => context.measureText(text).width);
@@ -113,14 +82,14 @@ export function compose(source: PictureSource): HTMLCanvasElement {
   context.scale(ratio, ratio);
   context.fillStyle = colour("--card");
   context.fillRect(0, 0, width, height);
-  context.fillStyle = sheet.ink;
+  context.fillStyle = colour("--ink");
   context.font = "600 20px system-ui, sans-serif";
   context.fillText(title, kGap, kGap + 16);
-  drawScene(sheet, source, kGap, top);
-  drawPanels(sheet, view.width + 2 * kGap, top);
+  drawScene(context, source, kGap, top);
+  drawPanels(context, view.width + 2 * kGap, top);
 
   context.font = kText;
-  context.fillStyle = sheet.faint;
+  context.fillStyle = colour("--faint");
   lines.forEach((line, i) => context.fillText(line, kGap, height - kGap - kLine * (lines.length - 1 - i)));
   return out;
 }

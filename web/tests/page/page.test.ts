@@ -412,6 +412,23 @@ describe("looks", () => {
 });
 
 describe("pictures of the page", () => {
+  it("have their texts beside each other, those of the strips among them", async () => {
+    const texts = await page.evaluate(() => {
+      const drawn: { text: string; left: number; right: number; y: number }[] = [];
+      const whole = CanvasRenderingContext2D.prototype.fillText;
+      CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+        if (!this.canvas.isConnected) drawn.push({ text, left: x, right: x + this.measureText(text).width, y });
+        whole.call(this, text, x, y);
+      };
+      document.getElementById("screenshot")!.click();
+      CanvasRenderingContext2D.prototype.fillText = whole;
+      return drawn;
+    });
+    for (const word of ["Reconstruction", "Stages", "fluid", "lift", "RMSE"]) expect(texts.map((t) => t.text)).toContain(word);
+    const over = texts.flatMap((a, i) => texts.slice(i + 1)
+      .filter((b) => Math.abs(a.y - b.y) < 8 && a.left < b.right - 1 && b.left < a.right - 1).map((b) => `${a.text} over ${b.text}`));
+    expect(over).toEqual([]);
+  });
   it("can be taken as PNG", async () => {
     const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#screenshot").click()]);
     const file = await download.path();
