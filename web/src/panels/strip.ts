@@ -74,7 +74,7 @@ export class Strip {
           values: (_, ticks) => ticks.map((t) => (this.last ? label(t) : "")),
           incrs: () => kIncrements[this.view.span] ?? [10, 30],
         },
-        { ...axis, size: 38, gap: 4, space: 16 },
+        { ...axis, size: 38, gap: 4, space: 12 },
       ],
       series: [
         {},

@@ -110,6 +110,9 @@ describe("large type", () => {
     expect(await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize))).toBeGreaterThanOrEqual(18);
     expect(await clipped(page)).toEqual([]);
     expect(await tooWide(page)).toBeLessThanOrEqual(0);
+    // the planes begin at the same height: each has its name in one line
+    const names = await page.locator("figcaption").evaluateAll((all) => all.map((e) => e.getBoundingClientRect().height));
+    expect(new Set(names).size).toBe(1);
     await page.close();
   });
   it("of the browser, twice as large, cuts nothing off", async () => {
