@@ -1,19 +1,16 @@
-/// Says in the picture what pressure is on the skin under the pointer.
+/// Says in the picture what pressure is on the skin that somebody points at.
 
 import { cellWords, say } from "../panels/hover";
+import { onPoint, type Place } from "../pointing";
 import type { View } from "../scene/view";
 
 export class Pointer {
-  private at: { x: number; y: number } | null = null;
+  private at: Place | null = null;
 
   constructor(private readonly view: View) {
-    view.canvas.addEventListener("pointermove", (e) => {
-      this.at = e.buttons === 0 ? { x: e.clientX, y: e.clientY } : null; // who turns the view does not read
+    onPoint(view.canvas, (at) => {
+      this.at = at;
       this.update();
-    });
-    view.canvas.addEventListener("pointerleave", () => {
-      this.at = null;
-      say([], 0, 0);
     });
   }
 
@@ -21,7 +18,11 @@ export class Pointer {
   update(moved = true): void {
     if (this.at === null) return void (moved && say([], 0, 0));
     const hit = this.view.skinAt(this.at.x, this.at.y);
-    if (hit === null) return say([], 0, 0);
+    if (hit === null) {
+      // a hand that comes later is not what was tapped
+      if (this.at.tapped) this.at = null;
+      return say([], 0, 0);
+    }
     const [x, y, z] = hit.point.toArray().map((v) => (1000 * v).toFixed(0));
     say([...cellWords(hit.patch, hit.cell), `x ${x}, y ${y} mm, ${z} mm over the array`], this.at.x, this.at.y);
   }

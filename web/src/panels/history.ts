@@ -63,6 +63,14 @@ export class PerSecond {
   }
 }
 
+/// Times of the samples of which a value lies above the axis, and below it.
+export function beyond(times: number[], rows: number[][], top: number): { above: number[]; below: number[] } {
+  return {
+    above: times.filter((_, i) => rows.some((row) => row[i]! > top)),
+    below: times.filter((_, i) => rows.some((row) => row[i]! < 0)),
+  };
+}
+
 const kOutlying = 1.5; // times the 98th percentile
 
 /// The top of an axis on which the values are well seen: that of their 98th percentile where a few stick out.

@@ -4,6 +4,7 @@
 import type { Address } from "../address";
 import { css, kDifferenceTables, kFieldTable, pathColour } from "../colours";
 import { find, make, setText } from "../dom";
+import { onPoint } from "../pointing";
 import { short } from "../text";
 import type { Frame, Patch, Path } from "../wire";
 import { cellWords, say } from "./hover";
@@ -38,8 +39,7 @@ export class Planes {
       const label = `${title} of the pressure in the plane of each hand`;
       const canvas = make("canvas", { "data-kind": kind, role: "img", "aria-label": label });
       row.append(make("figure", {}, make("figcaption", {}, title), canvas));
-      canvas.addEventListener("pointermove", (e) => this.point({ canvas, x: e.clientX, y: e.clientY }));
-      canvas.addEventListener("pointerleave", () => this.point(null));
+      onPoint(canvas, (at) => this.point(at === null ? null : { canvas, x: at.x, y: at.y }));
       return { kind, canvas };
     });
     find("scales").append(

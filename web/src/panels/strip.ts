@@ -5,7 +5,7 @@ import "uplot/dist/uPlot.min.css";
 import { find, make, setText } from "../dom";
 import { fixed } from "../text";
 import type { Frame } from "../wire";
-import { History, PerSecond, robustTop } from "./history";
+import { beyond, History, PerSecond, robustTop } from "./history";
 import type { StripSpec } from "./strip_specs";
 
 /// The state that all strips share at a moment.
@@ -28,7 +28,7 @@ export class Strip {
   private readonly host = make("div", { class: "plot" });
   private view: StripsView = { span: 30, now: 0, at: null };
   private top = 1;
-  private cut: number[] = []; // times of samples above the top [s before now]
+  private cut = beyond([], [], 0); // times of samples that the axis cuts off [s before now]
 
   /// @param last whether it stands at the foot, where the time is written
   constructor(readonly spec: StripSpec, private readonly last: boolean, private readonly dark: () => boolean) {
@@ -91,28 +91,36 @@ export class Strip {
     };
   }
 
-  /// Marks what is cut off at the top, and where the pointer is.
+  /// Marks what is cut off at the top and at the foot, and where the pointer is.
   private mark(plot: uPlot, cutColour: string, lineColour: string): void {
     const { ctx, bbox } = plot;
     const ratio = window.devicePixelRatio || 1;
     ctx.save();
     ctx.fillStyle = cutColour;
-    let before = -Infinity;
-    for (const t of this.cut) {
-      const x = plot.valToPos(t, "x", true);
-      if (x - before < kMarkGap * ratio) continue;
-      before = x;
-      ctx.beginPath();
-      ctx.moveTo(x, bbox.top - 5 * ratio);
-      ctx.lineTo(x - 3.5 * ratio, bbox.top + ratio);
-      ctx.lineTo(x + 3.5 * ratio, bbox.top + ratio);
-      ctx.fill();
-    }
+    this.triangles(plot, this.cut.above, bbox.top, -ratio);
+    this.triangles(plot, this.cut.below, bbox.top + bbox.height, ratio);
     if (this.view.at !== null) {
       ctx.fillStyle = lineColour;
       ctx.fillRect(Math.round(plot.valToPos(this.view.at, "x", true)), bbox.top, ratio, bbox.height);
     }
     ctx.restore();
+  }
+
+  /// Draws triangles that point out of the plot at an edge of it.
+  /// @param out a pixel of the page, negative where out is upwards.
+  private triangles({ ctx, valToPos }: uPlot, times: number[], edge: number, out: number): void {
+    const pixel = Math.abs(out);
+    let before = -Infinity;
+    for (const t of times) {
+      const x = valToPos(t, "x", true);
+      if (x - before < kMarkGap * pixel) continue;
+      before = x;
+      ctx.beginPath();
+      ctx.moveTo(x, edge + 5 * out);
+      ctx.lineTo(x - 3.5 * pixel, edge - out);
+      ctx.lineTo(x + 3.5 * pixel, edge - out);
+      ctx.fill();
+    }
   }
 
   add(frame: Frame, time: number): void {
@@ -151,7 +159,7 @@ export class Strip {
 
   private scale(times: number[], rows: number[][]): void {
     this.top = this.spec.atMost ?? Math.max(...rows.map((row) => robustTop(row, this.spec.atLeast)));
-    this.cut = this.spec.atMost === undefined ? times.filter((_, i) => rows.some((row) => row[i]! > this.top)) : [];
+    this.cut = beyond(times, rows, this.top);
   }
 
   /// Writes the newest values, or those under the pointer.

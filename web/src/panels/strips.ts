@@ -2,6 +2,7 @@
 
 import { kSpans, type Address } from "../address";
 import { find, make, setText } from "../dom";
+import { onPoint } from "../pointing";
 import type { Frame } from "../wire";
 import { Strip } from "./strip";
 import { kStrips } from "./strip_specs";
@@ -23,9 +24,7 @@ export class Strips {
       find("span").append(radio, make("label", { for: `span-${span}` }, `${span} s`));
     }
     this.button.addEventListener("click", () => this.toggle());
-    const area = find("strips");
-    area.addEventListener("pointermove", (e) => this.point(e.clientX, e.clientY));
-    area.addEventListener("pointerleave", () => this.point(NaN, NaN));
+    onPoint(find("strips"), (at) => this.point(at?.x ?? NaN, at?.y ?? NaN));
   }
 
   add(frame: Frame, time: number): void { for (const s of this.strips) s.add(frame, time); }

@@ -1,6 +1,7 @@
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import "../../src/inspection";
+import { kNumbers } from "../../src/wire";
 import { clean, openBrowser, Program, until, Watch } from "./program";
 
 // no hand but the page's: it is there when a test wants it
@@ -130,6 +131,120 @@ describe("a page with a hand", () => {
     await page.locator("#show-help").click();
     await page.locator("#close-help").click();
     expect(await page.locator("#help").isVisible()).toBe(false);
+  });
+
+  it("keeps the page's hand, and mutes nothing, while Esc and other keys are for the help", async () => {
+    await page.keyboard.press("?");
+    // the text takes no focus: the page's body has it then
+    await page.locator("#help p").click();
+    await page.keyboard.press("m");
+    await page.keyboard.press("Escape");
+    expect(await page.locator("#help").isVisible()).toBe(false);
+    expect(await page.locator("#page-hand").isChecked()).toBe(true);
+    await page.waitForTimeout(500);
+    expect(await page.evaluate(() => window.prostm.frame!.run)).toMatchObject({ pageHand: true, muted: false });
+  });
+
+  it("names the target and the reconstruction by one word each, wherever they are", async () => {
+    expect(await page.locator("#planes figcaption").allTextContents()).toEqual(["Target", "Reconstruction", "Difference"]);
+    expect(await page.locator("#skin-field label").allTextContents()).toEqual(["Target", "Reconstruction", "Difference", "None"]);
+    await expect.poll(() => page.locator("#legend b").textContent()).toBe("Reconstruction");
+    expect(await page.locator("body").evaluate((body) => body.textContent)).not.toMatch(/rendered/i);
+  });
+});
+
+/// Presses, moves and lifts a finger.
+async function swipe(on: Page, x: number, y: number, by: number): Promise<void> {
+  const session = await on.context().newCDPSession(on);
+  const touch = (type: "touchStart" | "touchMove" | "touchEnd", dx: number) =>
+    session.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x: x + dx, y }] });
+  await touch("touchStart", 0);
+  for (let i = 1; i <= 4; ++i) await touch("touchMove", (by * i) / 4);
+  await touch("touchEnd", by);
+}
+
+describe("a page that is touched", () => {
+  let touched: Page, seen: Watch;
+  beforeAll(async () => {
+    const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    touched = await context.newPage();
+    seen = new Watch(touched);
+    await touched.goto(`${program.address}/#picture=on`);
+    await until(touched, () => (window.prostm?.frame?.hands.length ?? 0) > 0 && window.prostm.pictures > 1, 0, "a hand and pictures");
+    await touched.locator('[data-view="below"]').tap();
+    await touched.waitForTimeout(2500);
+  });
+  afterAll(() => touched.context().close());
+  const note = () => touched.locator("#hover");
+  /// Taps the palm, which is in the middle when it is seen from below.
+  const tapped = async () => {
+    const view = (await touched.locator("#view").boundingBox())!;
+    const x = view.x + view.width / 2, middle = view.y + view.height / 2;
+    for (const y of [middle, middle + 30, middle - 30, middle + 60]) {
+      await touched.touchscreen.tap(x, y);
+      if (await note().isVisible()) return { x, y };
+    }
+    return null;
+  };
+
+  it("says what pressure is where the hand is tapped, until the next touch", async () => {
+    await expect.poll(tapped, { timeout: 20_000 }).not.toBeNull();
+    await touched.waitForTimeout(1000);
+    expect(await note().textContent()).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx -?\d+, y -?\d+ mm, 1\d\d mm over the array$/);
+    await touched.locator("#about").tap();
+    expect(await note().isHidden()).toBe(true);
+  });
+  it("turns the view by a drag, and says nothing", async () => {
+    const at = (await tapped())!;
+    const before = await touched.evaluate(() => location.hash);
+    await swipe(touched, at.x, at.y, 40);
+    expect(await note().isHidden()).toBe(true);
+    await expect.poll(() => touched.evaluate(() => location.hash)).not.toBe(before);
+  });
+  it("says what is under a tap on a plane and on a strip", async () => {
+    await touched.locator('canvas[data-kind="target"]').tap();
+    await expect.poll(() => note().textContent()).toMatch(/^target .* mm in the plane$/s);
+    expect(await note().isVisible()).toBe(true);
+    await touched.locator('[data-strip="quality"] .u-over').tap();
+    expect(await note().isHidden()).toBe(true);
+    await expect.poll(() => touched.locator("#strips-at").textContent()).toMatch(/^values \d+\.\d s ago$/);
+  });
+  it("complained of nothing", () => expect(seen.complaints).toEqual([]));
+});
+
+/// Puts a number in a frame of the program (docs/wire.md).
+function withNumber(frame: Buffer, place: number, value: number): Buffer {
+  const made = Buffer.from(frame);
+  for (let at = 16; at + 8 <= made.length; at += 8 + 8 * Math.ceil(made.readUInt32LE(at + 4) / 8)) {
+    if (made.readUInt16LE(at) === 2) made.writeFloatLE(value, at + 8 + 4 * place);
+  }
+  return made;
+}
+
+describe("a page that is told of negative quality", () => {
+  it("marks it at the foot of the strip", async () => {
+    const other = await browser.newPage({ colorScheme: "light" });
+    let skill = 0.3;
+    await other.routeWebSocket(/live/, (socket) => {
+      const server = socket.connectToServer();
+      server.onMessage((m) => socket.send(typeof m === "string" ? m : withNumber(m, kNumbers.indexOf("skill_8"), skill)));
+    });
+    await other.goto(`${program.address}/#picture=off`);
+    // pixels in the marks' colour under the axis's 0, where no line is drawn
+    const marked = () => other.evaluate(() => {
+      const canvas = document.querySelector<HTMLCanvasElement>('[data-strip="quality"] canvas')!, box = canvas.getBoundingClientRect();
+      const plot = document.querySelector('[data-strip="quality"] .u-over')!.getBoundingClientRect(), ratio = canvas.width / box.width;
+      const area = [plot.left - box.left, plot.bottom - box.top + 1, plot.width, 3].map((v) => Math.round(v * ratio)) as [number, number, number, number];
+      const { data } = canvas.getContext("2d")!.getImageData(...area);
+      return data.filter((v, i) => i % 4 === 0 && v > 120 && data[i + 1]! < 90 && data[i + 2]! < 60 && data[i + 3]! > 200).length;
+    });
+    const reading = other.locator('[data-strip="quality"] [data-series="skill"] b');
+    await expect.poll(() => reading.textContent()).toBe("0.30");
+    expect(await marked()).toBe(0);
+    skill = -0.4;
+    await expect.poll(() => reading.textContent()).toBe("-0.40");
+    await expect.poll(marked).toBeGreaterThan(4);
+    await other.close();
   });
 });
 

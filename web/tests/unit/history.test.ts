@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { History, PerSecond, robustTop } from "../../src/panels/history";
+import { beyond, History, PerSecond, robustTop } from "../../src/panels/history";
 
 describe("the top of an axis", () => {
   it("is above the largest value where none sticks out", () => {
@@ -12,6 +12,13 @@ describe("the top of an axis", () => {
     const values = Array.from({ length: 900 }, (_, i) => 10 + (i % 5));
     values[100] = values[500] = 1000;
     expect(robustTop(values, 5)).toBeCloseTo(1.08 * 14);
+  });
+});
+
+describe("values that an axis cuts off", () => {
+  it("are known at its top and at its foot", () => {
+    const cut = beyond([-3, -2, -1, 0], [[0.9, -0.2, NaN, 0], [1.3, 0.4, 1, -4]], 1);
+    expect(cut).toEqual({ above: [-3], below: [-2, 0] });
   });
 });
 
