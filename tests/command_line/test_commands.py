@@ -205,6 +205,7 @@ def test_a_recording_sets_the_length_of_a_run(prostm, options, seconds):
     assert json.loads(done.stdout)["seconds"] == pytest.approx(seconds, abs=0.03)
 
 
+@pytest.mark.long
 def test_in_still_air_the_hand_feels_its_own_movement(prostm):
     still = run_summary(prostm, "--as-fast-as-possible", "--scene", "still-air")
     assert still["world_steps"] == 400 and still["plans"] > 50

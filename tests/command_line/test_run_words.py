@@ -35,6 +35,7 @@ def test_the_verdict_stands_before_the_numbers(prostm, tmp_path):
         assert any(line.startswith(heading) for line in lines)
 
 
+@pytest.mark.long
 def test_no_number_is_minus_zero(prostm):
     done = prostm(*SMALL, "--stepped", "--seconds", "4")
     assert "latency" in done.stdout and not re.search(r"-0\.0*\s", done.stdout)
