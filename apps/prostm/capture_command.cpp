@@ -55,8 +55,7 @@ int capture_command(const CaptureOptionsGiven& given) {
   check_hand(given);
   PipelineSettings settings = make_settings(given.common, given.scene);
   settings.simulated_array.realtime = false;
-  double duration = 0.0;
-  Pipeline pipeline(settings, make_hands(given.hand, settings, duration));
+  Pipeline pipeline(settings, make_hands(given.hand, settings));
   Recorder recorder(given.out, settings_groups(settings));
   recorder.set_attribute("scene", settings.scene);
   recorder.set_attribute("hand", given.hand);

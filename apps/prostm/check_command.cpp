@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <vector>
 
 #include "common.hpp"
@@ -65,8 +63,7 @@ Trial make_trial(const CheckedSetup& setup, double seconds, const Interrupt& int
   settings.fluid.cells = setup.cells;
   settings.plan.preset = setup.preset;
   set_live_budget(settings);
-  double duration = 0.0;
-  Pipeline pipeline(settings, make_hands("scripted", settings, duration));
+  Pipeline pipeline(settings, make_hands("scripted", settings));
   Progress progress(options_of(setup));
   Watch watch(pipeline, settings, seconds, progress, interrupt);
   RunOptions options;

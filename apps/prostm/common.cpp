@@ -130,19 +130,14 @@ FocusMethod solver_of(const std::string& name) {
   return from_name<FocusMethod>(name, "--solver");
 }
 
-std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
-                                       double& duration) {
-  if (name == "scripted") {
-    duration = std::numeric_limits<double>::infinity();
-    return make_scripted_hand(settings.scripted_hand, settings.track);
-  }
+std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings) {
+  if (name == "scripted") return make_scripted_hand(settings.scripted_hand, settings.track);
   if (!names_recording(name)) {
     if (!settings.simulated_array.realtime) {
       throw InputError("--hand " + name +
                        " is live, so it needs prostm run in real time, without "
                        "--as-fast-as-possible and --stepped");
     }
-    duration = std::numeric_limits<double>::infinity();
     if (name == "page") return make_absent_hand();
     return make_live_hand(
         name == "openxr" ? make_openxr_tracker() : make_leap_tracker(leap_address(name)),
@@ -154,9 +149,7 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
   HandRecording recording = read_hand_recording(name, [&](std::size_t done, std::size_t all) {
     progress.show(1e-6 * static_cast<double>(done), 1e-6 * static_cast<double>(all), "MB");
   });
-  auto hands = make(std::move(recording), settings.track, true, 1.0 / settings.world_rate);
-  duration = hands->duration();
-  return hands;
+  return make(std::move(recording), settings.track, true, 1.0 / settings.world_rate);
 }
 
 Interrupt::Interrupt() {
@@ -275,6 +268,10 @@ nlohmann::ordered_json to_json(const Summary& s, double unit) {
           {"max", s.max * unit}};
 }
 
+std::string thousandths(double value) {
+  return fmt::format("{:.3f}", std::round(1e3 * value) / 1e3 + 0.0);  // -0 + 0 is 0
+}
+
 void print_metrics(std::FILE* out, const std::string& heading,
                    const std::vector<MetricsRow>& rows) {
   std::vector<const Quantity<Metrics>*> columns;
@@ -291,7 +288,7 @@ void print_metrics(std::FILE* out, const std::string& heading,
     fmt::print(out, "\n  {:<44}", row.name);
     for (const Quantity<Metrics>* column : columns) {
       const double value = value_of(*column, row.metrics);
-      fmt::print(out, " {:>7}", std::isfinite(value) ? fmt::format("{:.3f}", value) : "–");
+      fmt::print(out, " {:>7}", std::isfinite(value) ? thousandths(value) : "–");
     }
   }
   fmt::print(out, "\n");

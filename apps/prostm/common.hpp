@@ -34,9 +34,8 @@ std::string hint_for_hand(const std::string& hand);
 /// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
 FocusMethod solver_of(const std::string& name);
 
-/// The hands that `--hand` names. `duration` gets the recording's length, or infinity [s].
-std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings,
-                                       double& duration);
+/// The hands that `--hand` names. A recording starts again at its end.
+std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings);
 
 /// From construction on, Ctrl-C (SIGINT), SIGTERM and a terminal that goes (SIGHUP, unless it is
 /// ignored, as under nohup) only set a flag; a second one ends the program at once. And a reader of
@@ -115,6 +114,9 @@ struct MetricsRow {
   const Metrics& metrics;
 };
 void print_metrics(std::FILE* out, const std::string& heading, const std::vector<MetricsRow>& rows);
+
+/// Three decimals; what rounds to zero has no sign.
+std::string thousandths(double value);
 
 inline constexpr int kBadInput = 2;  ///< exit status, also for files that cannot be written
 

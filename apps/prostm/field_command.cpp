@@ -85,12 +85,11 @@ void print_levels(std::FILE* out, const PhysicalReport& r) {
 void print_power(std::FILE* out, const PhysicalReport& r) {
   const LoopDriveResult& d = *r.drives;
   const auto transducers = static_cast<double>(r.array->position.size());
-  fmt::print(
-      out,
-      "  drives: intensity 1 is {:.0f} Pa rms; the largest is {:.2f}, mean Σ|q|² {:.1f} of "
-      "{:.0f} transducers, {:.1f} % at full drive; {} of {} samples short of what they ask\n",
-      d.full_scale_pa, d.largest_drive, d.mean_power, transducers, 100.0 * d.full_share,
-      d.short_samples, r.loop->samples);
+  fmt::print(out,
+             "  drives: intensity 1 is {:.0f} Pa rms; the largest is {:.2f}, mean Σ|q|² {:.1f} of "
+             "{:.0f} transducers, {:.1f} % at full drive; {} of {} samples weaker than planned\n",
+             d.full_scale_pa, d.largest_drive, d.mean_power, transducers, 100.0 * d.full_share,
+             d.short_samples, r.loop->samples);
   if (d.merged > 0) {
     fmt::print(out, "  {} times two focal points were at one place: the stronger one was played\n",
                d.merged);
@@ -104,9 +103,10 @@ void print_felt(std::FILE* out, const PhysicalReport& r) {
                "than 128 cells along an edge or cells of more than 20 mm\n");
     return;
   }
-  fmt::print(out,
-             "  felt: as {:.2f} µm rms at 250 Hz at the strongest place, {:.2f} µm in the whole",
-             1e6 * r.felt->largest, 1e6 * r.felt->intensity);
+  fmt::print(
+      out,
+      "  felt: as {:.2f} µm rms at 250 Hz at the strongest place, {:.2f} µm over the whole skin",
+      1e6 * r.felt->largest, 1e6 * r.felt->intensity);
   if (r.ghosts != nullptr) {
     fmt::print(out, "; {} ghosts above half of that, the strongest {:.0f} % of it", r.ghosts->count,
                100.0 * r.ghosts->largest);
@@ -122,7 +122,7 @@ void print_scores(std::FILE* out, const PhysicalReport& r) {
   std::vector<MetricsRow> rows;
   rows.emplace_back("envelope: the largest over the loop", *r.envelope_metrics);
   if (r.felt_metrics != nullptr) rows.emplace_back("felt: perceived intensity", *r.felt_metrics);
-  rows.emplace_back("mean over the loop, which judges nothing", *r.mean_metrics);
+  rows.emplace_back("mean over the loop, for comparison only", *r.mean_metrics);
   print_metrics(out, "against the target", rows);
   fmt::print(out,
              "  (skin feels movement, not the mean: by the mean a flat field can beat any path)\n");

@@ -54,6 +54,10 @@ void Files::check() const {
   }
 }
 
+bool Files::any_output() const {
+  return std::ranges::any_of(entries_, [](const Entry& e) { return e.output && e.path != "-"; });
+}
+
 void check_json_output(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::ranges::transform(ending, ending.begin(),

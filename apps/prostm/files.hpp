@@ -25,6 +25,8 @@ class Files {
   /// @throws InputError: an input that cannot be read, an output that is another file of the
   /// command, or cannot be written.
   void check() const;
+  /// Whether the command writes a file besides standard output.
+  bool any_output() const;
 
  private:
   struct Entry {

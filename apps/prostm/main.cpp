@@ -2,6 +2,7 @@
 /// status 2.
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -364,7 +365,11 @@ int obey(int argc, char** argv) {
       return kBadInput;
     }
     app.parse(argc, argv);
-    if (work.files != nullptr) work.files->check();
+    if (work.files != nullptr) {
+      work.files->check();
+      // a reader of the words that goes must not cost the files
+      if (work.files->any_output()) std::signal(SIGPIPE, SIG_IGN);
+    }
     return work.run();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);

@@ -44,8 +44,9 @@ void print_paths(std::FILE* out, const Plan& plan, const PlanStats& stats) {
   const std::string work = stats.clusters > 0
                                ? fmt::format("{} clusters, {} leaves", stats.clusters, stats.leaves)
                                : fmt::format("{} evaluations of the field", stats.cost_evaluations);
-  fmt::print(out, "{}, {} paths; {} too long, {} crossings; {:.2f} ms\n", work, plan.paths.size(),
-             stats.long_paths, stats.crossings, 1e3 * stats.total);
+  const std::size_t paths = plan.paths.size();
+  fmt::print(out, "{} path{} in {:.2f} ms ({}); {} too long, {} crossings\n", paths,
+             paths == 1 ? "" : "s", 1e3 * stats.total, work, stats.long_paths, stats.crossings);
   for (std::size_t i = 0; i < plan.paths.size(); ++i) {
     const FocalPath& path = plan.paths[i];
     fmt::print(out, "  path {}: {:.1f} mm, {:.1f} ms, {:.1f} Hz, {} points\n", i + 1,
@@ -230,11 +231,11 @@ PowerShare power_share(const Plan& plan, double limit) {
 void print_power(std::FILE* out, const Plan& plan, double limit) {
   const PowerShare share = power_share(plan, limit);
   const int foci = focal_points(plan);
-  fmt::print(out,
-             "  power: {} focal point{} at once, each with {:.1f} % of the array's; while all want "
-             "the same, the power limit of {:g} leaves each at most {:.1f} % of full scale's "
-             "pressure\n",
-             foci, foci == 1 ? "" : "s", 100.0 * share.array, limit, 100.0 * share.pressure);
+  fmt::print(
+      out,
+      "  power: {} focal point{} at once, each with {:.1f} % of the array's power; while all "
+      "ask for the same pressure, the power limit of {:g} allows each {:.1f} % of full scale\n",
+      foci, foci == 1 ? "" : "s", 100.0 * share.array, limit, 100.0 * share.pressure);
 }
 
 /// Why there is no plan.

@@ -168,7 +168,7 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   }
   figure.plan = observer.plan().plan;
   figure.title = fmt::format("{} at {:.2f} s", settings.scene, contact.target.time);
-  if (!widths.empty()) figure.title += fmt::format(", with σ = {} mm", fmt::join(widths, " and "));
+  if (!widths.empty()) figure.title += fmt::format("; focal points with σ = {} mm", fmt::join(widths, " and "));
   draw_scene(figure, path);
 }
 
@@ -189,9 +189,9 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
   return options;
 }
 
-/// How long the run is [s], of hands that are there for `duration`.
-double seconds_of(const RunOptionsGiven& given, double duration) {
-  const double seconds = given.seconds.value_or(std::isfinite(duration) ? duration : 60.0);
+/// How long the run is [s]. @param recording length of the hands' recording, 0 without one [s].
+double seconds_of(const RunOptionsGiven& given, double recording) {
+  const double seconds = given.seconds.value_or(recording > 0.0 ? recording : 60.0);
   if (!(seconds > 0.0 && seconds <= 86400.0))
     throw InputError(fmt::format("--seconds {} must be above 0 and at most 86400", seconds));
   if (given.figure_at && !(*given.figure_at >= 0.0 && *given.figure_at <= seconds)) {
@@ -276,9 +276,8 @@ struct Ending {
 int run_command(const RunOptionsGiven& given) {
   PipelineSettings settings = make_settings(given.common, given.scene, true);
   RunOptions options = options_of(given, settings);
-  double duration = 0.0;
-  auto hands = make_hands(given.hand, settings, duration);
-  options.seconds = seconds_of(given, duration);
+  auto hands = make_hands(given.hand, settings);
+  options.seconds = seconds_of(given, hands->recording_length());
   std::unique_ptr<View> view;
   if (given.view) {
     view = std::make_unique<View>(given, settings);

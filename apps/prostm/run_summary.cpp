@@ -58,7 +58,7 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
   fmt::print(out, "\nThe run: {}, {:.1f} s{}\n", settings.scene, s.seconds,
              s.stopped ? ", cut short" : "");
   print_row(out, "smoke",
-            fmt::format("{} steps, {} skipped; {:.2g} of the divergence left on the mean",
+            fmt::format("{} steps, {} skipped; the solver left {:.2g} of the divergence on average",
                         s.world_steps, s.skipped_world_steps, s.mean_divergence));
   print_row(out, "plans",
             fmt::format("{}, and {} updates without pressure on a hand; {} targets skipped",
@@ -91,8 +91,8 @@ void print_heading(std::FILE* out) {
 }
 void print_times(std::FILE* out, const std::string& name, const Summary& t,
                  const std::string& meaning) {
-  fmt::print(out, "  {:<14} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f}  {}\n", name, t.mean * 1e3,
-             t.p50 * 1e3, t.p99 * 1e3, t.max * 1e3, meaning);
+  fmt::print(out, "  {:<14} {:>8} {:>8} {:>8} {:>8}  {}\n", name, thousandths(t.mean * 1e3),
+             thousandths(t.p50 * 1e3), thousandths(t.p99 * 1e3), thousandths(t.max * 1e3), meaning);
 }
 
 /// The meaning of each part of a latency, by LatencyPart.

@@ -52,8 +52,7 @@ View::View(const RunOptionsGiven& given, const PipelineSettings& settings) : giv
     if (source != other) link_.settings.sources.emplace_back(other);
   link_.page_hand = std::make_shared<PageHand>(settings.track);
   link_.make_hands = [this, source](const std::string& wanted, const PipelineSettings& s) {
-    double duration = 0.0;
-    auto base = make_hands(wanted == source ? given_.hand : wanted, s, duration);
+    auto base = make_hands(wanted == source ? given_.hand : wanted, s);
     return std::make_unique<HandSwitch>(std::move(base), link_.page_hand, Pose::Identity());
   };
   link_.pose_file = given.tracker_file.value_or(kTrackerFile);

@@ -199,6 +199,12 @@ def test_run_makes_recording_picture_and_summary(prostm, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("options, seconds", [([], 8.0), (["--seconds", "9"], 9.0)])
+def test_a_recording_sets_the_length_of_a_run(prostm, options, seconds):
+    done = prostm("run", "--hand", ROOT / "data/wave.hands.jsonl", "--as-fast-as-possible", "--grid", "32", *options, "--json", "-")
+    assert json.loads(done.stdout)["seconds"] == pytest.approx(seconds, abs=0.03)
+
+
 def test_in_still_air_the_hand_feels_its_own_movement(prostm):
     still = run_summary(prostm, "--as-fast-as-possible", "--scene", "still-air")
     assert still["world_steps"] == 400 and still["plans"] > 50
@@ -288,8 +294,8 @@ def test_the_power_of_many_paths_is_shared(prostm, tmp_path):
     assert paths > 2
     assert plan["power"] == {"share_of_array": 1 / paths, "share_of_full_scale": 1.5 / paths, "limit": 1.5}
     told = prostm("plan", name, "--settings", toml).stdout
-    assert f"power: {paths} focal points at once, each with {100 / paths:.1f} % of the array's" in told
-    assert f"at most {150 / paths:.1f} % of full scale's pressure" in told
+    assert f"power: {paths} focal points at once, each with {100 / paths:.1f} % of the array's power" in told
+    assert f"the power limit of 1.5 allows each {150 / paths:.1f} % of full scale" in told
 
 
 PLATE = {
@@ -434,7 +440,7 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     assert quick["felt"]["metrics"] is None and quick["felt"]["ghosts"] is None and quick["felt"]["largest_um"] > 0
     assert quick["envelope"]["metrics"] is None and quick["array"] == "autd3"
     told = prostm("field", "plan.json", "--field", field).stdout
-    assert "which judges nothing" in told and "worst side lobe" in told
+    assert "for comparison only" in told and "worst side lobe" in told
 
     # with an array the percept of a plan is reported, even if no other option needs it
     told = prostm("plan", field, "--array", "usx", "--json", "felt.json").stdout

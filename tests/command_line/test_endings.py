@@ -1,6 +1,7 @@
 """Early ends of commands, by signals and full disks: finished results are kept and reported."""
 
 import json
+import os
 import resource
 import signal
 import subprocess
@@ -10,6 +11,7 @@ import h5py
 import pytest
 
 from conftest import wait_for
+from test_commands import blob_field
 
 
 def start(program, folder, *arguments, limit=None):
@@ -100,6 +102,19 @@ def test_a_full_standard_output_is_told(program, tmp_path, arguments):
     assert done.returncode == 2
     told = [line for line in done.stderr.splitlines() if line.startswith("prostm: ")]
     assert len(told) == 1 and told[0].startswith("prostm: standard output cannot be written (")
+
+
+@pytest.mark.parametrize("names", [["plan.json"], ["plan.svg", "plan.json"]])
+def test_files_are_whole_where_nobody_reads_on(program, tmp_path, names):
+    (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
+    reading, writing = os.pipe()
+    os.close(reading)
+    options = [word for name in names for word in (("--json" if name.endswith("json") else "--figure"), name)]
+    done = subprocess.run([str(program), "plan", "blob.json", *options], cwd=tmp_path, stdout=writing,
+                          stderr=subprocess.PIPE, text=True, timeout=60)
+    os.close(writing)
+    assert done.returncode == 2 and done.stderr == "prostm: standard output cannot be written (Broken pipe)\n"
+    assert all((tmp_path / name).stat().st_size > 0 for name in names)
 
 
 def test_files_are_whole_where_standard_output_is_full(program, tmp_path):

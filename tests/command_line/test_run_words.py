@@ -14,7 +14,7 @@ import time
 
 import pytest
 
-from conftest import wait_for
+from conftest import ROOT, wait_for
 
 SMALL = ["run", "--grid", "32"]
 
@@ -33,6 +33,12 @@ def test_the_verdict_stands_before_the_numbers(prostm, tmp_path):
     assert re.match(r"4\.0 s of the scene were computed in \d+\.\d s, (as fast as|\d+\.\d times (faster|slower) than) real time; ", lines[0])
     for heading in ["The run: one-plume, 4.0 s", "Latency, from ", "Work, how long "]:
         assert any(line.startswith(heading) for line in lines)
+
+
+def test_no_number_is_minus_zero(prostm):
+    done = prostm(*SMALL, "--stepped", "--seconds", "4")
+    assert "latency" in done.stdout and not re.search(r"-0\.0*\s", done.stdout)
+    assert not re.search(r"-0\.0*\s", prostm("plan", ROOT / "data/palm.npy", "--cell-mm", "5").stdout)
 
 
 def test_in_real_time_the_verdict_is_of_the_rates(prostm, tmp_path):
@@ -94,8 +100,8 @@ def on_a_terminal(program, folder, *arguments):
 
 
 @pytest.mark.parametrize("arguments, first_word", [
-    ([*SMALL, "--as-fast-as-possible", "--seconds", "60"], "60.0 s of the scene"),
-    (["capture", "--grid", "32", "--frames", "200", "--out", "c.h5"], "200 fields"),
+    ([*SMALL, "--as-fast-as-possible", "--seconds", "3"], "3.0 s of the scene"),
+    (["capture", "--grid", "32", "--frames", "20", "--out", "c.h5"], "20 fields"),
 ])
 def test_the_progress_line_is_gone_before_anything_else_is_printed(program, tmp_path, arguments, first_word):
     shown = on_a_terminal(program, tmp_path, *arguments)

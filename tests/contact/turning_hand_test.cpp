@@ -196,7 +196,7 @@ TEST(TurningHand, PlanesOfRecordedHandsDoNotJump) {
     std::vector<Known> before;
     int compared = 0;
     double turn = 0.0;
-    for (int n = 0; n * kUpdate < source->duration(); ++n) {
+    for (int n = 0; n * kUpdate < source->recording_length(); ++n) {
       HandFrame frame;
       source->sample(n * kUpdate, frame);
       to_device(default_tracker_pose(), frame);

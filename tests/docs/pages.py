@@ -1,6 +1,7 @@
 """The documents as a reader sees them: blocks of code, links and headings."""
 
 import re
+from itertools import zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,6 +34,14 @@ def blocks_of(page):
             inside = None
     assert inside is None, f"{name_of(page)}: a block of code does not end"
     return blocks
+
+
+def python_of(page):
+    """(code, what the page says that it prints) of each block of Python: the `text` block that comes next shows what
+    the code prints; code without such a block prints nothing."""
+    blocks = blocks_of(page)
+    return [(block.text, after.text if after and after.language == "text" else "")
+            for block, after in zip_longest(blocks, blocks[1:]) if block.language == "python"]
 
 
 def text_of(page):

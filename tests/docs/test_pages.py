@@ -1,4 +1,5 @@
-"""Types every command of the documents, runs their Python, reads their files, and follows their links."""
+"""Types every command of the documents and runs their Python, compares what the documents say these print, reads the
+documents' files, and follows their links."""
 
 import json
 import os
@@ -7,7 +8,7 @@ import sys
 
 import pytest
 import shell
-from pages import PAGES, ROOT, anchors_of, blocks_of, links_of, name_of
+from pages import PAGES, ROOT, anchors_of, blocks_of, links_of, name_of, python_of
 
 LANGUAGES = {"sh", "console", "python", "json", "toml", "cmake", "text"}
 # the command that reads a file of each format
@@ -18,25 +19,36 @@ READERS = {
     "prostm-foci/1": "prostm solve FILE",
     "prostm-pose/1": "prostm run --tracker FILE --seconds 1 --stepped --grid 32",
 }
+END = "--- the end of a block ---"
 
-every_page = pytest.mark.parametrize("page", PAGES, ids=name_of)
+
+@pytest.fixture(scope="module", params=PAGES, ids=name_of)
+def page(request):
+    return request.param
 
 
-@pytest.fixture
-def folder(tmp_path):
-    """A folder that looks like the project's, so that what commands write is thrown away."""
+@pytest.fixture(scope="module")
+def folder(page, tmp_path_factory):
+    """A folder that looks like the project's, so that what a page's commands write is thrown away."""
+    folder = tmp_path_factory.mktemp(page.stem)
     for name in ("data", "examples", "tools"):
-        (tmp_path / name).symlink_to(ROOT / name)
-    return tmp_path
+        (folder / name).symlink_to(ROOT / name)
+    return folder
 
 
-@every_page
+@pytest.fixture(scope="module")
+def typed(page, folder):
+    """(command, what the page says that it prints, what it printed) of each command of the page, typed in `folder`;
+    the page's Python finds the files that they wrote."""
+    return [(command, said, shell.type_command(command, folder))
+            for block in blocks_of(page) for command, said in shell.commands_of(block)]
+
+
 def test_blocks_name_their_language(page):
     wrong = [f"line {b.line}: {b.language!r}" for b in blocks_of(page) if b.language not in LANGUAGES]
     assert not wrong, f"a block is one of {sorted(LANGUAGES)}, not {wrong}"
 
 
-@every_page
 def test_links_lead_somewhere(page):
     for link in links_of(page):
         if link.startswith(("http://", "https://", "mailto:")):
@@ -48,34 +60,28 @@ def test_links_lead_somewhere(page):
             assert anchor in anchors_of(target), f"{link}: no such heading"
 
 
-@every_page
-def test_commands_do_what_the_page_says(page, folder):
-    for block in blocks_of(page):
-        if block.language == "sh":
-            for command in shell.split_commands(block.text):
-                shell.type_command(command, folder)
-        elif block.language == "console":
-            shell.run_console(block.text, folder)
+def test_commands_print_what_the_page_says(typed):
+    for command, said, printed in typed:
+        if said is not None:
+            assert printed is not None, f"nothing types this command, so its block is one of sh: {command}"
+            shell.check_output(said, printed)
 
 
-@every_page
-def test_python_runs(page, folder):
-    code = "\n".join(b.text for b in blocks_of(page) if b.language == "python")
-    if not code:
+def test_python_prints_what_the_page_says(page, folder, typed):
+    blocks = python_of(page)
+    if not blocks:
         pytest.skip("the page has no Python")
     if not os.environ.get("PROSTM_PYTHON"):
         pytest.skip("this build has no Python module")
-    # the page's own files, from its commands
-    for block in blocks_of(page):
-        for command in shell.split_commands(block.text) if block.language == "sh" else ():
-            shell.type_command(command, folder)
+    code = "".join(f"{text}print({END!r})\n" for text, _ in blocks)
     environment = os.environ | {"PYTHONPATH": os.environ["PROSTM_PYTHON"]}
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, timeout=300,
+    done = subprocess.run([sys.executable, "-u", "-c", code], cwd=folder, env=environment, timeout=300,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     assert done.returncode == 0, done.stdout
+    for (_, said), printed in zip(blocks, done.stdout.split(END)[:-1], strict=True):
+        shell.check_output(said, printed)
 
 
-@every_page
 def test_files_are_read(page, folder):
     for block in blocks_of(page):
         if block.language == "toml":

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -114,7 +113,6 @@ class OldHand final : public HandSource {
     hand_->sample(time, out);
     out.age = age_;
   }
-  double duration() const override { return std::numeric_limits<double>::infinity(); }
 
  private:
   std::unique_ptr<HandSource> hand_;

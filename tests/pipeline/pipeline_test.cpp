@@ -41,7 +41,6 @@ class NoHand final : public HandSource {
     out.time = time;
     out.hands.clear();
   }
-  double duration() const override { return std::numeric_limits<double>::infinity(); }
 };
 
 /// Keeps every plan that it sees.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -39,7 +38,6 @@ class FailingHand final : public HandSource {
     if (time > at_) throw std::runtime_error("the hand failed");
     hand_->sample(time, out);
   }
-  double duration() const override { return std::numeric_limits<double>::infinity(); }
 
  private:
   std::unique_ptr<HandSource> hand_;

@@ -65,7 +65,6 @@ class Noted final : public HandSource {
       gone_at = device != nullptr ? device->samples() : 0;
     }
   }
-  double duration() const override { return hands_->duration(); }
   std::optional<TrackerStatus> tracker_status() const override { return hands_->tracker_status(); }
 
   const SimulatedArray* device = nullptr;

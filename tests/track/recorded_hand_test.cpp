@@ -42,7 +42,7 @@ TEST(RecordedHand, LinearMotionAtIrregularTimesIsExact) {
   HandFrame frame;
   Random random(2);
   double t = 0.0;
-  for (int n = 0; t < source->duration(); ++n, t += random.uniform(0.0, 0.01)) {
+  for (int n = 0; t < source->recording_length(); ++n, t += random.uniform(0.0, 0.01)) {
     source->sample(t, frame);
     ASSERT_EQ(frame.hands.size(), 1u);
     EXPECT_EQ(frame.time, t);
@@ -100,7 +100,7 @@ TEST(RecordedHand, SpeedIsClampedAndKeepsItsDirection) {
   const auto source = make_recorded_hand(recording, settings, false, kStep);
   HandFrame frame;
   double fastest = 0.0;
-  for (double t = 0.0; t < source->duration(); t += 0.002) {
+  for (double t = 0.0; t < source->recording_length(); t += 0.002) {
     source->sample(t, frame);
     const Vec3 v = frame.hands[0].velocity[kPalm];
     fastest = std::max(fastest, v.norm());
@@ -144,7 +144,6 @@ TEST(RecordedHand, ALoopIsAHandThatLeavesAndComesBack) {
   const HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1.0, 0, 0), 40, 5);
   const double length = recording.frames.back().time;
   const auto source = make_recorded_hand(recording, {}, true, kStep);
-  EXPECT_TRUE(std::isinf(source->duration()));
   HandFrame frame;
   int without = 0, seams = 0;
   double last_x = 0.0;
@@ -170,13 +169,13 @@ TEST(RecordedHand, ALoopIsAHandThatLeavesAndComesBack) {
 TEST(RecordedHand, EndsWithoutLoopAndSaysNothingBeforeTheStart) {
   const HandRecording recording = linear_recording(Vec3::Zero(), Vec3(1.0, 0, 0), 10, 6);
   const auto source = make_recorded_hand(recording, {}, false, kStep);
-  EXPECT_EQ(source->duration(), recording.frames.back().time);
+  EXPECT_EQ(source->recording_length(), recording.frames.back().time);
   HandFrame frame;
   source->sample(-0.01, frame);
   EXPECT_TRUE(frame.hands.empty());
-  source->sample(source->duration(), frame);
+  source->sample(source->recording_length(), frame);
   EXPECT_EQ(frame.hands.size(), 1u);
-  source->sample(source->duration() + 1e-6, frame);
+  source->sample(source->recording_length() + 1e-6, frame);
   EXPECT_TRUE(frame.hands.empty());
 }
 
@@ -279,7 +278,7 @@ TEST(RecordedHand, AHandThatDoesNotMoveIsPlayedOnAndOn) {
     const auto source =
         make(linear_recording(Vec3(0, 0.2, 0), Vec3::Zero(), 300, 1), {}, false, kStep);
     HandFrame frame;
-    for (double time = 0.0; time <= source->duration(); time += kStep) {
+    for (double time = 0.0; time <= source->recording_length(); time += kStep) {
       source->sample(time, frame);
       ASSERT_EQ(frame.hands.size(), 1u) << time;
     }
@@ -295,7 +294,7 @@ TEST(RecordedHand, RealRecordingsPlayWithFiniteClampedVelocities) {
     const auto source =
         make_recorded_hand(read_hand_recording(test::shared_file(file)), settings, false, kStep);
     HandFrame frame;
-    for (double t = 0.0; t < source->duration(); t += 0.005) {
+    for (double t = 0.0; t < source->recording_length(); t += 0.005) {
       source->sample(t, frame);
       for (const Hand& hand : frame.hands) {
         for (const Vec3& v : hand.velocity) {
@@ -319,7 +318,7 @@ TEST(RecordedHand, ARecordingThinnedToHalfTellsNearlyTheSame) {
   HandFrame at_full, at_half;
   double position = 0.0, velocity = 0.0, speed = 0.0;
   int count = 0;
-  for (double t = 0.1; t < b->duration() - 0.1; t += kStep, ++count) {
+  for (double t = 0.1; t < b->recording_length() - 0.1; t += kStep, ++count) {
     a->sample(t, at_full);
     b->sample(t, at_half);
     ASSERT_EQ(at_full.hands.size(), at_half.hands.size());

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cstdio>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,7 +64,6 @@ class TouchingHand final : public HandSource {
     const Vec3 shift = tip(corner_, Pose::Identity()) - hand.position[kIndexTip];
     for (Vec3& p : hand.position) p += shift;
   }
-  double duration() const override { return std::numeric_limits<double>::infinity(); }
   std::optional<TrackerStatus> tracker_status() const override {
     TrackerStatus status;
     status.connected = true;

@@ -24,6 +24,8 @@ constexpr int kLeastCells = 32, kCellsStep = 16;
 // scenes, at most 16 % of the samples at full scale, none limited, 7 % of the joints outside the
 // box as it comes in, 11 % of its skin steep.
 constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5;
+constexpr double kComesIn =
+    10.0;  // a hand that comes in is outside; a short run sees little else [s]
 // Share of a tracker's frames.
 constexpr double kMostDropped = 0.01;
 
@@ -54,21 +56,22 @@ std::string reason(const RunSummary& s, const PipelineSettings& settings) {
   if (step > kBusy * due) {
     const int grid = smaller_grid(settings.fluid.cells, step, due);
     return fmt::format(
-        "a step of the smoke took {:.1f} ms at the median, of the {:.0f} ms there are: {}close "
-        "what "
-        "else runs",
+        "half of the smoke's steps took longer than {:.1f} ms, and there are {:.0f} ms for each: "
+        "{}close what else runs",
         1e3 * step, 1e3 * due, grid > 0 ? fmt::format("use --grid {}, or ", grid) : "");
   }
   const double plan = s.plan.p50 + s.lift.p50, between = due * steps_per_plan;
   if (plan > kBusy * between) {
     const bool is_slow = settings.method == Method::ProStm && settings.plan.preset != Preset::Fast;
-    return fmt::format("a plan took {:.1f} ms at the median, of the {:.0f} ms there are: use {}",
-                       1e3 * plan, 1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
+    return fmt::format(
+        "half of the plans took longer than {:.1f} ms, and there are {:.0f} ms for each: use {}",
+        1e3 * plan, 1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
   }
   return fmt::format(
-      "a step of the smoke took {:.1f} ms at the median, of the {:.0f} ms there are, and up to "
-      "{:.0f} ms: another program takes the processor now and then; close what else runs, or try a "
-      "smaller --grid",
+      "half of the smoke's steps took less than {:.1f} ms of the {:.0f} ms that there are, but "
+      "some "
+      "up to {:.0f} ms: another program takes the processor now and then; close what else runs, or "
+      "try a smaller --grid",
       1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
 }
 
@@ -96,11 +99,12 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
         fmt::format("The rates were not held: {}; {}.", rates, reason(s, settings)));
   }
   if (samples_held(s)) return;
+  const double silent = s.seconds * share(s.device.missed_blocks, s.device.blocks);
   out.sentences.push_back(fmt::format(
-      "{}he array missed {} and was silent for so many milliseconds, which is felt as gaps: its "
-      "thread woke too late. Allow it real-time priority (ulimit -r 10), or close what else runs.",
-      in_time ? fmt::format("The rates were held but for the samples: {}; t", rates) : "T",
-      missed));
+      "{} array fell silent for {:.0f} ms in all, which is felt as gaps: its thread woke too late "
+      "for {}. Allow it real-time priority (ulimit -r 10), or close what else runs.",
+      in_time ? fmt::format("Smoke and plans kept their rates ({}), but the", rates) : "The",
+      1e3 * silent, missed));
 }
 
 void judge_pace(const RunSummary& s, Verdict& out) {
@@ -133,7 +137,8 @@ void judge_tracker(const TrackerStatus& tracker, std::vector<std::string>& out) 
   }
 }
 
-void judge_contact(const ContactStats& contact, bool felt, std::vector<std::string>& out) {
+void judge_contact(const ContactStats& contact, double seconds, bool felt,
+                   std::vector<std::string>& out) {
   const double outside = share(contact.joints_outside, contact.joints);
   constexpr const char* kRemedy = "hold it above the array, or check --tracker";
   if (!felt && contact.joints == 0) {
@@ -143,7 +148,7 @@ void judge_contact(const ContactStats& contact, bool felt, std::vector<std::stri
         "The hand never faced the array in the smoke's box, so nothing was felt: {}.", kRemedy));
   } else if (!felt) {
     out.emplace_back("No pressure reached the hand, so nothing was felt.");
-  } else if (outside > kMostOutside) {
+  } else if (seconds > kComesIn && outside > kMostOutside) {
     out.push_back(
         fmt::format("{:.0f} % of the hand's joints were outside the smoke's box, where nothing is "
                     "felt: {}.",
@@ -235,7 +240,8 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   std::vector<std::string> unusual;
   judge_faults(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
-  if (!tracker || tracker->frames > 0) judge_contact(s.contact_stats, s.plans > 0, unusual);
+  if (!tracker || tracker->frames > 0)
+    judge_contact(s.contact_stats, s.seconds, s.plans > 0, unusual);
   judge_output(s, unusual);
   if (unusual.empty() && verdict.held.value_or(true))
     verdict.sentences.emplace_back("Nothing was unusual.");

@@ -51,7 +51,9 @@ void list(Settings& s, Visitor& v) {
   v.field({"fit_length", "", 0, 1000, "weight of length and uneven points"}, s.fit_length);
   v.field({"fit_spacing", "", 0, 1000, "weight of points that are too near"}, s.fit_spacing);
   v.field({"fit_bending", "", 0, 1000, "weight of bends"}, s.fit_bending);
-  v.field({"fit_samples", "", 8, kPoints, "points of a path of preset best"}, s.fit_samples);
+  v.field({"fit_samples", "", 8, kPoints,
+           "points of a path that preset best moves; plans have twice as many, up to 64"},
+          s.fit_samples);
   v.field({"fit_hysteresis", "", 0, 1, "share of the cost that new paths must save"},
           s.fit_hysteresis);
   v.field({"fit_starts", "", 1, 10'000, "sets of paths that are tried without a plan before"},

@@ -43,12 +43,12 @@ struct PlanSettings {
   int refine_iterations = 200;  ///< maximum number of gradient steps
   int seed = 1;                 ///< seed of the clustering
   // presets best and fast
-  double least_length = 0.035;   ///< least length of a path [m]; L if that is shorter
-  double fit_coverage = 0.12;    ///< weight of pressure that no path reaches, (P12)
-  double fit_length = 1.0;       ///< weight of length and uneven samples, (P13)
-  double fit_spacing = 0.3;      ///< weight of samples that are too near, (P14)
-  double fit_bending = 0.03;     ///< weight of bending, (P15)
-  int fit_samples = 28;          ///< N of a path of preset best, 8..64
+  double least_length = 0.035;  ///< least length of a path [m]; L if that is shorter
+  double fit_coverage = 0.12;   ///< weight of pressure that no path reaches, (P12)
+  double fit_length = 1.0;      ///< weight of length and uneven samples, (P13)
+  double fit_spacing = 0.3;     ///< weight of samples that are too near, (P14)
+  double fit_bending = 0.03;    ///< weight of bending, (P15)
+  int fit_samples = 28;  ///< N of a path that best moves, 8..64; plans have 2 N of at most 64
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
   int fit_starts = 4;            ///< sets of paths laid anew if there is no plan before
   int fit_kicks = 8;             ///< tries to lay one or two paths anew

@@ -33,8 +33,6 @@ class HandSource {
   /// Sets `out` to the hands at `time` [s], counted from 0 at the start of the run; times must not
   /// decrease from call to call. A frame without hands is a normal result. Allocates nothing.
   virtual void sample(double time, HandFrame& out) = 0;
-  /// Seconds after which sample() has nothing new; infinity for a source without an end.
-  virtual double duration() const = 0;
 
   /// Length of the recording that is played, 0 without one [s].
   virtual double recording_length() const { return 0.0; }

@@ -87,9 +87,6 @@ class RecordedHand final : public HandSource {
     }
   }
 
-  double duration() const override {
-    return loop_ ? std::numeric_limits<double>::infinity() : times_.back();
-  }
   double recording_length() const override { return times_.back(); }
   double recording_time() const override { return recording_time_; }
   void seek(double time) override { target_ = std::clamp(time, 0.0, times_.back()); }

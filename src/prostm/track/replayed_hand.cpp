@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "prostm/track/detail/causal_track.hpp"
 #include "prostm/track/detail/hand_ids.hpp"
@@ -51,9 +50,6 @@ class ReplayedHand final : public HandSource {
     for (Hand& hand : out.hands) hand.id += kIdsPerSeek * starts_;
   }
 
-  double duration() const override {
-    return loop_ ? std::numeric_limits<double>::infinity() : length_;
-  }
   double recording_length() const override { return length_; }
   double recording_time() const override { return recording_time_; }
   void seek(double time) override { target_ = std::clamp(time, 0.0, length_); }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "prostm/core/random.hpp"
 #include "prostm/track/detail/hand_skeleton.hpp"
@@ -89,8 +88,6 @@ class ScriptedHand final : public HandSource {
     }
     out.hands.back().id = static_cast<std::int64_t>(std::min(cycle, 1e15)) + 1;
   }
-
-  double duration() const override { return std::numeric_limits<double>::infinity(); }
 
  private:
   static bool visible(double phase) {

@@ -1,4 +1,4 @@
-/// What a page costs the run that it shows, where the processor draws it: PROSTM=… npm run cost -- [ROUNDS]
+/// Measures what a page costs the run that it shows, where the processor draws it: PROSTM=… npm run cost -- [ROUNDS]
 /// Runs without and with a page in turns. The page is opened while the run goes on, so its start counts too.
 
 import { readFileSync } from "node:fs";

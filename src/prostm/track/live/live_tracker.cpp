@@ -1,7 +1,6 @@
 #include "prostm/track/live/live_tracker.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/track/detail/causal_track.hpp"
@@ -27,7 +26,6 @@ class LiveHand final : public HandSource {
     track_.sample(steady_now(), out);
     out.time = time;
   }
-  double duration() const override { return std::numeric_limits<double>::infinity(); }
   std::optional<TrackerStatus> tracker_status() const override {
     TrackerStatus status = tracker_->status();
     watch_.report(status);

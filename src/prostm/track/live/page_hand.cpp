@@ -29,7 +29,6 @@ class AbsentHand final : public HandSource {
     out.age = 0.0;
     out.hands.clear();
   }
-  double duration() const override { return std::numeric_limits<double>::infinity(); }
 };
 
 }  // namespace

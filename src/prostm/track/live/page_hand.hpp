@@ -70,7 +70,6 @@ class HandSwitch final : public HandSource {
   HandSwitch(std::unique_ptr<HandSource> base, std::shared_ptr<PageHand> page, const Pose& X_DT);
 
   void sample(double time, HandFrame& out) override;
-  double duration() const override { return base_->duration(); }
   double recording_length() const override { return base_->recording_length(); }
   double recording_time() const override { return base_->recording_time(); }
   void seek(double time) override { base_->seek(time); }
