@@ -49,6 +49,11 @@ std::unique_ptr<LiftedPlan> lift_any(const py::object& plan, const py::object& t
   }
   if (!py::isinstance<Plan>(plan))
     throw py::type_error("plan must be a Plan or a PlanResult, not " + described(plan));
+  if (target.is_none()) {
+    throw py::type_error(
+        "a Plan needs the TargetField or TargetFrame that it was made for, as target; a PlanResult "
+        "brings its own");
+  }
   TargetFrame frame;
   for (const TargetField* patch : patches_of(target)) frame.patches.push_back(*patch);
   return lift_on_frame(plan.cast<const Plan&>(), frame);
@@ -299,6 +304,7 @@ py::array drive_intensities(const py::object& pressure, double full_scale, doubl
 }  // namespace
 
 void bind_emit(py::module_& m) {
+  m.attr("kMostSamples") = kMostSamples;
   bind_lifted(m);
   bind_emitter(m);
   m.def(

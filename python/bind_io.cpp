@@ -23,9 +23,7 @@ bool is_recording(const Path& path) {
   return path.extension() == ".h5" || path.extension() == ".H5";
 }
 
-TargetField read_field_file(const Path& path, std::optional<double> cell_mm, int frame, bool invert,
-                            std::optional<double> width_mm) {
-  const FieldFileOptions options{cell_mm, width_mm, frame, invert};
+TargetField read_field_file(const Path& path, const FieldFileOptions& options) {
   if (is_recording(path)) {
     const Hdf5Turn turn;
     return read_field(path.string(), options);
@@ -59,14 +57,19 @@ void write_plan_file(const Path& path, const Plan& plan, const TargetField& targ
 }
 
 void bind_fields(py::module_& m) {
-  m.def("read_field", &read_field_file,
-        "Reads a field by the ending of its name, as the command line does: .json\n"
-        "(prostm-field/1), .npy and .png (both need cell_mm, or the width of the whole field as\n"
-        "width_mm), .h5 (frame says which). invert: a .png is drawn black on white, so that black\n"
-        "is the pressure.\n"
-        "Raises InputError, a ValueError, with a sentence that names the file.",
-        py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = 0, py::kw_only(),
-        py::arg("invert") = false, py::arg("width_mm") = py::none());
+  m.def(
+      "read_field",
+      [](const Path& path, std::optional<double> cell_mm, int frame, bool invert,
+         std::optional<double> width_mm) {
+        return read_field_file(path, file_options(cell_mm, width_mm, frame, invert));
+      },
+      "Reads a field by the ending of its name, as the command line does: .json\n"
+      "(prostm-field/1), .npy and .png (both need cell_mm, or the width of the whole field as\n"
+      "width_mm), .h5 (frame says which). invert: a .png is drawn black on white, so that black\n"
+      "is the pressure.\n"
+      "Raises InputError, a ValueError, with a sentence that names the file.",
+      py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = 0, py::kw_only(),
+      py::arg("invert") = false, py::arg("width_mm") = py::none());
   m.def(
       "write_field",
       [](const Path& path, const TargetField& field) {
@@ -113,12 +116,19 @@ void bind_plans(py::module_& m) {
 
 }  // namespace
 
-py::object target_of(const py::object& target, std::optional<double> cell_mm, int frame) {
+FieldFileOptions file_options(std::optional<double> cell_mm, std::optional<double> width_mm,
+                              int frame, bool invert) {
+  return {cell_mm, width_mm, frame, invert, {"cell_mm", "width_mm", "frame", "invert"}};
+}
+
+py::object target_of(const py::object& target, const FieldFileOptions& options) {
   if (py::isinstance<py::str>(target) || py::hasattr(target, "__fspath__"))
-    return py::cast(read_field_file(target.cast<Path>(), cell_mm, frame, false, std::nullopt));
-  if (!cell_mm && frame == 0) return target;
-  throw std::invalid_argument("cell_mm and frame belong to the name of a file, not to " +
-                              described(target));
+    return py::cast(read_field_file(target.cast<Path>(), options));
+  if (!options.cell_mm && !options.width_mm && options.frame == 0 && !options.invert) return target;
+  const bool sized = py::isinstance<TargetField>(target) || py::isinstance<TargetFrame>(target);
+  throw std::invalid_argument(
+      "cell_mm, width_mm, frame and invert belong to the name of a file, not to " +
+      described(target) + (sized ? "" : "; make it a TargetField, which takes cell_mm"));
 }
 
 void bind_io(py::module_& m) {

@@ -73,8 +73,9 @@ std::unique_ptr<PlanResult> plan_with(SharedPlanner<P>& self, const py::object& 
 }
 
 std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::object& given,
-                                       bool trace, std::optional<double> cell_mm, int frame_index) {
-  const py::object target = target_of(given, cell_mm, frame_index);
+                                       bool trace, std::optional<double> cell_mm, int frame_index,
+                                       std::optional<double> width_mm, bool invert) {
+  const py::object target = target_of(given, file_options(cell_mm, width_mm, frame_index, invert));
   if (trace && py::isinstance<TargetFrame>(target))
     throw std::invalid_argument("a trace is kept of a TargetField only");
   return plan_with(self, target,
@@ -86,8 +87,9 @@ std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::o
 }
 
 std::unique_ptr<PlanResult> plan_foci(SharedPlanner<AmPlanner>& self, const py::object& target,
-                                      std::optional<double> cell_mm, int frame_index) {
-  return plan_with(self, target_of(target, cell_mm, frame_index),
+                                      std::optional<double> cell_mm, int frame_index,
+                                      std::optional<double> width_mm, bool invert) {
+  return plan_with(self, target_of(target, file_options(cell_mm, width_mm, frame_index, invert)),
                    [&](const TargetField* field, const TargetFrame* frame, PlanResult& r) {
                      return frame != nullptr ? self.planner.plan(*frame, r.plan, r.stats)
                                              : self.planner.plan(*field, r.plan, r.stats);
@@ -126,14 +128,15 @@ void bind_planner(py::module_& m) {
           "Forgets the plan before, which the presets best and fast continue from.")
       .def("plan", &plan_paths,
            "Plans a TargetField, a TargetFrame (the paths are shared out between its patches, and\n"
-           "no path spans two), or the file of a field, given by its name. A .npy or .png file\n"
-           "needs cell_mm; frame is that of a .h5 file. trace=True keeps the intermediate results\n"
-           "of a field.\n\n"
+           "no path spans two), or the file of a field, given by its name, with cell_mm,\n"
+           "width_mm, frame and invert as of read_field(). trace=True keeps the intermediate\n"
+           "results of a field.\n\n"
            "Returns a PlanResult. A field without pressure gives a plan without paths. Raises\n"
            "ValueError for more than max_cells cells, a pressure above 1e300, a cell that is not\n"
            "1e-6 to 1 m wide.",
            py::arg("target"), py::arg("trace") = false, py::kw_only(),
-           py::arg("cell_mm") = py::none(), py::arg("frame") = 0);
+           py::arg("cell_mm") = py::none(), py::arg("frame") = 0, py::arg("width_mm") = py::none(),
+           py::arg("invert") = false);
 }
 
 void bind_am_planner(py::module_& m) {
@@ -159,7 +162,8 @@ void bind_am_planner(py::module_& m) {
            "the file of a field, given by its name as for Planner.plan().\n\n"
            "Returns a PlanResult. A field without pressure gives a plan without foci. Raises\n"
            "ValueError as Planner.plan() does.",
-           py::arg("target"), py::kw_only(), py::arg("cell_mm") = py::none(), py::arg("frame") = 0);
+           py::arg("target"), py::kw_only(), py::arg("cell_mm") = py::none(), py::arg("frame") = 0,
+           py::arg("width_mm") = py::none(), py::arg("invert") = false);
 }
 
 // ---- what came out

@@ -15,6 +15,7 @@
 
 #include "prostm/core/geometry.hpp"
 #include "prostm/core/quantity.hpp"
+#include "prostm/io/field_file.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm::python {
@@ -39,10 +40,12 @@ std::vector<const TargetField*> patches_of(py::handle target);
 /// Largest pressure of a TargetField or a TargetFrame; 0 without skin.
 double largest_pressure(py::handle target);
 
+/// Returns how a field's file is read, with the names that Python has for it.
+FieldFileOptions file_options(std::optional<double> cell_mm, std::optional<double> width_mm,
+                              int frame, bool invert);
 /// Reads the field if a target is given by the name of a file; returns other targets as they are.
-/// @throws InputError as read_field() does, std::invalid_argument for a cell or a frame without a
-/// file.
-py::object target_of(const py::object& target, std::optional<double> cell_mm, int frame);
+/// @throws InputError as read_field() does, std::invalid_argument for options without a file.
+py::object target_of(const py::object& target, const FieldFileOptions& options);
 
 /// Numbers given by the user: any array or nested sequence of booleans, integers or floats, as
 /// doubles in rows.

@@ -5,13 +5,14 @@ import zlib
 
 
 def write_grey_png(path, grey):
-    """Writes a matrix of grey values (uint8, the top row first) as a PNG picture."""
+    """Writes a matrix of grey values (uint8, the top row first), or of pairs of grey and alpha, as a PNG picture."""
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
     rows = b"".join(b"\0" + row.tobytes() for row in grey)
-    header = struct.pack(">IIBBBBB", grey.shape[1], grey.shape[0], 8, 0, 0, 0, 0)
+    colour_type = 0 if grey.ndim == 2 else 4
+    header = struct.pack(">IIBBBBB", grey.shape[1], grey.shape[0], 8, colour_type, 0, 0, 0)
     path.write_bytes(
         b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
     )

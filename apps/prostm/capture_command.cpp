@@ -37,12 +37,22 @@ class Capture final : public RunObserver {
   Progress progress_{"capturing"};
 };
 
+/// @throws InputError for a hand that needs a clock.
+void check_hand(const CaptureOptionsGiven& given) {
+  if (given.hand != "page" && !names_tracker(given.hand)) return;
+  throw InputError(fmt::format(
+      "capture does not run in real time, as --hand {0} needs; record it with prostm run {1}--hand "
+      "{0} --record {2}",
+      given.hand, given.hand == "page" ? "--view " : "", given.out));
+}
+
 }  // namespace
 
 int capture_command(const CaptureOptionsGiven& given) {
   if (given.frames < 1 || given.frames > 1'000'000) {
     throw InputError(fmt::format("--frames {} must be between 1 and 1000000", given.frames));
   }
+  check_hand(given);
   PipelineSettings settings = make_settings(given.common, given.scene);
   settings.simulated_array.realtime = false;
   Pipeline pipeline(settings, make_hands(given.hand, settings));

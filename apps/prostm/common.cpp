@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -16,7 +17,7 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
-#include "prostm/core/require.hpp"
+#include "prostm/core/nearest_name.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/io/array_file.hpp"
 #include "prostm/io/hand_file.hpp"
@@ -43,6 +44,34 @@ void check_files_of(const PipelineSettings& settings, const CommonOptions& optio
   files.check();
 }
 
+/// Returns a setting as the option that gives it: with its name and unit. @param factor how many of
+/// the option's units are one of the setting's.
+Setting as_option(const SettingsGroup& group, std::string_view setting, const char* option,
+                  const char* unit = "", double factor = 1.0) {
+  const std::vector<SettingRow> rows = setting_rows(group.read);
+  Setting out = std::ranges::find_if(rows, [&](const SettingRow& row) {
+                  return row.setting.name == setting;
+                })->setting;
+  out.name = option;
+  out.unit = unit;
+  out.least *= factor;
+  out.most *= factor;
+  return out;
+}
+
+/// Checks the options that are settings by another name, in the words of the options.
+void check_bounds(const CommonOptions& options, const PipelineSettings& settings) {
+  const SettingsGroup plan = group_of("plan", settings.plan);
+  if (options.paths) require_bounds(as_option(plan, "paths", "--paths"), *options.paths);
+  if (options.budget_ms)
+    require_bounds(as_option(plan, "budget", "--budget-ms", "ms", 1e3), *options.budget_ms);
+  if (options.grid) {
+    const SettingsGroup fluid = group_of("fluid", settings.fluid);
+    require_bounds(as_option(fluid, "cells", "--grid"), *options.grid);
+  }
+  if (options.seed) require_bounds(as_option(plan, "seed", "--seed"), *options.seed);
+}
+
 }  // namespace
 
 PipelineSettings make_settings(const CommonOptions& options,
@@ -57,9 +86,7 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (!options.settings_file.empty()) check_files_of(settings, options);
   settings.transducers = array_from_name(settings.array);
   settings.X_DT = tracker_pose_from_name(settings.tracker);
-  constexpr int kAnySeed = std::numeric_limits<int>::max();
-  if (options.seed) require_between("--seed", *options.seed, 0, kAnySeed);
-  require_between("plan.seed", settings.plan.seed, 0, kAnySeed);
+  check_bounds(options, settings);
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;
   if (options.method) settings.method = from_name<Method>(*options.method, "--method");
   const bool is_am = settings.method == Method::Am;
@@ -81,8 +108,22 @@ bool names_json(const std::string& name) {
   return name.ends_with(".json");
 }
 
+bool names_tracker(const std::string& hand) {
+  return hand == "openxr" || hand.starts_with("leap:");
+}
+
 bool names_recording(const std::string& hand) {
-  return hand != "scripted" && hand != "page" && hand != "openxr" && !hand.starts_with("leap:");
+  return hand != "scripted" && hand != "page" && !names_tracker(hand);
+}
+
+std::string hint_for_hand(const std::string& hand) {
+  std::string word = hand;
+  std::ranges::transform(word, word.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool is_file = word.find_first_of("./") != word.npos;
+  if (!is_file && word.find("leap") != word.npos)
+    return "; did you mean \"leap://127.0.0.1:6437\"?";
+  return did_you_mean(hand, {"scripted", "page", "openxr"});
 }
 
 FocusMethod solver_of(const std::string& name) {

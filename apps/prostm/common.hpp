@@ -24,8 +24,12 @@ PipelineSettings make_settings(const CommonOptions& options,
 
 /// Whether `--array` or `--tracker` names a file, rather than one that is built in.
 bool names_json(const std::string& name);
+/// Whether `--hand` names a live tracker.
+bool names_tracker(const std::string& hand);
 /// Whether `--hand` names a recording, rather than a source that is built in.
 bool names_recording(const std::string& hand);
+/// The end of a sentence about a recording that is not there: the source that may have been meant.
+std::string hint_for_hand(const std::string& hand);
 
 /// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
 FocusMethod solver_of(const std::string& name);

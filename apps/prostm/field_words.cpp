@@ -70,6 +70,25 @@ bool is_even(const TargetField& field) {
   return least >= max_pressure(field);
 }
 
+/// A sentence about a picture that was hardly meant as it is read; empty for any other.
+std::string picture_warning(const TargetField& field, bool invert) {
+  const int skin = skin_cells(field);
+  if (skin == 0) return "the picture is transparent everywhere, and transparent is no skin";
+  if (is_even(field) && static_cast<std::size_t>(skin) == field.size())
+    return "the picture is the same everywhere, so it has no shape to plan";
+  const char* remedy = invert ? "try without --invert" : "try --invert";
+  if (max_pressure(field) == 0.0) {
+    return fmt::format(
+        "the picture is {0} wherever it is not transparent, and {0} is no pressure; {1}, and fill "
+        "the transparent ground with {2} if it is to be skin too",
+        invert ? "white" : "black", remedy, invert ? "black" : "white");
+  }
+  if (is_even(field) || !presses_on_border(field)) return {};
+  return fmt::format(
+      "most of the picture's border presses on the skin, so it is probably drawn {}; {}",
+      invert ? "white on black" : "black on white", remedy);
+}
+
 }  // namespace
 
 std::string field_in_words(const std::string& path, const TargetField& field,
@@ -96,11 +115,9 @@ std::vector<std::string> field_warnings(const std::string& path, const TargetFie
         "the field is {:.4g} × {:.4g} mm, larger than a hand{}", 1e3 * size.x(), 1e3 * size.y(),
         sized_here ? fmt::format("; try --width-mm {:.3g}", width) : std::string()));
   }
-  if (kind == FieldKind::Png && presses_on_border(field)) {
-    warnings.push_back(fmt::format(
-        "most of the picture's border presses on the skin, so it is probably drawn {}",
-        options.invert ? "white on black; try without --invert" : "black on white; try --invert"));
-  }
+  if (kind != FieldKind::Png) return warnings;
+  const std::string warning = picture_warning(field, options.invert);
+  if (!warning.empty()) warnings.push_back(warning);
   return warnings;
 }
 

@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
 #include <utility>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/nearest_name.hpp"
 
 namespace prostm::app {
 
-void Files::reads(const std::string& option, const std::string& path,
-                  std::vector<std::string> names) {
-  entries_.push_back({option, path, check_readable, false, {}, std::move(names)});
+void Files::reads(const std::string& option, const std::string& path, std::string hint) {
+  entries_.push_back({option, path, check_readable, false, {}, std::move(hint)});
 }
 
 void Files::writes(const std::string& option, const std::string& path, Check also,
@@ -27,11 +28,15 @@ void Files::check() const {
       throw InputError(fmt::format("{} needs the name of a file, and {} is an option", entry.option,
                                    entry.path));
     }
+    if (entry.path.empty()) {
+      throw InputError(
+          fmt::format("{} needs the name of a file, and the one given is empty", entry.option));
+    }
     if (entry.output) continue;
     try {
       entry.check(entry.path);
     } catch (const InputError& error) {
-      throw InputError(error.what() + did_you_mean(entry.path, entry.names));
+      throw InputError(error.what() + entry.hint);
     }
   }
   for (const Entry& entry : entries_) {
@@ -51,6 +56,24 @@ void Files::check() const {
 
 bool Files::any_output() const {
   return std::ranges::any_of(entries_, [](const Entry& e) { return e.output && e.path != "-"; });
+}
+
+void check_json_output(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array kOthers = {".png", ".svg", ".h5", ".npy", ".toml", ".jsonl"};
+  if (std::ranges::find(kOthers, ending) != kOthers.end()) {
+    throw InputError(fmt::format(
+        "{} would hold JSON, and {} is another kind of file; end its name in .json", path, ending));
+  }
+  check_writable(path);
+}
+
+void check_pose_output(const std::string& path) {
+  if (!path.ends_with(".json"))
+    throw InputError(path + " names no pose file; it must end in .json, as --tracker takes it");
+  check_writable(path);
 }
 
 }  // namespace prostm::app

@@ -15,10 +15,9 @@ class Files {
  public:
   using Check = void (*)(const std::string& path);
 
-  /// @param option names the file in messages, e.g. "--hand". @param names what the option takes
-  /// besides files: one of them may have been meant.
-  void reads(const std::string& option, const std::string& path,
-             std::vector<std::string> names = {});
+  /// @param option names the file in messages, e.g. "--hand". @param hint the end of the sentence
+  /// about a file that cannot be read, where something else may have been meant.
+  void reads(const std::string& option, const std::string& path, std::string hint = {});
   /// @param also what else must hold before the work, if anything. @param of how the option of an
   /// input begins that the output may be: a file that the command brings up to date.
   void writes(const std::string& option, const std::string& path, Check also = check_writable,
@@ -35,9 +34,15 @@ class Files {
     Check check;
     bool output;
     std::string of;
-    std::vector<std::string> names;
+    std::string hint;
   };
   std::vector<Entry> entries_;
 };
+
+/// Checks a file for JSON. @throws InputError: it cannot be written, or the ending of its name says
+/// another kind.
+void check_json_output(const std::string& path);
+/// The same for a pose file, whose name must end in .json: --tracker takes no other.
+void check_pose_output(const std::string& path);
 
 }  // namespace prostm::app

@@ -37,17 +37,17 @@ CLI::Option* add_input(CLI::App& command, Files& files, const std::string& name,
       ->each([&files, name](const std::string& path) { files.reads(name, path); });
 }
 
-/// The same, where some values are names of what is built in. @param names those that a misspelled
-/// file may stand for.
+/// The same, where some values are names of what is built in. @param hint says which of them a file
+/// that is not there may stand for.
 template <class Value>
 CLI::Option* add_input_or_name(CLI::App& command, Files& files, const std::string& name,
                                Value& value, bool (*is_file)(const std::string&),
                                const std::string& help,
-                               const std::vector<std::string>& names = {}) {
+                               std::string (*hint)(const std::string&) = nullptr) {
   return command.add_option(name, value, help)
       ->type_name("NAME|INPUT")
-      ->each([&files, name, is_file, names](const std::string& path) {
-        if (is_file(path)) files.reads(name, path, names);
+      ->each([&files, name, is_file, hint](const std::string& path) {
+        if (is_file(path)) files.reads(name, path, hint != nullptr ? hint(path) : std::string());
       });
 }
 
@@ -68,7 +68,7 @@ CLI::Option* add_name(CLI::App& command, const std::string& name, Value& value,
 }
 
 void add_json(CLI::App& command, Files& files, std::string& json) {
-  add_output(command, files, "--json", json, prostm::check_writable,
+  add_output(command, files, "--json", json, check_json_output,
              "write the result as JSON; - is standard output");
 }
 
@@ -116,7 +116,7 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
       command, common.files, "--hand", hand, names_recording,
       "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
       "page (docs/hands.md)",
-      {"scripted", "page", "openxr"})
+      hint_for_hand)
       ->capture_default_str();
   add_input_or_name(
       command, common.files, "--tracker", common.tracker, names_json,
@@ -124,6 +124,28 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
   command.add_option("--grid", common.grid,
                      "cells along each edge of the fluid's box, a multiple of 16");
   add_array(command, common, "usx (default), autd3, or an array file (.json)");
+}
+
+/// The page of a run.
+void add_view(CLI::App& command, RunOptionsGiven& o) {
+  auto* view = command.add_flag("--view", o.view,
+                                "serve the page that shows and steers the run (docs/viewing.md)");
+  auto* stay = command.add_flag("--stay", o.stay, "go on after --seconds, until Ctrl-C");
+  auto* port =
+      command.add_option("--view-port", o.view_port,
+                         "port of the page, 0 for any; default: 8470, or the next free one");
+  auto* address =
+      command
+          .add_option("--view-address", o.view_address,
+                      "address to serve the page on; default: 127.0.0.1, this machine alone")
+          ->type_name("ADDRESS");
+  auto* tracker_file =
+      command
+          .add_option("--tracker-file", o.tracker_file,
+                      "where the page's calibration saves the tracker's pose, for --tracker")
+          ->type_name("OUTPUT")
+          ->default_str(kTrackerFile);
+  for (CLI::Option* option : {stay, port, address, tracker_file}) option->needs(view);
 }
 
 void add_run(CLI::App& app, Work& work) {
@@ -150,29 +172,16 @@ void add_run(CLI::App& app, Work& work) {
            "now, at the next block");
   add_output(*command, o->common.files, "--record", o->record, prostm::check_recording,
              "record targets, hands and plans (.h5, docs/recordings.md)");
-  command->add_flag("--view", o->view,
-                    "serve the page that shows and steers the run (docs/viewing.md)");
-  command->add_flag("--stay", o->stay, "go on after --seconds, until Ctrl-C; needs --view");
-  command->add_option("--view-port", o->view_port,
-                      "port of the page, 0 for any; default: 8470, or the next free one");
-  command
-      ->add_option("--view-address", o->view_address,
-                   "address to serve the page on; default: 127.0.0.1, this machine alone")
-      ->type_name("ADDRESS");
-  auto* tracker_file =
-      command
-          ->add_option("--tracker-file", o->tracker_file,
-                       "where the page's calibration saves the tracker's pose, for --tracker")
-          ->type_name("OUTPUT")
-          ->capture_default_str();
+  add_view(*command, *o);
   command->footer(
       "Example:\n  prostm run --scene four-plumes --hand me.hands.jsonl --seconds 60 --json "
       "summary.json");
-  command->callback([o, tracker_file, &work] {
+  command->callback([o, &work] {
     // only a page writes it; one that nobody named need not be writable until then
     if (o->view) {
-      const auto check = tracker_file->count() > 0 ? prostm::check_writable : nullptr;
-      o->common.files.writes("--tracker-file", o->tracker_file, check, "--tracker");
+      const auto check = o->tracker_file ? check_pose_output : nullptr;
+      o->common.files.writes("--tracker-file", o->tracker_file.value_or(kTrackerFile), check,
+                             "--tracker");
     }
     work = {&o->common.files, [o] { return run_command(*o); }};
   });

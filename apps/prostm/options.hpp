@@ -24,6 +24,8 @@ struct CommonOptions {
   std::optional<int> grid;
 };
 
+inline constexpr const char* kTrackerFile = "prostm-tracker.json";  ///< unless one is given
+
 struct RunOptionsGiven {
   CommonOptions common;
   std::optional<std::string> scene, device;
@@ -35,7 +37,7 @@ struct RunOptionsGiven {
   bool view = false, stay = false;
   std::optional<std::string> view_address;
   std::optional<int> view_port;
-  std::string tracker_file = "prostm-tracker.json";  ///< that the page's calibration writes
+  std::optional<std::string> tracker_file;  ///< that the page's calibration writes
 };
 
 struct PlanOptionsGiven {

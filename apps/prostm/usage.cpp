@@ -94,8 +94,12 @@ std::string about_error(const CLI::App& command, const CLI::ParseError& error) {
     return reworded(what, " requires ", " needs ");
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return what;
-  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
-    return fmt::format("{} is missing: {}", name, option->get_description());
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    // those that stand without a name are files
+    const std::string missing =
+        option->nonpositional() ? name + " is missing" : command.get_name() + " needs a file";
+    return fmt::format("{}: {}", missing, option->get_description());
+  }
   const bool of_value = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr ||
                         dynamic_cast<const CLI::ConversionError*>(&error) != nullptr;
   return of_value ? about_value(*option, name) : what;

@@ -23,9 +23,6 @@ std::string source_of(const std::string& hand) {
 
 void check_view(const RunOptionsGiven& given, bool realtime) {
   if (!given.view) {
-    if (given.stay) throw InputError("--stay keeps the page up; it needs --view");
-    if (given.view_address || given.view_port)
-      throw InputError("--view-address and --view-port belong to --view");
     if (given.hand == "page")
       throw InputError("--hand page is moved on the page, so it needs --view");
     return;
@@ -33,6 +30,12 @@ void check_view(const RunOptionsGiven& given, bool realtime) {
   if (!realtime) {
     throw InputError(
         "--view shows a run in real time; leave out --as-fast-as-possible and --stepped");
+  }
+  if (given.tracker_file && !names_tracker(given.hand)) {
+    throw InputError(
+        fmt::format("--tracker-file is for the pose of a tracker, and --hand {} has none; leave it "
+                    "out, or give --hand leap://HOST:PORT or openxr",
+                    given.hand));
   }
 }
 
@@ -52,10 +55,8 @@ View::View(const RunOptionsGiven& given, const PipelineSettings& settings) : giv
     auto base = make_hands(wanted == source ? given_.hand : wanted, s);
     return std::make_unique<HandSwitch>(std::move(base), link_.page_hand, Pose::Identity());
   };
-  link_.pose_file = given.tracker_file;
-  link_.save_pose = [file = given.tracker_file](const Calibration& pose) {
-    write_pose(file, pose);
-  };
+  link_.pose_file = given.tracker_file.value_or(kTrackerFile);
+  link_.save_pose = [file = link_.pose_file](const Calibration& pose) { write_pose(file, pose); };
 }
 
 std::unique_ptr<HandSource> View::behind_the_page(std::unique_ptr<HandSource> base) {

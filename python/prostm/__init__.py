@@ -21,6 +21,7 @@ the data that they show. The interpreter's lock is released while planning, scor
                        drive_intensity, even_share, EmitStats, TakeOver
 """
 
+import math as _math
 import numbers as _numbers
 import os as _os
 
@@ -33,8 +34,9 @@ from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, E
                       PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace, Recording,
                       TakeOver, TargetField, TargetFrame, __version__, closed_length, controls, drive_intensity,
                       even_share, field_from_json, field_to_json, height_at, kMaxFieldCells, kMaxPatches,
-                      kMaxPathPoints, kMaxPaths, lift, max_pressure, plan_from_json, plan_to_json,
-                      quasi_static_field, read_field, read_plan, score_field, score_plan, write_field, write_plan)
+                      kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples, lift, max_pressure, plan_from_json,
+                      plan_to_json, quasi_static_field, read_field, read_plan, score_field, score_plan, write_field,
+                      write_plan)
 
 __all__ = [
     "plan", "Planner", "PlanSettings", "PlanResult", "PlanStatus", "PlanStats", "PlanTrace",
@@ -50,14 +52,16 @@ __all__ = [
 ]
 
 
-def _target(field, cell, cell_mm, frame):
+def _target(field, cell, cell_mm, width_mm, frame, invert):
     """Returns the TargetField or TargetFrame for the field that plan() is given."""
     if isinstance(field, (str, _os.PathLike)):
         if cell is not None:
             raise ValueError("the cell of a file is given in millimetres, as cell_mm")
-        return read_field(field, cell_mm=cell_mm, frame=frame)
+        return read_field(field, cell_mm=cell_mm, width_mm=width_mm, frame=frame, invert=invert)
     if frame != 0:
         raise ValueError("frame belongs to the name of a recording")
+    if width_mm is not None or invert:
+        raise ValueError("width_mm and invert belong to the name of a file; an array has cell or cell_mm")
     if not isinstance(field, (TargetField, TargetFrame)):
         return TargetField(field, cell=cell, cell_mm=cell_mm)
     if cell is not None or cell_mm is not None:
@@ -65,16 +69,18 @@ def _target(field, cell, cell_mm, frame):
     return field
 
 
-def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, frame=0, settings=None, trace=False,
-         **more):
+def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, width_mm=None, frame=0, invert=False,
+         settings=None, trace=False, **more):
     """Plans one field as `prostm plan` does, with the same plan to the bit, and returns a PlanResult.
 
     field: a (rows, cols) array of pressures >= 0 in any unit, NaN = no skin, row 0 at the smallest y; or a
         TargetField, a TargetFrame, or the name of a field's file.
     preset: as on the command line; None: that of the settings.
     method: "pro-stm": paths, or "am": foci that stand still, which takes neither preset nor trace.
-    cell, cell_mm: edge of a cell [m] or [mm]; an array needs one of them, a .npy or .png file needs cell_mm.
+    cell, cell_mm: edge of a cell [m] or [mm]; an array needs one of them, a .npy or .png file needs cell_mm or
+        width_mm, the width of the whole field [mm].
     frame: frame of a recording (.h5), counted from 0.
+    invert: a .png file is drawn black on white, so that black is the pressure.
     settings: PlanSettings, or AmSettings for "am"; None: the defaults. Further keywords are settings, e.g. paths=2,
         draw_rate=70.
     trace: keep the intermediate results, as PlanResult.trace.
@@ -86,7 +92,7 @@ def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, frame
         raise ValueError(f"method {method!r} is unknown: it must be pro-stm or am")
     if method == "am" and (preset is not None or trace):
         raise ValueError("preset and trace belong to method pro-stm; am has neither")
-    target = _target(field, cell, cell_mm, frame)
+    target = _target(field, cell, cell_mm, width_mm, frame, invert)
     if preset is not None:
         more["preset"] = preset
     patches = target.patches if isinstance(target, TargetFrame) else [target]
@@ -128,8 +134,12 @@ def emit(plan, target=None, seconds=1.0, full_scale_pressure=None, *, sample_rat
         own.full_scale_pressure = _full_scale(target) if result is None else result.emission.full_scale_pressure
     own.stall_time = max(own.stall_time, min(2.0 * seconds, 1e6))
     emitter = (FocusEmitter if lifted.foci else PathEmitter)(own, sample_rate, **more)
+    samples = round(seconds * sample_rate) if _math.isfinite(seconds) else 0
+    if not 1 <= samples <= _kMostSamples:
+        raise ValueError(f"emit(): seconds = {seconds} must be between {1 / sample_rate:g} and "
+                         f"{_kMostSamples / sample_rate:g}")
     emitter.submit(lifted)
-    return emitter.fill(0, round(seconds * sample_rate))
+    return emitter.fill(0, samples)
 
 
 def _full_scale(target):

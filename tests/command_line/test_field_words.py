@@ -2,6 +2,7 @@
 
 import json
 
+import h5py
 import numpy as np
 import pytest
 
@@ -76,6 +77,46 @@ def test_ink_on_white_paper(prostm, tmp_path):
     assert light["paths"] == plan["paths"]
     spoiled = planned(prostm, "light.png", "--width-mm", "120", "--invert")[1]
     assert any("try without --invert" in warning for warning in spoiled["warnings"])
+
+
+@pytest.mark.parametrize("grey", [255, 90, 0])
+@pytest.mark.parametrize("options", [[], ["--invert"]])
+def test_an_even_picture_has_nothing_to_plan(prostm, tmp_path, grey, options):
+    write_grey_png(tmp_path / "even.png", np.full((12, 12), grey, np.uint8))
+    told = warnings_in(planned(prostm, "even.png", "--width-mm", "60", *options)[0])
+    assert told == ["the picture is the same everywhere, so it has no shape to plan"]
+
+
+def test_ink_on_a_transparent_ground(prostm, tmp_path):
+    y, x = np.mgrid[0:24, 0:24]
+    ring = np.abs(np.hypot(x - 12, y - 12) - 7) < 2
+    for name, ink in ("black", 0), ("white", 255):
+        pixels = np.stack([np.full(ring.shape, ink), 255 * ring], axis=-1)
+        write_grey_png(tmp_path / f"{name}.png", pixels.astype(np.uint8))
+    lines, plan = planned(prostm, "black.png", "--width-mm", "100")
+    assert plan["paths"] == [] and warnings_in(lines) == plan["warnings"] == [
+        "the picture is black wherever it is not transparent, and black is no pressure; try --invert, and fill the "
+        "transparent ground with white if it is to be skin too"]
+    lines, plan = planned(prostm, "black.png", "--width-mm", "100", "--invert")
+    assert len(plan["paths"]) > 0 and plan["warnings"] == []
+    assert planned(prostm, "white.png", "--width-mm", "100")[1]["warnings"] == []
+    [warning] = planned(prostm, "white.png", "--width-mm", "100", "--invert")[1]["warnings"]
+    assert "white is no pressure; try without --invert" in warning and "ground with black" in warning
+    write_grey_png(tmp_path / "clear.png", np.zeros((12, 12, 2), np.uint8))
+    assert planned(prostm, "clear.png", "--width-mm", "100")[1]["warnings"] == [
+        "the picture is transparent everywhere, and transparent is no skin"]
+
+
+def test_a_frame_without_a_hand_names_the_first_with_one(prostm, refuses, tmp_path):
+    prostm("capture", "--grid", "32", "--frames", "3", "--out", "a.h5")
+    with h5py.File(tmp_path / "a.h5", "r+") as file:
+        file["frame/patches"][:2] = 0
+    refuses("plan", "a.h5", words=[
+        "a.h5: frame 0 holds no hand; the first frame with a hand is 2, choose it with --frame"])
+    prostm("plan", "a.h5", "--frame", "2")
+    with h5py.File(tmp_path / "a.h5", "r+") as file:
+        file["frame/patches"][:] = 0
+    refuses("plan", "a.h5", "--frame", "1", words=["a.h5 holds no hand in any frame"])
 
 
 def test_larger_than_a_hand(prostm, tmp_path):

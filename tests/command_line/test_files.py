@@ -103,11 +103,11 @@ def test_other_outputs_do_not_meet(prostm, tmp_path):
 def test_a_tracker_file_may_be_calibrated_again(refuses, tmp_path):
     pose = tmp_path / "pose.json"
     pose.write_text(json.dumps({"format": "prostm-pose/1", "position_mm": [0, 121, 0], "quaternion": [0, 0, 0, 1]}))
-    arguments = ["run", "--view", "--tracker", pose, "--tracker-file", "./pose.json", "--seconds"]
+    run = ["run", "--view", "--hand", "leap://127.0.0.1:6437"]
+    arguments = [*run, "--tracker", pose, "--tracker-file", "./pose.json", "--seconds"]
     refuses(*arguments, "-1", words=["--seconds"])  # not about the files
     (tmp_path / "s.toml").write_text('[pipeline]\ntracker = "pose.json"\n')
-    refuses("run", "--view", "--settings", "s.toml", "--tracker-file", "pose.json", "--seconds", "-1",
-            words=["--seconds"])
+    refuses(*run, "--settings", "s.toml", "--tracker-file", "pose.json", "--seconds", "-1", words=["--seconds"])
     refuses("run", "--view", "--json", "prostm-tracker.json", words=["one file", "--tracker-file"])
     refuses("run", "--view", "--tracker-file", "gone/pose.json", words=["gone/pose.json"])
 

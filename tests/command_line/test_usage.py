@@ -26,7 +26,11 @@ from test_bad_input import changed, hand_lines
     (["run", "--wings"], 'run has no option "--wings"; see prostm run --help'),
     (["run", "view"], 'run does not expect "view"; did you mean "--view"? See prostm run --help'),
     (["plan", "a.npy", "b.npy"], 'plan does not expect "b.npy"; see prostm plan --help'),
-    (["plan"], "field is missing: target field (.json, .npy, .png or .h5; docs/files.md); see prostm plan --help"),
+    (["plan"], "plan needs a file: target field (.json, .npy, .png or .h5; docs/files.md); see prostm plan --help"),
+    (["bench"],
+     "bench needs a file: recordings (.h5) of prostm capture or prostm run --record; see prostm bench --help"),
+    (["plan", ""], "field needs the name of a file, and the one given is empty"),
+    (["run", "--json", ""], "--json needs the name of a file, and the one given is empty"),
     (["capture"], "--out is missing: the recording (.h5); see prostm capture --help"),
     (["run", "--seconds"], "--seconds needs a value (FLOAT); see prostm run --help"),
     (["run", "--seconds", "ten"], '--seconds is "ten"; it must be a number; see prostm run --help'),
@@ -39,16 +43,51 @@ from test_bad_input import changed, hand_lines
     (["run", "--figure-at", "3"], "--figure-at needs --figure; see prostm run --help"),
     (["plan", "x.npy", "--beside", "y.json"], "--beside needs --figure; see prostm plan --help"),
     (["field", "plan.json", "--invert"], "--invert needs --field; see prostm field --help"),
+    (["run", "--stay"], "--stay needs --view; see prostm run --help"),
+    (["run", "--view-port", "0"], "--view-port needs --view; see prostm run --help"),
+    (["run", "--view-address", "127.0.0.1"], "--view-address needs --view; see prostm run --help"),
+    (["run", "--tracker-file", "t.json"], "--tracker-file needs --view; see prostm run --help"),
+    (["run", "--view", "--tracker-file", "t.json"],
+     "--tracker-file is for the pose of a tracker, and --hand scripted has none; leave it out, or give --hand "
+     "leap://HOST:PORT or openxr"),
+    (["run", "--view", "--tracker-file", "t.txt"],
+     "t.txt names no pose file; it must end in .json, as --tracker takes it"),
     (["run", "--json", "--view"], "--json needs the name of a file, and --view is an option"),
     (["run", "--preset", "bst"],
      '--preset "bst" is unknown: it must be paper, paper-valid, best or fast; did you mean "best"?'),
+    (["run", "--switch", "foo"], '--switch "foo" is unknown: it must be lap or now'),
+    (["run", "--budget-ms", "-1"], "--budget-ms = -1 ms must be between 0 and 60000 ms"),
+    (["plan", "foci.json", "--paths", "9"], "--paths = 9 must be between 1 and 8"),
+    (["run", "--grid", "50"], "--grid = 50 must be a multiple of 16 between 32 and 128"),
+    (["run", "--grid", "144"], "--grid = 144 must be a multiple of 16 between 32 and 128"),
     (["run", "--scene", "one-plum"], 'did you mean "one-plume"?'),
     (["run", "--array", "autd"], 'did you mean "autd3"?'),
     (["run", "--tracker", "center"], 'did you mean "centre"?'),
     (["run", "--hand", "scriptd"], 'scriptd cannot be read: there is no such file; did you mean "scripted"?'),
+    (["run", "--hand", "leap"],
+     'leap cannot be read: there is no such file; did you mean "leap://127.0.0.1:6437"?'),
+    (["run", "--hand", "Leap"], 'did you mean "leap://127.0.0.1:6437"?'),
+    (["capture", "--out", "x.h5", "--hand", "ultraleap"], 'did you mean "leap://127.0.0.1:6437"?'),
+    (["run", "--hand", "leapmotion"], 'did you mean "leap://127.0.0.1:6437"?'),
+    (["run", "--hand", "leap.json"], "leap.json cannot be read: there is no such file"),
+    (["capture", "--hand", "leap://127.0.0.1:6437", "--out", "x.h5"],
+     "capture does not run in real time, as --hand leap://127.0.0.1:6437 needs; record it with prostm run --hand "
+     "leap://127.0.0.1:6437 --record x.h5"),
+    (["capture", "--hand", "page", "--out", "x.h5"],
+     "capture does not run in real time, as --hand page needs; record it with prostm run --view --hand page --record "
+     "x.h5"),
     (["solve", "foci.json", "--solver", "gspat"], 'did you mean "gs-pat"?'),
     (["run", "--record", "x.txt"], "x.txt names no recording; it must end in .h5"),
     (["capture", "--out", "x.json"], "x.json names no recording; it must end in .h5"),
+    (["run", "--figure", "x.json"], "x.json names no kind of figure; it must end in .png or .svg"),
+    (["run", "--json", "x.png"], "x.png would hold JSON, and .png is another kind of file; end its name in .json"),
+    (["plan", "foci.json", "--json", "x.H5"],
+     "x.H5 would hold JSON, and .h5 is another kind of file; end its name in .json"),
+    (["plan", "foci.json"],
+     'foci.json: "format" is "prostm-foci/1" (focal points, for prostm solve); it must be "prostm-field/1"'),
+    (["run", "--hand", "foci.json"],
+     "foci.json is a prostm-foci/1 file (focal points, for prostm solve), not a hand recording; a hand recording is "
+     "hand-frames JSON Lines (.hands.jsonl) or a recording of a Leap (.json), see docs/hands.md"),
 ])
 def test_the_sentence(refuses, tmp_path, arguments, sentence):
     foci = {"format": "prostm-foci/1", "foci": [{"position_mm": [0, 0, 200], "pressure_pa": 100}]}
@@ -106,3 +145,8 @@ def test_a_file_of_another_kind_is_named(refuses, prostm, tmp_path):
     refuses("field", "a.npy", words=["is an NPY file, not JSON"])
     refuses("run", "--settings", "field.json", words=["is JSON, not TOML"])
     refuses("plan", "text.txt", words=[".json, .npy, .png or .h5"])
+    refuses("plan", "me.hands.jsonl", words=[
+        "me.hands.jsonl is a recording of hands, not a field; ", "prostm capture --hand me.hands.jsonl --out FILE.h5",
+        "prostm run --hand me.hands.jsonl"])
+    prostm("plan", "field.json", "--json", "plan.json")
+    refuses("plan", "plan.json", words=['is "prostm-plan/1" (a plan, for prostm field); it must be "prostm-field/1"'])

@@ -20,6 +20,8 @@ TEST(NearestName, IsTheOneThatIsSpelledMostAlike) {
   EXPECT_FALSE(nearest_name("dance", commands));
   // two letters that are both wrong are another name
   EXPECT_FALSE(nearest_name("xy", {"am"}));
+  EXPECT_FALSE(nearest_name("foo", {"lap", "now"}));
+  EXPECT_EQ(nearest_name("npw", {"lap", "now"}), "now");
   EXPECT_FALSE(nearest_name("x", {}));
 }
 

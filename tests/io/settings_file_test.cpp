@@ -26,6 +26,7 @@ struct Stove {
   bool gas = false;
   std::string maker = "us";
   Heat heat = Heat::Low;
+  int rings = 4;
   void visit(SettingsReader& v) const { list(*this, v); }
   void visit(SettingsWriter& v) { list(*this, v); }
 
@@ -37,6 +38,7 @@ struct Stove {
     v.field({.name = "gas", .help = "whether it burns"}, s.gas);
     v.field({.name = "maker", .help = "who made it"}, s.maker);
     v.field({.name = "heat", .help = "how hot"}, s.heat);
+    v.field({"rings", "", 0, 8, "of the plates", 2}, s.rings);
   }
 };
 
@@ -101,11 +103,19 @@ TEST(Settings, SayWhatIsWrongAndWhere) {
   const Wrong wrongs[] = {
       {"[stove]\npowr = 1",
        "s.toml, line 2: stove has no setting \"powr\"; did you mean \"power\"?"},
-      {"[stove]\nxylophone = 1", "known are power, plates, gas, maker, heat"},
+      {"[stove]\nxylophone = 1", "known are power, plates, gas, maker, heat, rings"},
       {"\n[stov]\npower = 1",
        "s.toml, line 2: there is no group of settings \"stov\"; did you mean \"stove\"?"},
       {"[bath]", "known are stove, oven"},
       {"stove = 1", "s.toml, line 1: stove must be a group of settings, written [stove]"},
+      {"\npower = 1",
+       "s.toml, line 2: \"power\" stands outside a group of settings; did you mean [stove] power "
+       "or "
+       "[oven] power?"},
+      {"[power]", "there is no group of settings \"power\""},
+      {"[stove]\n\npower = 11", "s.toml, line 3: stove.power = 11 kW must be between 0 and 10 kW"},
+      {"[stove]\nplates = -2", "s.toml, line 2: stove.plates = -2 must be between -1 and 8"},
+      {"[stove]\nrings = 3", "stove.rings = 3 must be a multiple of 2 between 0 and 8"},
       {"[stove]\npower = \"high\"", "s.toml, line 2: stove.power must be a number"},
       {"[stove]\npower = inf", "stove.power must be finite"},
       {"[stove]\npower = nan", "stove.power must be finite"},

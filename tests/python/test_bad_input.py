@@ -112,7 +112,7 @@ def test_files_are_refused_in_the_words_of_the_command_line(program, tmp_path):
         '{"format":"prostm-field/1","cell_mm":5,"origin_mm":[0,0],"rows":1,"cols":2,"pressure":[[1,-2]]}')
     (tmp_path / "field.txt").write_text("1 2 3")
     for name, cell in [("three.npy", 5), ("cut.json", None), ("negative.json", None), ("absent.json", None),
-                       ("three.npy", None), ("field.txt", None)]:
+                       ("field.txt", None)]:
         there = program("plan", tmp_path / name, *(["--cell-mm", cell] if cell else []), status=2).stderr
         with pytest.raises(prostm.InputError) as refused:
             prostm.read_field(tmp_path / name, cell_mm=cell)
@@ -132,13 +132,45 @@ def test_pictures_are_read_as_the_command_line_reads_them(tmp_path):
     np.save(tmp_path / "field.npy", np.ones((2, 4)))
     assert prostm.read_field(tmp_path / "field.npy", width_mm=20).cell == 0.005
     for options, words in [({"width_mm": 20, "cell_mm": 5}, "exclude each other"), ({"width_mm": 0}, "0.01 to 1000 mm"),
-                           ({"width_mm": float("nan")}, "0.01 to 1000 mm"), ({}, "--width-mm"),
-                           ({"width_mm": 20, "invert": True}, "is no picture")]:
+                           ({"width_mm": float("nan")}, "width_mm nan over 4 columns"),
+                           ({}, "give it in mm with cell_mm, or the width of the field with width_mm"),
+                           ({"width_mm": 20, "invert": True}, "is no picture; leave out invert"),
+                           ({"width_mm": 20, "frame": 3}, "holds one field; leave out frame")]:
         with pytest.raises(prostm.InputError, match=words):
             prostm.read_field(tmp_path / "field.npy", **options)
     prostm.write_field(tmp_path / "field.json", field)
-    with pytest.raises(prostm.InputError, match="leave out --cell-mm and --width-mm"):
+    with pytest.raises(prostm.InputError, match="leave out cell_mm and width_mm"):
         prostm.read_field(tmp_path / "field.json", width_mm=20)
+
+
+def test_pictures_are_planned_by_the_same_keywords(tmp_path):
+    y, x = np.mgrid[0:20, 0:20]
+    write_grey_png(tmp_path / "ink.png", np.where(np.hypot(x - 9, y - 11) < 6, 0, 255).astype(np.uint8))
+    as_read = {"width_mm": 100, "invert": True}
+    wanted = prostm.plan(prostm.read_field(tmp_path / "ink.png", **as_read), "fast")
+    for result in (prostm.plan(tmp_path / "ink.png", "fast", **as_read),
+                   prostm.Planner(preset="fast").plan(tmp_path / "ink.png", **as_read)):
+        assert result.target.cell == 0.005
+        np.testing.assert_array_equal(result.target.pressure, wanted.target.pressure)
+        np.testing.assert_array_equal(result.paths[0].points, wanted.paths[0].points)
+    foci = [prostm.plan(tmp_path / "ink.png", method="am", **as_read),
+            prostm.AmPlanner().plan(tmp_path / "ink.png", **as_read)]
+    assert foci[0].foci[0].pressure == foci[1].foci[0].pressure > 0
+
+    with pytest.raises(prostm.InputError, match="with cell_mm, or the width of the field with width_mm") as refused:
+        prostm.plan(tmp_path / "ink.png")
+    assert "--" not in str(refused.value)
+    for options in ({"width_mm": 100}, {"invert": True}):
+        with pytest.raises(ValueError, match="width_mm and invert belong to the name of a file"):
+            prostm.plan(np.ones((3, 3)), cell_mm=5, **options)
+    with pytest.raises(ValueError, match="not to an array; make it a TargetField, which takes cell_mm"):
+        prostm.Planner().plan(np.ones((3, 3)), cell_mm=5)
+
+
+@pytest.mark.parametrize("seconds", [-1, 0, 1e-6, 1e9, float("nan"), float("inf")])
+def test_how_long_a_plan_is_emitted_is_told_in_seconds(field, seconds):
+    with pytest.raises(ValueError, match=r"emit\(\): seconds = \S+ must be between 2.5e-05 and 2500$"):
+        prostm.emit(prostm.plan(field, "fast"), seconds=seconds)
 
 
 def test_plan_files_that_are_wrong(tmp_path, field):

@@ -27,7 +27,9 @@ def test_the_sentence_names_the_argument_and_what_would_be_right(field, plan, tm
     for words, call in [
         ("emit(): seconds must be a number, not 'long'", lambda: prostm.emit(result, seconds="long")),
         ("plan must be a Plan or a PlanResult, not 3", lambda: prostm.emit(3, field)),
-        ("target must be a TargetField, a TargetFrame or", lambda: prostm.emit(plan, seconds=1)),
+        ("a Plan needs the TargetField or TargetFrame that it was made for, as target",
+         lambda: prostm.emit(plan, seconds=1)),
+        ("a PlanResult brings its own", lambda: prostm.lift(plan)),
         ("emit(): settings must be an EmitSettings or None, not a dict", lambda: prostm.emit(result, settings={})),
         ("plan must be a Plan or a PlanResult, not a TargetField", lambda: prostm.lift(field, plan)),
         ("score_plan(): plan must be a Plan, not a PlanResult; give its .plan",

@@ -1,5 +1,8 @@
 #include "prostm/core/file_kind.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace prostm {
 
 std::string_view kind_by_content(std::string_view bytes) {
@@ -11,6 +14,21 @@ std::string_view kind_by_content(std::string_view bytes) {
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   if (first != bytes.npos && bytes[first] == '{') return "JSON";
   return {};
+}
+
+std::string_view words_of_format(std::string_view format) {
+  constexpr std::array<std::array<std::string_view, 2>, 8> kFormats = {
+      {{"prostm-field/1", "a field, for prostm plan"},
+       {"prostm-plan/1", "a plan, for prostm field"},
+       {"prostm-foci/1", "focal points, for prostm solve"},
+       {"prostm-drives/1", "drives of transducers, from prostm solve"},
+       {"prostm-array/1", "an array, for --array"},
+       {"prostm-pose/1", "the pose of a tracker, for --tracker"},
+       {"prostm-run/1", "the summary of a run"},
+       {"hand-frames", "a recording of hands, for --hand"}}};
+  const auto* const at = std::find_if(kFormats.begin(), kFormats.end(),
+                                      [&](const auto& known) { return known[0] == format; });
+  return at == kFormats.end() ? std::string_view() : (*at)[1];
 }
 
 std::string is_not(std::string_view bytes, std::string_view wanted) {

@@ -10,6 +10,10 @@ namespace prostm {
 /// "JSON"; empty if unknown.
 std::string_view kind_by_content(std::string_view bytes);
 
+/// The contents of a JSON file by its "format", and what takes them: "a plan, for prostm field";
+/// empty if unknown.
+std::string_view words_of_format(std::string_view format);
+
 /// "is a PNG picture, not JSON", or "is not JSON" if the bytes tell no other kind than `wanted`.
 std::string is_not(std::string_view bytes, std::string_view wanted);
 

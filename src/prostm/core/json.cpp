@@ -177,9 +177,11 @@ Vec3 JsonNode::vec3(double low, double high) const {
 
 void require_format(const JsonNode& root, const char* format) {
   const JsonNode tag = root.at("format", format);
-  if (!tag.value().is_string() || tag.value().get_ref<const std::string&>() != format) {
-    tag.fail(fmt::format("is {}; it must be \"{}\"", shown(tag.value()), format));
-  }
+  const std::string found = tag.value().is_string() ? tag.text() : std::string();
+  if (found == format) return;
+  const std::string_view words = words_of_format(found);
+  tag.fail(fmt::format("is {}{}; it must be \"{}\"", shown(tag.value()),
+                       words.empty() ? "" : fmt::format(" ({})", words), format));
 }
 
 std::string to_text(const nlohmann::ordered_json& document) {

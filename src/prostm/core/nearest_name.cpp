@@ -45,8 +45,8 @@ std::optional<std::string> nearest_name(std::string_view unknown,
   if (nearest == known.end()) return std::nullopt;
   const std::size_t distance = edit_distance(typed, *nearest);
   const std::size_t tolerance = std::max<std::size_t>(2, nearest->size() / 3);
-  // a name of two letters is not like any other name of two letters
-  if (distance > tolerance || distance >= nearest->size()) return std::nullopt;
+  // "foo" is not like "now": at most half of a short name may differ
+  if (distance > tolerance || 2 * distance > nearest->size()) return std::nullopt;
   return *nearest;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "prostm/core/number_text.hpp"
 #include "prostm/core/require.hpp"
@@ -18,12 +19,8 @@ int to_int(double bound) {
 
 class BoundsCheck : public SettingsReader {
  public:
-  void field(const Setting& s, const double& value) override {
-    require_between(s.name, value, s.least, s.most, s.unit);
-  }
-  void field(const Setting& s, const int& value) override {
-    require_between(s.name, value, to_int(s.least), to_int(s.most), s.unit);
-  }
+  void field(const Setting& s, const double& value) override { require_bounds(s, value); }
+  void field(const Setting& s, const int& value) override { require_bounds(s, value); }
   void field(const Setting&, const bool&) override {}
   void field(const Setting&, const std::string&) override {}
   void choice(const Setting&, std::span<const std::string_view>, int) override {}
@@ -82,6 +79,20 @@ std::vector<SettingRow> setting_rows(const ReadSettings& settings) {
   RowCollector collector;
   settings(collector);
   return collector.rows;
+}
+
+void require_bounds(const Setting& s, double value) {
+  require_between(s.name, value, s.least, s.most, s.unit);
+}
+
+void require_bounds(const Setting& s, int value) {
+  const int least = to_int(s.least), most = to_int(s.most);
+  if (s.multiple_of == 1) {
+    require_between(s.name, value, least, most, s.unit);
+  } else if (value < least || value > most || value % s.multiple_of != 0) {
+    throw std::invalid_argument(fmt::format("{} = {} must be a multiple of {} between {} and {}",
+                                            s.name, value, s.multiple_of, least, most));
+  }
 }
 
 void require_bounds(const ReadSettings& settings) {

@@ -26,6 +26,7 @@ struct Setting {
   double least = -std::numeric_limits<double>::infinity();  ///< of a number, in its unit
   double most = std::numeric_limits<double>::infinity();
   const char* help = "";  ///< one clause, without the unit and the bounds
+  int multiple_of = 1;    ///< that a whole number must be
 };
 
 /// Sees every field and may change it.
@@ -104,8 +105,11 @@ struct SettingRow {
 /// Every setting, in order.
 std::vector<SettingRow> setting_rows(const ReadSettings& settings);
 
-/// Whether every number lies within its bounds. @throws std::invalid_argument with the sentence of
-/// require_between() about the first that does not.
+/// Checks a number against the setting's bounds. @throws std::invalid_argument with the sentence of
+/// require_between(), or "cells = 50 must be a multiple of 16 between 32 and 128".
+void require_bounds(const Setting& setting, double value);
+void require_bounds(const Setting& setting, int value);
+/// Checks every number. @throws std::invalid_argument about the first that is out of its bounds.
 void require_bounds(const ReadSettings& settings);
 template <class Settings>
 void require_bounds(const Settings& settings) {

@@ -31,22 +31,26 @@ std::string lower_ending(const std::string& path) {
 void check_options(const std::string& path, FieldKind kind, const FieldFileOptions& options) {
   const bool sized = kind == FieldKind::Json || kind == FieldKind::Recording;
   const bool given = options.cell_mm || options.width_mm;
+  const FieldOptionNames& names = options.names;
   if (sized && given) {
-    throw InputError(path + " says itself how large a cell is; leave out --cell-mm and --width-mm");
+    throw InputError(fmt::format("{} says itself how large a cell is; leave out {} and {}", path,
+                                 names.cell_mm, names.width_mm));
   }
   if (!sized && !given) {
-    throw InputError(path +
-                     " does not say how large a cell is; give it in mm with --cell-mm, or the "
-                     "width of the field with --width-mm");
+    throw InputError(
+        fmt::format("{} does not say how large a cell is; give it in mm with {}, or the width of "
+                    "the field with {}",
+                    path, names.cell_mm, names.width_mm));
   }
   if (options.cell_mm && options.width_mm) {
-    throw InputError(path + ": --cell-mm and --width-mm exclude each other; leave one of them out");
+    throw InputError(fmt::format("{}: {} and {} exclude each other; leave one of them out", path,
+                                 names.cell_mm, names.width_mm));
   }
   if (options.frame != 0 && kind != FieldKind::Recording) {
-    throw InputError(path + " holds one field; leave out --frame");
+    throw InputError(fmt::format("{} holds one field; leave out {}", path, names.frame));
   }
   if (options.invert && kind != FieldKind::Png) {
-    throw InputError(path + " is no picture; leave out --invert");
+    throw InputError(fmt::format("{} is no picture; leave out {}", path, names.invert));
   }
 }
 
@@ -58,9 +62,9 @@ TargetField sized_field(const std::string& path, FieldKind kind, const FieldFile
                           ? field_from_npy(read_file(path, kMaxNpyBytes), path, cell_mm)
                           : field_from_png(read_file(path, kMaxPngBytes), path, cell_mm);
   if (options.width_mm) {
-    field.cell =
-        checked_cell(*options.width_mm / field.cols, path,
-                     fmt::format("--width-mm {} over {} columns", *options.width_mm, field.cols));
+    field.cell = checked_cell(*options.width_mm / field.cols, path,
+                              fmt::format("{} {} over {} columns", options.names.width_mm,
+                                          *options.width_mm, field.cols));
   }
   for (std::size_t i = 0; options.invert && i < field.size(); ++i) {
     if (field.skin[i] != 0) field.pressure[i] = 1.0 - field.pressure[i];
@@ -68,13 +72,22 @@ TargetField sized_field(const std::string& path, FieldKind kind, const FieldFile
   return field;
 }
 
+/// @throws InputError that a frame holds no hand, with the first that does.
+[[noreturn]] void refuse_frame(const RecordingReader& recording, const std::string& path,
+                               const FieldFileOptions& options) {
+  int first = 0;
+  while (first < recording.frames() && recording.frame(first).patches.empty()) ++first;
+  if (first == recording.frames()) throw InputError(path + " holds no hand in any frame");
+  throw InputError(fmt::format(
+      "{}: frame {} holds no hand; the first frame with a hand is {}, choose it with {}", path,
+      options.frame, first, options.names.frame));
+}
+
 /// The patch with the larger sum of pressures: a frame of two hands is planned hand by hand.
-TargetField field_from_recording(const std::string& path, int frame_index) {
-  TargetFrame frame = RecordingReader(path).frame(frame_index);
-  if (frame.patches.empty()) {
-    throw InputError(
-        fmt::format("{}: frame {} holds no hand; choose another with --frame", path, frame_index));
-  }
+TargetField field_from_recording(const std::string& path, const FieldFileOptions& options) {
+  const RecordingReader recording(path);
+  TargetFrame frame = recording.frame(options.frame);
+  if (frame.patches.empty()) refuse_frame(recording, path, options);
   const auto load = [](const TargetField& f) {
     return std::accumulate(f.pressure.begin(), f.pressure.end(), 0.0);
   };
@@ -92,6 +105,12 @@ FieldKind field_kind(const std::string& path) {
   if (ending == ".npy") return FieldKind::Npy;
   if (ending == ".png") return FieldKind::Png;
   if (ending == ".h5") return FieldKind::Recording;
+  if (ending == ".jsonl") {
+    throw InputError(fmt::format(
+        "{0} is a recording of hands, not a field; make fields of it with "
+        "prostm capture --hand {0} --out FILE.h5, or play it with prostm run --hand {0}",
+        path));
+  }
   throw InputError(path + " is of no known kind; a field must be a .json, .npy, .png or .h5 file");
 }
 
@@ -99,7 +118,7 @@ TargetField read_field(const std::string& path, const FieldFileOptions& options)
   const FieldKind kind = field_kind(path);
   check_options(path, kind, options);
   if (kind == FieldKind::Json) return field_from_json(read_file(path, kMaxJsonBytes), path);
-  if (kind == FieldKind::Recording) return field_from_recording(path, options.frame);
+  if (kind == FieldKind::Recording) return field_from_recording(path, options);
   return sized_field(path, kind, options);
 }
 

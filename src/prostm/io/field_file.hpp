@@ -9,12 +9,19 @@
 
 namespace prostm {
 
+/// The names that messages call the options by: those of the command line unless set.
+struct FieldOptionNames {
+  const char *cell_mm = "--cell-mm", *width_mm = "--width-mm", *frame = "--frame",
+             *invert = "--invert";
+};
+
 struct FieldFileOptions {
   /// Edge of a cell, or width of the whole field: one of them is needed for .npy and .png, and both
   /// are refused elsewhere.
   std::optional<double> cell_mm = {}, width_mm = {};
   int frame = 0;        ///< of a recording
   bool invert = false;  ///< a picture is drawn black on white: black is the pressure
+  FieldOptionNames names = {};
 };
 
 enum class FieldKind { Json, Npy, Png, Recording };

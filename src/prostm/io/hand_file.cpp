@@ -114,6 +114,12 @@ void append_frame(const JsonNode& node, double time, HandFrame frame, HandRecord
   recording.frames.push_back(std::move(frame));
 }
 
+void refuse_as_hands(const std::string& name, const std::string& what) {
+  throw InputError(name + " " + what +
+                   "; a hand recording is hand-frames JSON Lines (.hands.jsonl) or a recording of "
+                   "a Leap (.json), see docs/hands.md");
+}
+
 void require_frames(const HandRecording& recording, const std::string& name) {
   if (recording.frames.empty())
     throw InputError(name + ": holds 0 frames; a recording must have at least 1");
@@ -163,9 +169,7 @@ HandRecording read_hand_recording(const std::string& path, const ReadProgress& p
     const std::string what = kind == "an HDF5 file"
                                  ? "is a recording of prostm (HDF5), not a hand recording"
                                  : is_not(text, "a hand recording");
-    throw InputError(path + " " + what +
-                     "; a hand recording is hand-frames JSON Lines (.hands.jsonl) or a recording "
-                     "of a Leap (.json), see docs/hands.md");
+    refuse_as_hands(path, what);
   }
   // a neutral recording says so in its first line
   const std::string_view first =

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/hand_file_parts.hpp"
 #include "prostm/io/hand_file.hpp"
@@ -62,6 +63,12 @@ HandRecording hands_from_leap_json(std::string_view text, const std::string& nam
   }
   const json document = parse_json(text, name);
   const JsonNode root(document, name);
+  if (root.has("format") && root.at("format", "").value().is_string()) {
+    const std::string format = root.at("format", "").text();
+    const std::string_view words = words_of_format(format);
+    if (!words.empty())
+      refuse_as_hands(name, fmt::format("is a {} file ({}), not a hand recording", format, words));
+  }
   const JsonNode frames = root.at("frames", "the recorded frames");
 
   HandRecording recording;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/file_kind.hpp"
@@ -16,18 +17,15 @@
 namespace prostm {
 namespace {
 
-/// Lists the names of a group's fields.
-class NameCollector : public SettingsReader {
- public:
-  void field(const Setting& s, const double&) override { names.emplace_back(s.name); }
-  void field(const Setting& s, const int&) override { names.emplace_back(s.name); }
-  void field(const Setting& s, const bool&) override { names.emplace_back(s.name); }
-  void field(const Setting& s, const std::string&) override { names.emplace_back(s.name); }
-  void choice(const Setting& s, std::span<const std::string_view>, int) override {
-    names.emplace_back(s.name);
-  }
+std::vector<std::string> names_of(const SettingsGroup& group) {
   std::vector<std::string> names;
-};
+  for (const SettingRow& row : setting_rows(group.read)) names.emplace_back(row.setting.name);
+  return names;
+}
+
+bool is_among(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 /// Sets the fields that a table gives.
 class TomlReader : public SettingsWriter {
@@ -41,6 +39,7 @@ class TomlReader : public SettingsWriter {
     if (!node->is_number()) fail(s.name, *node, "must be a number");
     const double x = *node->value<double>();
     if (!std::isfinite(x)) fail(s.name, *node, "must be finite");
+    check_bounds(s, *node, x);
     value = x;
   }
   void field(const Setting& s, int& value) override {
@@ -51,6 +50,7 @@ class TomlReader : public SettingsWriter {
     if (x < std::numeric_limits<int>::min() || x > std::numeric_limits<int>::max()) {
       fail(s.name, *node, "must lie within 32 bits");
     }
+    check_bounds(s, *node, static_cast<int>(x));
     value = static_cast<int>(x);
   }
   void field(const Setting& s, bool& value) override {
@@ -78,6 +78,15 @@ class TomlReader : public SettingsWriter {
   [[noreturn]] void fail(const char* name, const toml::node& node, const char* bound) const {
     throw InputError(
         fmt::format("{}, line {}: {}.{} {}", file_, node.source().begin.line, group_, name, bound));
+  }
+  template <class Number>
+  void check_bounds(const Setting& s, const toml::node& node, Number value) const {
+    try {
+      require_bounds(s, value);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(
+          fmt::format("{}, line {}: {}.{}", file_, node.source().begin.line, group_, error.what()));
+    }
   }
 
   const toml::table& table_;
@@ -113,18 +122,36 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
 
 void read_group(const toml::table& table, const SettingsGroup& group, const std::string& file,
                 std::vector<std::string>& given) {
-  NameCollector known;
-  group.read(known);
+  const std::vector<std::string> known = names_of(group);
   for (const auto& [key, node] : table) {
-    if (std::find(known.names.begin(), known.names.end(), key.str()) == known.names.end()) {
+    if (!is_among(known, key.str())) {
       throw InputError(fmt::format("{}, line {}: {} has no setting \"{}\"; {}", file,
                                    key.source().begin.line, group.name, shown_name(key.str()),
-                                   suggestion(key.str(), known.names)));
+                                   suggestion(key.str(), known)));
     }
     given.push_back(group.name + "." + std::string(key.str()));
   }
   TomlReader reader(table, file, group.name);
   group.write(reader);
+}
+
+/// @throws InputError that no group has this name; a setting that stands outside its group is told
+/// where it belongs.
+[[noreturn]] void refuse_group(const toml::key& key, const toml::node& node,
+                               const std::vector<SettingsGroup>& groups, const std::string& file) {
+  std::vector<std::string> known, homes;
+  for (const SettingsGroup& group : groups) {
+    known.push_back(group.name);
+    if (is_among(names_of(group), key.str()))
+      homes.push_back(fmt::format("[{}] {}", group.name, key.str()));
+  }
+  const std::string where = fmt::format("{}, line {}", file, key.source().begin.line);
+  if (!node.is_table() && !homes.empty()) {
+    throw InputError(fmt::format("{}: \"{}\" stands outside a group of settings; did you mean {}?",
+                                 where, key.str(), fmt::join(homes, " or ")));
+  }
+  throw InputError(fmt::format("{}: there is no group of settings \"{}\"; {}", where,
+                               shown_name(key.str()), suggestion(key.str(), known)));
 }
 
 }  // namespace
@@ -139,17 +166,11 @@ std::vector<std::string> settings_from_toml(std::string_view text, const std::st
                                             const std::vector<SettingsGroup>& groups) {
   std::vector<std::string> given;
   const toml::table document = parse_toml(text, name);
-  std::vector<std::string> known(groups.size());
-  std::transform(groups.begin(), groups.end(), known.begin(), [](const auto& g) { return g.name; });
   for (const auto& [key, node] : document) {
     const std::string_view typed = key.str();
     const auto group = std::find_if(groups.begin(), groups.end(),
                                     [typed](const auto& g) { return g.name == typed; });
-    if (group == groups.end()) {
-      throw InputError(fmt::format("{}, line {}: there is no group of settings \"{}\"; {}", name,
-                                   key.source().begin.line, shown_name(key.str()),
-                                   suggestion(key.str(), known)));
-    }
+    if (group == groups.end()) refuse_group(key, node, groups, name);
     const toml::table* table = node.as_table();
     if (table == nullptr) {
       throw InputError(fmt::format("{}, line {}: {} must be a group of settings, written [{}]",

@@ -12,8 +12,8 @@ namespace prostm {
 
 /// Sets what the file gives and leaves the rest. @throws InputError that names file, line and key:
 /// unknown group or key (with the nearest known one), a value of the wrong type, a name that is
-/// none of a choice's, a number that is not finite. @return the names of what it gives,
-/// "plan.sigma".
+/// none of a choice's, a number that is not finite or out of its bounds. @return the names of what
+/// it gives, "plan.sigma".
 std::vector<std::string> read_settings(const std::string& path,
                                        const std::vector<SettingsGroup>& groups);
 std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,

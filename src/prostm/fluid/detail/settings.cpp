@@ -1,8 +1,5 @@
 #include "prostm/fluid/detail/settings.hpp"
 
-#include <stdexcept>
-#include <string>
-
 #include "prostm/core/require.hpp"
 #include "prostm/fluid/fluid.hpp"
 
@@ -11,7 +8,8 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"cells", "", 32, 128, "cells along each edge of the box, a multiple of 16"}, s.cells);
+  v.field({"cells", "", 32, 128, "cells along each edge of the box, a multiple of 16", 16},
+          s.cells);
   v.field({"width", "m", 0.05, 5, "edge of the box, which stands on the array"}, s.width);
   v.field({.name = "solver", .help = "solver of the pressure"}, s.solver);
   v.field({"cycles", "", 1, 100, "V-cycles a step"}, s.cycles);
@@ -38,10 +36,6 @@ void FluidSettings::visit(SettingsWriter& v) {
 namespace fluid {
 
 void validate(const FluidSettings& s) {
-  if (s.cells < 32 || s.cells > 128 || s.cells % 16 != 0) {
-    throw std::invalid_argument("cells = " + std::to_string(s.cells) +
-                                " must be a multiple of 16 between 32 and 128");
-  }
   require_bounds(s);
 }
 

@@ -13,6 +13,9 @@ inline constexpr double kMaxRecordingTime = 86400.0;
 /// increase, or when two hands of the frame have one id and side.
 void append_frame(const JsonNode& node, double time, HandFrame frame, HandRecording& recording);
 
+/// @param what the file `name` is: "is a PNG picture, not a hand recording". @throws InputError.
+[[noreturn]] void refuse_as_hands(const std::string& name, const std::string& what);
+
 /// @throws InputError when the recording `name` is empty.
 void require_frames(const HandRecording& recording, const std::string& name);
 
