@@ -168,7 +168,8 @@ void draw_instant(const Observer& observer, const PipelineSettings& settings, co
   }
   figure.plan = observer.plan().plan;
   figure.title = fmt::format("{} at {:.2f} s", settings.scene, contact.target.time);
-  if (!widths.empty()) figure.title += fmt::format("; focal points with σ = {} mm", fmt::join(widths, " and "));
+  if (!widths.empty())
+    figure.title += fmt::format("; focal points with σ = {} mm", fmt::join(widths, " and "));
   draw_scene(figure, path);
 }
 

@@ -7,11 +7,12 @@ export interface PaceState {
 }
 
 const kSlow = 40; // [ms] a picture from which drawing counts as slow
-const kShare = 0.25, kLeastShare = 0.04; // of the time that slow pictures may take
+// Of the time that slow pictures may take. A picture that the processor draws costs the run about a step.
+const kShare = 0.125, kLeastShare = 0.04;
 const kPatience = 2500; // [ms] of missed rates, after which pictures take half their time
 const kEnough = 6; // pictures
-const kSlowest = 1000; // [ms] between pictures, at most
-const kLongest = 1500; // [ms] between pictures, from which there is no use in them
+const kSlowest = 2000; // [ms] between pictures, at most
+const kLongest = 2500; // [ms] between pictures, from which there is no use in them
 
 export class Pace {
   /// smoothed time of a picture [ms]

@@ -1,63 +1,68 @@
 /// Measures what a page costs the run that it shows, where the processor draws it: PROSTM=… npm run cost -- [ROUNDS]
-/// Runs without and with a page in turns. The page is opened while the run goes on, so its start counts too.
+/// Runs without and with a page in turns; "open" counts from 10 s on, when the page has been opened and drawn.
 
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import "../../src/inspection";
 import { clean, folder, openBrowser, Program } from "./program";
 
-const kSeconds = 30;
+const kSeconds = 40, kOpened = 10;
 const rounds = Number(process.argv[process.argv.length - 1]) || 5;
+
+interface Count { run: { time: number; world_steps: number; plan_updates: number } }
+interface Summary { world_rate_hz: number; plan_rate_hz: number; late_blocks: number; missed_blocks: number; blocks: number; latency_ms: { p50: number; p99: number } }
+interface Result { summary: Summary; from: Count; to: Count; pictures: number }
+
+const rate = (r: Result, key: "world_steps" | "plan_updates") => (r.to.run[key] - r.from.run[key]) / (r.to.run.time - r.from.run.time);
+const columns: [string, (r: Result) => number][] = [
+  ["open: smoke [Hz]", (r) => rate(r, "world_steps")],
+  ["open: plans [Hz]", (r) => rate(r, "plan_updates")],
+  ["all: smoke [Hz]", (r) => r.summary.world_rate_hz],
+  ["all: plans [Hz]", (r) => r.summary.plan_rate_hz],
+  ["all: late blocks [%]", (r) => (100 * r.summary.late_blocks) / r.summary.blocks],
+  ["all: missed blocks [%]", (r) => (100 * r.summary.missed_blocks) / r.summary.blocks],
+  ["all: latency p50 [ms]", (r) => r.summary.latency_ms.p50],
+  ["all: latency p99 [ms]", (r) => r.summary.latency_ms.p99],
+  ["pictures", (r) => r.pictures],
+];
+const wait = (seconds: number) => new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+
 const browser = await openBrowser();
 
-interface Summary { world_rate_hz: number; plan_rate_hz: number; skipped_world_steps: number; late_blocks: number; missed_blocks: number; blocks: number; latency_ms: { p50: number; p99: number } }
-const columns: [string, (s: Summary) => number][] = [
-  ["smoke [Hz]", (s) => s.world_rate_hz],
-  ["plans [Hz]", (s) => s.plan_rate_hz],
-  ["late blocks [%]", (s) => (100 * s.late_blocks) / s.blocks],
-  ["missed blocks [%]", (s) => (100 * s.missed_blocks) / s.blocks],
-  ["latency p50 [ms]", (s) => s.latency_ms.p50],
-  ["latency p99 [ms]", (s) => s.latency_ms.p99],
-];
-type Kind = "without a page" | "with a page";
-const results: Record<Kind, Summary[]> = { "without a page": [], "with a page": [] };
-let drawn = 0;
-
-async function measure(kind: Kind): Promise<void> {
+async function measure(withPage: boolean): Promise<Result> {
   const file = join(folder, "summary.json");
   const program = new Program(["--scene", "one-plume", "--seconds", String(kSeconds), "--json", file]);
+  const page = withPage ? await browser.newPage({ viewport: { width: 1440, height: 900 } }) : null;
   try {
     await program.start();
-    if (kind === "with a page") {
-      const page = await browser.newPage({ viewport: { width: 1440, height: 900 } });
-      await page.goto(program.address);
-      await page.waitForTimeout(1000 * (kSeconds - 5));
-      drawn += await page.evaluate(() => window.prostm.pictures);
-      await program.ended();
-      await page.close();
-    } else {
-      await program.ended();
-    }
-    results[kind].push(JSON.parse(readFileSync(file, "utf8")) as Summary);
+    await page?.goto(program.address);
+    await wait(kOpened);
+    const from = (await program.numbers()) as unknown as Count;
+    await wait(kSeconds - kOpened - 5);
+    const to = (await program.numbers()) as unknown as Count;
+    const pictures = (await page?.evaluate(() => window.prostm.pictures)) ?? 0;
+    await program.ended();
+    return { summary: JSON.parse(readFileSync(file, "utf8")) as Summary, from, to, pictures };
   } finally {
     await program.stop();
+    await page?.close();
   }
 }
 
-const median = (values: number[]) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)]!;
-
+const median = (values: number[]) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)]!;
+const without: Result[] = [], withPage: Result[] = [];
 try {
   for (let round = 0; round < rounds; ++round) {
     // first the one, then the other
-    for (const kind of round % 2 === 0 ? ["without a page", "with a page"] as const : ["with a page", "without a page"] as const) await measure(kind);
+    for (const shown of round % 2 === 0 ? [false, true] : [true, false]) (shown ? withPage : without).push(await measure(shown));
     console.log(`round ${round + 1} of ${rounds}`);
   }
 } finally {
   await browser.close();
   clean();
 }
-console.log(`${rounds} runs of ${kSeconds} s each, medians; pages drew ${(drawn / rounds).toFixed(0)} pictures a run`);
+console.log(`${rounds} runs of ${kSeconds} s each, medians`);
 for (const [name, value] of columns) {
-  const [without, withPage] = (["without a page", "with a page"] as const).map((kind) => median(results[kind].map(value)));
-  console.log(`${name.padEnd(18)} ${without!.toFixed(2).padStart(8)} without, ${withPage!.toFixed(2).padStart(8)} with a page`);
+  const [one, other] = [without, withPage].map((results) => median(results.map(value)).toFixed(2).padStart(8));
+  console.log(`${name.padEnd(24)} ${one} without, ${other} with a page`);
 }

@@ -18,8 +18,8 @@ function drawn(pace: Pace, cost: number, seconds: number, held: boolean, from = 
 
 describe("the pace of pictures", () => {
   it("is free where they are quick", () => expect(drawn(new Pace(false), 16, 30, false)).toMatchObject({ interval: 0, off: false }));
-  it("leaves a processor that draws three quarters of its time", () => {
-    expect(drawn(new Pace(true), 100, 10, true)).toMatchObject({ interval: 400, off: false });
+  it("leaves a processor that draws seven eighths of its time", () => {
+    expect(drawn(new Pace(true), 100, 10, true)).toMatchObject({ interval: 800, off: false });
   });
   it("slows down first where the run suffers, and gives up last", () => {
     const pace = new Pace(true);
