@@ -174,7 +174,7 @@ void add_run(CLI::App& app, Work& work) {
              "record targets, hands and plans (.h5, docs/recordings.md)");
   add_view(*command, *o);
   command->footer(
-      "Example:\n  prostm run --scene four-plumes --hand me.hands.jsonl --seconds 60 --json "
+      "Example:\n  prostm run --scene four-plumes --hand data/wave.hands.jsonl --json "
       "summary.json");
   command->callback([o, &work] {
     // only a page writes it; one that nobody named need not be writable until then
@@ -205,7 +205,7 @@ void add_plan(CLI::App& app, Work& work) {
             "draw these digitised panels beside ours (JSON)")
       ->needs(figure);
   command->footer(
-      "Example:\n  prostm plan palm.npy --cell-mm 5 --preset paper --figure palm.png --json "
+      "Example:\n  prostm plan data/palm.npy --cell-mm 5 --preset paper --figure palm.png --json "
       "palm.plan.json");
   command->callback([o, &work] { work = {&o->common.files, [o] { return plan_command(*o); }}; });
 }
@@ -231,7 +231,7 @@ void add_bench(CLI::App& app, Work& work) {
       ->required();
   command->add_option("--repeats", o->repeats, "runs of each field, of which the median counts")
       ->capture_default_str();
-  command->footer("Example:\n  prostm bench one-plume.h5 four-plumes.h5 --json table1.json");
+  command->footer("Example:\n  prostm bench one-plume.h5 --json table1.json");
   command->callback([o, &work] { work = {&o->common.files, [o] { return bench_command(*o); }}; });
 }
 
@@ -248,7 +248,7 @@ void add_solve(CLI::App& app, Work& work) {
       ->capture_default_str();
   add_json(*command, o->files, o->json);
   command->footer(
-      "Example:\n  prostm solve foci.json --array autd3 --solver lm --json drives.json");
+      "Example:\n  prostm solve data/foci.json --array autd3 --solver lm --json drives.json");
   command->callback([o, &work] { work = {&o->files, [o] { return solve_command(*o); }}; });
 }
 
@@ -275,7 +275,8 @@ void add_field(CLI::App& app, Work& work) {
   add_figure(*command, o->common, "target, envelope, mean and difference (.png or .svg)");
   add_json(*command, o->common.files, o->common.json);
   command->footer(
-      "Example:\n  prostm field palm.plan.json --field palm.npy --cell-mm 5 --array autd3 --figure "
+      "Example:\n  prostm field palm.plan.json --field data/palm.npy --cell-mm 5 --array autd3 "
+      "--figure "
       "palm.field.png");
   command->callback([o, &work] { work = {&o->common.files, [o] { return field_command(*o); }}; });
 }
