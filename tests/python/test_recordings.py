@@ -220,3 +220,14 @@ def test_settings_of_another_version_are_named_so(run, tmp_path):
         file.attrs["settings"] = "{"
     with pytest.raises(prostm.InputError, match="is not JSON"):
         prostm.Recording(copy)
+
+
+def test_plans_of_an_earlier_version_are_named_so(run, tmp_path):
+    earlier = tmp_path / "earlier.h5"
+    earlier.write_bytes(run.read_bytes())
+    with h5py.File(earlier, "r+") as file:
+        del file["plan/sigma"]
+    recording = prostm.Recording(earlier)
+    assert recording.target(planned_frame(run)).patches
+    with pytest.raises(prostm.InputError, match="has no dataset /plan/sigma, so its plans cannot be read: an earlier version"):
+        recording.plan(planned_frame(run))

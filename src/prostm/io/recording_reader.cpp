@@ -77,6 +77,11 @@ std::vector<T> RecordingReader::Impl::plan_row(const std::string& name, std::siz
   std::vector<T> row(std::accumulate(column->shape.begin(), column->shape.end(), std::size_t{1},
                                      std::multiplies<>()));
   const std::string dataset = "/plan/" + name;
+  if (H5Lexists(file.get(), dataset.c_str(), H5P_DEFAULT) == 0) {
+    throw InputError(path + " has no dataset " + dataset +
+                     ", so its plans cannot be read: an earlier version recorded it, or another "
+                     "program changed it");
+  }
   if (!h5::read_rows(file.get(), dataset.c_str(), column->type, column->shape, i, 1, row.data()))
     broken();
   return row;
