@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -17,6 +16,7 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
+#include "prostm/core/lower_case.hpp"
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/io/array_file.hpp"
@@ -117,9 +117,7 @@ bool names_recording(const std::string& hand) {
 }
 
 std::string hint_for_hand(const std::string& hand) {
-  std::string word = hand;
-  std::ranges::transform(word, word.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string word = lower_case(hand);
   const bool is_file = word.find_first_of("./") != word.npos;
   if (!is_file && word.find("leap") != word.npos)
     return "; did you mean \"leap://127.0.0.1:6437\"?";

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <utility>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/lower_case.hpp"
 
 namespace prostm::app {
 
@@ -59,9 +59,7 @@ bool Files::any_output() const {
 }
 
 void check_json_output(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_case(std::filesystem::path(path).extension().string());
   constexpr std::array kOthers = {".png", ".svg", ".h5", ".npy", ".toml", ".jsonl"};
   if (std::ranges::find(kOthers, ending) != kOthers.end()) {
     throw InputError(fmt::format(

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "prostm/core/lower_case.hpp"
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/core/number_text.hpp"
 
@@ -29,6 +30,12 @@ TEST(Suggestion, NamesTheNearestOrAll) {
   EXPECT_EQ(suggestion("runn", {"run", "plan"}), "did you mean \"run\"?");
   EXPECT_EQ(suggestion("dance", {"run", "plan"}), "known are run, plan");
   EXPECT_EQ(suggestion("dance", {}), "no names are allowed here");
+}
+
+TEST(LowerCase, ChangesNothingButAToZ) {
+  EXPECT_EQ(lower_case("Leap.JSON @[`{"), "leap.json @[`{");
+  EXPECT_EQ(lower_case("Ä Ω"), "Ä Ω");
+  EXPECT_EQ(lower_case(""), "");
 }
 
 TEST(NumberText, HasTheFewestDigitsThatReadBack) {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <numeric>
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
+#include "prostm/core/lower_case.hpp"
 #include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/recorder.hpp"
 
@@ -21,10 +21,7 @@ constexpr std::size_t kMaxNpyBytes = 8 * kMaxFieldCells + (std::size_t{1} << 20)
 constexpr std::size_t kMaxPngBytes = std::size_t{16} << 20;
 
 std::string lower_ending(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return lower_case(std::filesystem::path(path).extension().string());
 }
 
 /// @throws InputError for an option that does not belong to this kind of file.

@@ -7,7 +7,7 @@ export interface PaceState {
 }
 
 const kSlow = 40; // [ms] a picture from which drawing counts as slow
-// Of the time that slow pictures may take. A picture that the processor draws costs the run about a step.
+// The share of the time that slow pictures may take. A picture that the processor draws costs the run about a step.
 const kShare = 0.125, kLeastShare = 0.04;
 const kPatience = 2500; // [ms] of missed rates, after which pictures take half their time
 const kEnough = 6; // pictures

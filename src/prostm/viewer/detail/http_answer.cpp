@@ -4,6 +4,8 @@
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
 
+#include "prostm/core/lower_case.hpp"
+
 namespace prostm {
 namespace {
 
@@ -14,16 +16,9 @@ HttpAnswer refuse(unsigned status, std::string_view sentence) {
   return a;
 }
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
 /// Whether the Origin is the page that this host served.
 bool same_origin(std::string_view origin, std::string_view host) {
-  return origin.empty() || lower(origin) == "http://" + lower(host);
+  return origin.empty() || lower_case(origin) == "http://" + lower_case(host);
 }
 
 HttpAnswer file_answer(std::string_view path, std::span<const PageFile> files) {
@@ -60,7 +55,7 @@ bool host_allowed(std::string_view host, bool any_address) {
   if (brackets && end == std::string_view::npos) return false;
   const std::string_view name = brackets ? host.substr(1, end - 1) : host.substr(0, end);
   if (!is_port(host.substr(std::min(host.size(), brackets ? end + 1 : end)))) return false;
-  if (lower(name) == "localhost") return true;
+  if (lower_case(name) == "localhost") return true;
   boost::system::error_code wrong;
   const auto address = boost::asio::ip::make_address(std::string(name), wrong);
   return !wrong && (any_address || address.is_loopback());
