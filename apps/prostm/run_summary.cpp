@@ -119,8 +119,10 @@ void print_latency(std::FILE* out, const RunSummary& s) {
   print_times(out, "latency", s.latency, "the sum of these parts:");
   for (int part = 0; part < kLatencyParts; ++part) {
     const auto i = static_cast<std::size_t>(part);
-    print_times(out, fmt::format("  {}", latency_part_name(part)), s.latency_parts[i],
-                kPartMeanings[i]);
+    const Summary& times = s.latency_parts[i];
+    // without a clock a computation takes no time
+    if (times.mean == 0.0 && times.max == 0.0) continue;
+    print_times(out, fmt::format("  {}", latency_part_name(part)), times, kPartMeanings[i]);
   }
   print_times(out, "redraw", s.redraw, "until 90 % of the new paths were drawn");
 }
