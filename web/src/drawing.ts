@@ -62,7 +62,8 @@ export class Drawing {
     const drawn = this.still || mode === "on" || (mode === "auto" && !this.off);
     this.tell(drawn, mode);
     this.parts.rate(!drawn ? 10 : view.pace.slow ? 15 : 30);
-    if (!drawn || !view.ready(now, pace.interval)) return;
+    const wanted = this.frame !== null && this.inView === null; // the first frame, and what was asked for, wait for no pace
+    if (!drawn || !view.ready(now, wanted ? 0 : pace.interval)) return;
     const dt = this.before === 0 ? 0 : (now - this.before) / 1000;
     this.before = now;
     if (this.frame !== null && this.frame !== this.inView) {

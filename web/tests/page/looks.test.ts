@@ -115,6 +115,14 @@ describe("large type", () => {
     expect(new Set(names).size).toBe(1);
     await page.close();
   });
+  it("leaves room for the button beside the longest words on the output", async () => {
+    const page = await open(390, "light", "&large=1");
+    await page.locator("#mute").click();
+    await until(page, () => document.getElementById("output-why")!.textContent === "by you or another page", 0, "muted");
+    expect(await clipped(page)).toEqual([]);
+    await page.locator("#mute").click();
+    await page.close();
+  });
   it("of the browser, twice as large, cuts nothing off", async () => {
     const page = await open(1440, "light");
     // as a browser does whose own type is 32 pixels high
