@@ -16,10 +16,14 @@ namespace {
 using Complex = std::complex<float>;
 
 constexpr int kMost = static_cast<int>(kMaxLiveFoci);
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
 constexpr float kFarthest = 10.0F;      // largest coordinate of focal points, as of transducers [m]
 constexpr float kSilent = 1e-4F;        // amplitudes up to this are silent
 constexpr float kLeastShare = 1e-6F;    // share of the pressure of a focal point alone
 constexpr float kMostWeight = 10.0F;    // highest weight in (A16); the lowest is its inverse
+constexpr float kLeastSum = 0.1F;       // of phasors, over their rms, in the gradients of (A23)
+constexpr double kMostChange = 0.3;     // of a |c| in a step of (A23)
 constexpr double kDamping = 1e-2;       // in (A17), relative to the mean diagonal
 constexpr double kLeastDamping = 1e-9;  // added in case no phase changes anything
 
@@ -35,6 +39,9 @@ const TransducerArray& validated(const TransducerArray& array, const LiveFocusSe
   if (settings.phase_levels != 0) require_between("phase_levels", settings.phase_levels, 2, 65536);
   require_between("full_scale", settings.full_scale, 0.0, 1e6, "Pa");
   require_between("bound", settings.bound, 1.0, 100.0);
+  if (settings.adds_phasors && settings.method != FocusMethod::Weighted) {
+    throw std::invalid_argument("only weighted runs for arrays that add phasors");
+  }
   return array;
 }
 
@@ -88,6 +95,7 @@ LiveFocusSolver::LiveFocusSolver(const TransducerArray& array, const Medium& med
       g_(kMaxLiveFoci, packed_.transducers()),
       drive_(1, packed_.transducers()),
       turns_(kMaxLiveFoci, packed_.transducers()),
+      phasors_(settings.adds_phasors ? kMaxLiveFoci : 1, packed_.transducers()),
       correlation_(kMaxLiveFoci, kMaxLiveFoci),
       magnitude_(1, kMaxLiveFoci),
       x_(1, kMaxLiveFoci),
@@ -98,6 +106,7 @@ LiveFocusSolver::LiveFocusSolver(const TransducerArray& array, const Medium& med
 void LiveFocusSolver::reset() {
   phase_.fill(1.0F);
   weight_.fill(1.0F);
+  coefficient_.fill(0.0F);
 }
 
 void LiveFocusSolver::solve(std::span<const LiveFocus> foci) noexcept {
@@ -114,7 +123,7 @@ void LiveFocusSolver::solve(std::span<const LiveFocus> foci) noexcept {
     case FocusMethod::GsPat:
       return scale(gs_pat());
     case FocusMethod::Weighted:
-      return scale(weighted());
+      return scale(settings_.adds_phasors ? add_phasors() : weighted());
     default:
       return scale(superpose());
   }
@@ -126,6 +135,7 @@ void LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
   propagation_row_in_single(packed_, focus.p_D.cast<double>(), g_.re(count_), g_.im(count_));
   const solving::Magnitudes all = solving::magnitudes(g_, count_);
   if (all.squares <= 0.0F) return;
+  if (settings_.adds_phasors) set_phasors();
   place_[count_] = place;
   const auto full_scale = static_cast<float>(settings_.full_scale);
   const auto bound = static_cast<float>(settings_.bound);
@@ -134,6 +144,17 @@ void LiveFocusSolver::add(const LiveFocus& focus, std::size_t place) {
   alone_[count_] = all.sum;
   squares_[count_] = all.squares;
   ++count_;
+}
+
+/// Sets the phasors of the focal point that is being added.
+void LiveFocusSolver::set_phasors() {
+  const float *re = g_.re(count_), *im = g_.im(count_);
+  float *unit_re = phasors_.re(count_), *unit_im = phasors_.im(count_);
+  for (std::size_t n = 0; n < phasors_.columns(); ++n) {
+    const float size = std::max(std::sqrt(re[n] * re[n] + im[n] * im[n]), kLeastShare);
+    unit_re[n] = re[n] / size;
+    unit_im[n] = im[n] / size;
+  }
 }
 
 /// (A11). Like the next two functions, sets the drives and returns the largest |q|.
@@ -176,6 +197,79 @@ float LiveFocusSolver::weighted() {
   return 1.0F;
 }
 
+/// (A23)
+float LiveFocusSolver::add_phasors() {
+  if (count_ == 0) return superpose();
+  for (std::size_t m = 0; m < count_; ++m) {
+    const Complex& before = coefficient_[place_[m]];
+    c_[m] = before != 0.0F ? before : wanted_[m] * phase_[place_[m]];
+  }
+  for (int i = 0; i < settings_.iterations; ++i) {
+    if (i > 0) correct_phasors();
+    solving::back_propagate_phases(phasors_, {c_.data(), count_}, drive_);
+    level_ = reach();
+  }
+  float largest = kLeastShare;
+  for (std::size_t m = 0; m < count_; ++m) largest = std::max(largest, std::abs(c_[m]));
+  coefficient_.fill(0.0F);
+  for (std::size_t m = 0; m < count_; ++m) {
+    coefficient_[place_[m]] = c_[m] / largest;
+    phase_[place_[m]] = direction(c_[m]);
+  }
+  return 1.0F;
+}
+
+/// One step of Gauss-Newton on the |c|, which the shares depend on steeply where two are alike.
+void LiveFocusSolver::correct_phasors() {
+  set_phasor_gradients();
+  const auto count = static_cast<Eigen::Index>(count_);
+  const auto columns = static_cast<Eigen::Index>(turns_.columns());
+  SmallMatrix jacobian(count, count);
+  SmallVector lacks(count);
+  for (Eigen::Index m = 0; m < count; ++m) {
+    const auto row = static_cast<std::size_t>(m);
+    const Eigen::Map<const Eigen::VectorXf> t(turns_.im(row), columns);
+    for (Eigen::Index l = 0; l < count; ++l) {
+      const Eigen::Map<const Eigen::VectorXf> u(turns_.re(static_cast<std::size_t>(l)), columns);
+      jacobian(m, l) = static_cast<double>(t.dot(u));
+    }
+    lacks[m] = static_cast<double>(level_ * wanted_[row] - std::abs(y_[row]) / alone_[row]);
+  }
+  SmallMatrix normal = jacobian * jacobian.transpose();
+  normal.diagonal().array() += kDamping * normal.diagonal().mean() + kLeastDamping;
+  const SmallVector change = jacobian.transpose() * normal.llt().solve(lacks);
+  const double most = change.cwiseAbs().maxCoeff();
+  const double share = most > kMostChange ? kMostChange / most : 1.0;
+  for (std::size_t m = 0; m < count_; ++m) {
+    const auto by = static_cast<float>(share * change[static_cast<Eigen::Index>(m)]);
+    c_[m] += by * direction(c_[m]);
+  }
+}
+
+/// Writes the derivatives of the drives' phases by |c_l| to the real parts of row l of `turns_`,
+/// and those of |y_m|/alone by the phases to the imaginary parts of row m.
+void LiveFocusSolver::set_phasor_gradients() {
+  std::array<Complex, kMaxLiveFoci> c_direction, y_direction;
+  float squares = 0.0F;
+  for (std::size_t m = 0; m < count_; ++m) {
+    c_direction[m] = direction(c_[m]);
+    y_direction[m] = direction(y_[m]) * alone_[m];
+    squares += std::norm(c_[m]);
+  }
+  const float least = kLeastSum * std::sqrt(squares);
+  for (std::size_t n = 0; n < drive_.columns(); ++n) {
+    Complex sum = 0.0F;
+    for (std::size_t m = 0; m < count_; ++m) sum += c_[m] * std::conj(phasors_.at(m, n));
+    const float size = std::max(std::sqrt(std::norm(sum)), least);
+    const Complex q = drive_.at(0, n);
+    for (std::size_t m = 0; m < count_; ++m) {
+      const Complex u = std::conj(q) * c_direction[m] * std::conj(phasors_.at(m, n));
+      const Complex t = std::conj(y_direction[m]) * g_.at(m, n) * q;
+      turns_.set(m, n, {u.imag() / size, -t.imag() / (alone_[m] * alone_[m])});
+    }
+  }
+}
+
 /// Takes over the phases reached, and raises the weights of focal points that are below their
 /// share.
 void LiveFocusSolver::reweigh(float level) {
@@ -196,21 +290,20 @@ void LiveFocusSolver::reweigh(float level) {
 /// (A17): one Gauss-Newton step on the phases of the drives. @pre y_ and level_ are those of the
 /// drives.
 void LiveFocusSolver::even_out() {
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   std::array<float, kMaxLiveFoci * kMaxLiveFoci> products;
   for (std::size_t m = 0; m < count_; ++m) c_[m] = direction(y_[m]) / alone_[m];
   solving::phase_gradients(g_, {c_.data(), count_}, drive_, turns_, products);
 
   const auto count = static_cast<Eigen::Index>(count_);
-  Matrix normal = Eigen::Map<const Eigen::MatrixXf>(products.data(), count, count).cast<double>();
+  SmallMatrix normal =
+      Eigen::Map<const Eigen::MatrixXf>(products.data(), count, count).cast<double>();
   normal.diagonal().array() += kDamping * normal.diagonal().mean() + kLeastDamping;
-  Vector x(count);
+  SmallVector x(count);
   for (std::size_t m = 0; m < count_; ++m) {
     const float residual = std::abs(y_[m]) / alone_[m] - level_ * wanted_[m];
     x[static_cast<Eigen::Index>(m)] = static_cast<double>(-residual);
   }
-  const Eigen::LLT<Eigen::Ref<Matrix>> factors(normal);  // in place
+  const Eigen::LLT<Eigen::Ref<SmallMatrix>> factors(normal);  // in place
   factors.solveInPlace(x);
 
   std::array<float, kMaxLiveFoci> turn;
@@ -236,6 +329,7 @@ void LiveFocusSolver::scale(float largest) {
   const float level = reach();
   const float factor = count_ == 0 ? 0.0F : 1.0F / std::max(level, largest);
   level_ = level * factor;
+  magnitude_of_drives_ = factor;
   float *re = drive_.re(0), *im = drive_.im(0);
   for (std::size_t n = 0; n < drive_.stride(); ++n) {
     re[n] *= factor;

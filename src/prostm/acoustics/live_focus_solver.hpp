@@ -25,6 +25,9 @@ struct LiveFocusSettings {
   /// Where a single focal point gets less than full_scale, its share of full_scale counts as at
   /// least 1/bound, so that a far focal point does not take what nearer ones need.
   double bound = 2.0;
+  /// For arrays that add up their own drives, as the phases of Σ_m c_m e^{−ik r_mn}: Weighted, but
+  /// only c may be chosen, (A23). See coefficients().
+  bool adds_phasors = false;
 };
 
 /// A focal point in one sample.
@@ -58,6 +61,11 @@ class LiveFocusSolver {
   /// pressure of each focal point alone, as a is; at most 1, and 0 without focal points. Taken
   /// before phases are rounded.
   float level() const { return level_; }
+  /// c of a focal point in the last sample, by its index in the list, with `adds_phasors`: 0 for
+  /// focal points that do not count, and the largest |c| is 1.
+  std::complex<float> coefficient(std::size_t focus) const { return coefficient_[focus]; }
+  /// Magnitude of all drives of the last sample, ≤ 1, with `adds_phasors`; 0 without focal points.
+  float magnitude() const { return magnitude_of_drives_; }
 
   /// Forgets the previous sample.
   void reset();
@@ -66,9 +74,13 @@ class LiveFocusSolver {
   using Complex = std::complex<float>;
 
   void add(const LiveFocus& focus, std::size_t place);
+  void set_phasors();
   float superpose();
   float gs_pat();
   float weighted();
+  float add_phasors();
+  void correct_phasors();
+  void set_phasor_gradients();
   void reweigh(float level);
   void even_out();
   float reach();
@@ -78,11 +90,13 @@ class LiveFocusSolver {
   PackedArray packed_;
   Eigen::AlignedBox3f near_;
   ComplexRows g_, drive_, turns_;  // a row for each focal point that counts; q; (A17)
+  ComplexRows phasors_;            // G with all magnitudes 1, for `adds_phasors`
   ComplexRows correlation_, magnitude_, x_, scratch_;  // for (A13)
 
   // for every focal point, by its index in the list
   std::array<Complex, kMaxLiveFoci> phase_;
   std::array<float, kMaxLiveFoci> weight_;
+  std::array<Complex, kMaxLiveFoci> coefficient_{};
 
   // for the focal points that count
   std::size_t count_ = 0;
@@ -90,7 +104,7 @@ class LiveFocusSolver {
   // relative to alone; Σ|G| [Pa]; Σ|G|²
   std::array<float, kMaxLiveFoci> wanted_{}, alone_{}, squares_{};
   std::array<Complex, kMaxLiveFoci> c_{}, y_{};
-  float level_ = 0.0F;
+  float level_ = 0.0F, magnitude_of_drives_ = 0.0F;
 };
 
 }  // namespace prostm

@@ -1,0 +1,73 @@
+#pragma once
+/// Frames of AUTD3's firmware, v38: what each byte means to a unit. All numbers are little-endian.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "prostm/device/detail/slot_encoder.hpp"
+
+namespace prostm::autd3 {
+
+/// What a unit gets at a time: message id, 0, offset of a second command (u16), 622 bytes of
+/// commands.
+using Frame = std::array<std::uint8_t, 626>;
+/// What a unit answers: data, then error << 4 | message id.
+struct Answer {
+  std::uint8_t data = 0, acknowledgement = 0;
+  int message() const { return acknowledgement & 0xF; }
+  int error() const { return acknowledgement >> 4; }
+};
+
+/// Moment when a segment takes over, as the firmware numbers it.
+enum class Transition : std::uint8_t {
+  Gpio = 2,          ///< when a GPIO input is high; for loops that end
+  Alternate = 0xF0,  ///< at once, and then both segments in turn, at every loop's end ("Ext")
+  Later = 0xFE,      ///< not now; a segment that alternates plays what was written at its turn
+  Immediate = 0xFF
+};
+
+/// Firmware information, numbered as the firmware does.
+enum class Info : std::uint8_t { CpuMajor = 1, CpuMinor, FpgaMajor, FpgaMinor, Functions, Done };
+
+/// Bits of the data byte of an answer, after read_state().
+inline constexpr std::uint8_t kHot = 1, kModulationSegment = 2, kFociSegment = 4,
+                              kStateIsRead = 128;
+
+inline constexpr int kMostModulation = 254;  ///< samples of modulation in one frame
+
+// Each writes one frame but for its message id.
+void nop(Frame& frame);
+/// Forgets everything, and synchronises the units' clocks.
+void clear_and_synchronise(Frame& frame);
+void read_state(Frame& frame);
+void firmware(Frame& frame, Info info);
+/// Sets the four emulated GPIO inputs, bit by bit.
+void gpio(Frame& frame, std::uint8_t inputs);
+/// Phases and intensities change over this many periods of 40 kHz; faster changes are refused.
+void silencer(Frame& frame, int steps);
+/// Plays a modulation once, from its first sample on, and then holds its last. @pre GPIO 0 is high,
+/// and the other segment plays. @param samples 2 to kMostModulation, each of `divider` / 40 kHz.
+void modulation(Frame& frame, std::span<const std::uint8_t> samples, int segment, int divider);
+
+/// A segment of focal points that repeats for ever.
+struct FociSegment {
+  int segment = 0;
+  Transition transition = Transition::Later;
+  int slots = 8;             ///< per sample
+  int samples = 0;           ///< of the segment
+  int divider = 6;           ///< periods of 40 kHz per sample
+  double sound_speed = 0.0;  ///< [m/s]
+};
+/// Number of frames that a segment takes: whole samples, up to 74 slots in the first frame and 77
+/// in each of the others.
+int foci_frames(int slots, int samples);
+/// Writes frame `index` of a segment.
+/// @param words of one unit for the whole segment, sample-major.
+void foci(Frame& frame, const FociSegment& segment, std::span<const SlotWord> words, int index);
+
+/// Says in one sentence what an error of the firmware, 1..8, means for who uses the array.
+std::string error_sentence(int error);
+
+}  // namespace prostm::autd3
