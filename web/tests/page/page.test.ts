@@ -339,12 +339,12 @@ describe("two pages", () => {
     // the hand goes from page to page, and the page that loses it is told
     await page.locator("#page-hand").check();
     await until(other, () => document.getElementById("source")!.textContent === "hand from another page", 0, "the other page's hand");
-    expect(await page.locator("#source").textContent()).toBe("hand from this page");
+    await expect.poll(() => page.locator("#source").textContent()).toBe("hand from this page");
     await other.locator("#page-hand").check();
     await until(page, () => document.getElementById("source")!.textContent === "hand from another page", 0, "the hand taken away");
-    expect(await page.locator("#page-hand").isChecked()).toBe(false);
-    expect(await page.locator("#notice").textContent()).toMatch(/another page has the hand/i);
-    expect(await other.locator("#source").textContent()).toBe("hand from this page");
+    await expect.poll(() => page.locator("#page-hand").isChecked()).toBe(false);
+    await expect.poll(() => page.locator("#notice").textContent()).toMatch(/another page has the hand/i);
+    await expect.poll(() => other.locator("#source").textContent()).toBe("hand from this page");
     await other.locator("#page-hand").uncheck();
     await until(page, () => !window.prostm.frame!.run.pageHand, 0, "the hand lets go");
     expect(seen.complaints).toEqual([]);
