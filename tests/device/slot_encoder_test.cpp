@@ -32,7 +32,7 @@ Vec3 place_of(SlotWord word) {
   return p;
 }
 
-/// What a unit's firmware makes of a sample's words, in floating point: drives of its transducers.
+/// Drives of a unit's transducers as its firmware computes them from words, in floating point.
 std::vector<std::complex<double>> drives_of(std::span<const SlotWord> words, const Medium& medium) {
   const TransducerArray unit = autd3_units(std::array{Pose(Pose::Identity())});
   const double c = std::round(medium.speed_of_sound() * 64.0) / 64.0;

@@ -10,10 +10,10 @@
 
 namespace prostm::autd3 {
 
-/// What a unit gets at a time: message id, 0, offset of a second command (u16), 622 bytes of
+/// Bytes for a unit: message id, 0, offset of a second command (u16), 622 bytes of
 /// commands.
 using Frame = std::array<std::uint8_t, 626>;
-/// What a unit answers: data, then error << 4 | message id.
+/// Bytes from a unit: data, then error << 4 | message id.
 struct Answer {
   std::uint8_t data = 0, acknowledgement = 0;
   int message() const { return acknowledgement & 0xF; }
@@ -51,7 +51,7 @@ void silencer(Frame& frame, int steps);
 /// and the other segment plays. @param samples 2 to kMostModulation, each of `divider` / 40 kHz.
 void modulation(Frame& frame, std::span<const std::uint8_t> samples, int segment, int divider);
 
-/// A segment of focal points that repeats for ever.
+/// A segment of focal points that repeats without end.
 struct FociSegment {
   int segment = 0;
   Transition transition = Transition::Later;
