@@ -181,7 +181,7 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
                                              : RunMode::RealTime;
   const bool realtime = options.mode == RunMode::RealTime;
   if (given.device) settings.device = *given.device;
-  device_kind(settings.device);
+  device_named(settings.device);
   settings.simulated_array.realtime = realtime;
   if (given.switch_at) settings.emit.switch_at = from_name<SwitchAt>(*given.switch_at, "--switch");
   if (realtime && !given.common.budget_ms) set_live_budget(settings);

@@ -37,7 +37,7 @@ std::vector<LeapServer::Message> messages_of(const std::vector<HandFrame>& frame
   return messages;
 }
 
-LeapAddress address_of(const LeapServer& server) {
+HostPort address_of(const LeapServer& server) {
   return {"127.0.0.1", server.port()};
 }
 

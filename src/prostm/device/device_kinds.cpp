@@ -1,6 +1,7 @@
 #include "prostm/device/device_kinds.hpp"
 
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "prostm/core/nearest_name.hpp"
@@ -18,23 +19,24 @@ std::unique_ptr<Device> make_simulated(const DeviceSetup& setup) {
 }
 
 constexpr DeviceKind kKinds[] = {
-    {"sim", "needs no hardware; nobody can feel it", simulated_info, make_simulated},
-    {"autd3", "never tried on real hardware", nullptr, nullptr},
-    {"ultraleap", "needs the vendor's SDK; never tried on real hardware", nullptr, nullptr},
+    {"sim", nullptr, nullptr, "needs no hardware; nobody can feel it", simulated_info,
+     make_simulated},
+    {"autd3", "HOST:PORT", "autd3", "never tried on real hardware", nullptr, nullptr},
+    {"ultraleap", nullptr, nullptr, "needs the vendor's SDK; never tried on real hardware", nullptr,
+     nullptr},
 };
 
-}  // namespace
-
-std::span<const DeviceKind> device_kinds() {
-  return kKinds;
+/// NAME, or NAME://ADDRESS.
+std::string form_of(const DeviceKind& kind) {
+  return kind.address == nullptr ? kind.name : std::string(kind.name) + "://" + kind.address;
 }
 
-const DeviceKind& device_kind(const std::string& name) {
+const DeviceKind& kind_named(const std::string& name) {
   std::string built;
   std::vector<std::string> names;
   for (const DeviceKind& kind : kKinds) {
     names.emplace_back(kind.name);
-    if (kind.is_built()) built += (built.empty() ? "" : ", ") + names.back();
+    if (kind.is_built()) built += (built.empty() ? "" : ", ") + form_of(kind);
   }
   for (const DeviceKind& kind : kKinds) {
     if (kind.name != name) continue;
@@ -45,8 +47,29 @@ const DeviceKind& device_kind(const std::string& name) {
                               did_you_mean(name, names));
 }
 
-std::unique_ptr<Device> make_device(const std::string& kind, const DeviceSetup& setup) {
-  return as_stream(device_kind(kind).make(setup));
+}  // namespace
+
+std::span<const DeviceKind> device_kinds() {
+  return kKinds;
+}
+
+DeviceName device_named(const std::string& name) {
+  constexpr std::string_view kMark = "://";
+  const std::size_t mark = name.find(kMark);
+  const DeviceKind& kind = kind_named(name.substr(0, mark));
+  if (mark == std::string::npos) return {&kind, {}};
+  if (kind.address == nullptr) {
+    throw std::invalid_argument("device '" + name + "' must be " + kind.name +
+                                " alone: it has no address");
+  }
+  return {&kind, name.substr(mark + kMark.size())};
+}
+
+std::unique_ptr<Device> make_device(const std::string& name, const DeviceSetup& setup) {
+  const DeviceName named = device_named(name);
+  DeviceSetup addressed = setup;
+  addressed.address = named.address;
+  return as_stream(named.kind->make(addressed));
 }
 
 std::unique_ptr<Device> as_stream(std::unique_ptr<Device> device) {

@@ -14,11 +14,15 @@ struct DeviceSetup {
   SimulatedArraySettings simulated;
   TransducerArray array;
   Medium medium;
+  std::string address = {};  ///< behind NAME:// in --device; empty: the kind's usual one
+  int foci = 4;              ///< focal points of a sample
 };
 
 struct DeviceKind {
-  const char* name;   ///< in --device and settings
-  const char* tried;  ///< its needs, and how it was tried
+  const char* name;     ///< in --device and settings, where an address may follow
+  const char* address;  ///< form of the address in NAME://ADDRESS; null: NAME alone
+  const char* array;    ///< name of the transducers that it has; null: any
+  const char* tried;    ///< its needs, and how it was tried
   /// Returns the device's capabilities without touching it. Null if this version lacks the device.
   DeviceInfo (*info)(const DeviceSetup& setup);
   /// @throws std::invalid_argument with a sentence.
@@ -29,12 +33,18 @@ struct DeviceKind {
 
 std::span<const DeviceKind> device_kinds();
 
-/// @throws std::invalid_argument for a name that is unknown or not built, listing the built ones.
-const DeviceKind& device_kind(const std::string& name);
+/// A device as --device names it: NAME, or NAME://ADDRESS.
+struct DeviceName {
+  const DeviceKind* kind;
+  std::string address;  ///< empty: none given
+};
+/// @throws std::invalid_argument for a name that is unknown or not built, listing the built ones,
+/// and for an address where the kind takes none.
+DeviceName device_named(const std::string& name);
 
-/// Makes a device of this kind that streams: one that only loads segments gets a SegmentStream.
-/// @throws as device_kind() and its make() do.
-std::unique_ptr<Device> make_device(const std::string& kind, const DeviceSetup& setup);
+/// Makes a device that streams: one that only loads segments gets a SegmentStream.
+/// @param name as for device_named(). @throws as device_named() and the kind's make() do.
+std::unique_ptr<Device> make_device(const std::string& name, const DeviceSetup& setup);
 /// The same for a given device.
 std::unique_ptr<Device> as_stream(std::unique_ptr<Device> device);
 

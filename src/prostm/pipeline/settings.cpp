@@ -46,7 +46,7 @@ int PipelineSettings::steps_per_plan() const {
 }
 
 double PipelineSettings::emission_rate() const {
-  return device_kind(device).info(device_setup()).emission_rate();
+  return device_named(device).kind->info(device_setup()).emission_rate();
 }
 
 double PipelineSettings::sigma() const {

@@ -22,7 +22,7 @@ inline constexpr double kLiveBudget = 2e-3;  ///< for a plan of preset best in r
 struct PipelineSettings {
   std::string scene = "one-plume";  ///< see scenes()
   Method method = Method::ProStm;
-  std::string device = "sim";  ///< what plays, see device_kinds
+  std::string device = "sim";  ///< what plays, see device_named()
   std::string array = "usx";   ///< what `transducers` are, by name: usx, autd3 or a file
   /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
   bool array_width = false;
@@ -52,7 +52,9 @@ struct PipelineSettings {
   int steps_per_plan() const;
 
   /// Returns the setup that `device` is made from.
-  DeviceSetup device_setup() const { return {simulated_array, transducers, Medium{}}; }
+  DeviceSetup device_setup() const {
+    return {simulated_array, transducers, Medium{}, {}, emit.foci};
+  }
 
   /// Samples of an emission for it [Hz].
   double emission_rate() const;

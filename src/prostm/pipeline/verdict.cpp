@@ -76,7 +76,7 @@ std::string reason(const RunSummary& s, const PipelineSettings& settings) {
 }
 
 double samples_a_millisecond(const PipelineSettings& settings) {
-  return 1e-3 * device_kind(settings.device).info(settings.device_setup()).sample_rate;
+  return 1e-3 * device_named(settings.device).kind->info(settings.device_setup()).sample_rate;
 }
 
 void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict& out) {

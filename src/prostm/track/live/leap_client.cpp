@@ -10,7 +10,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
-#include <charconv>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -42,7 +41,7 @@ constexpr std::array<std::string_view, 3> kRequests = {
 enum class Link : std::uint8_t { Connecting, Absent, Foreign, Lost, Connected };
 
 /// Resolves a host's name.
-std::vector<tcp::endpoint> endpoints_of(const LeapAddress& address, asio::io_context& io) {
+std::vector<tcp::endpoint> endpoints_of(const HostPort& address, asio::io_context& io) {
   error_code error;
   const asio::ip::address numeric = asio::ip::make_address(address.host, error);
   if (!error) return {{numeric, address.port}};
@@ -61,7 +60,7 @@ std::vector<tcp::endpoint> endpoints_of(const LeapAddress& address, asio::io_con
 
 class LeapTracker final : public LiveTracker {
  public:
-  explicit LeapTracker(const LeapAddress& address)
+  explicit LeapTracker(const HostPort& address)
       : name_(fmt::format("leap://{}:{}", address.host, address.port)),
         host_(fmt::format("{}:{}", address.host, address.port)),
         endpoints_(endpoints_of(address, io_)),
@@ -228,35 +227,11 @@ std::string_view leap_needs() {
          "with its bridge UltraleapTrackingWebSocket, usually at port 6437";
 }
 
-LeapAddress leap_address(const std::string& text) {
-  const auto wrong = [&](const char* what) {
-    return InputError(
-        fmt::format("{}: {}; it must be leap://HOST:PORT, for example "
-                    "leap://127.0.0.1:6437",
-                    text, what));
-  };
-  constexpr std::string_view kScheme = "leap://";
-  if (text.rfind(kScheme, 0) != 0) throw wrong("does not begin with leap://");
-  const std::string rest = text.substr(kScheme.size());
-  const bool bracketed = !rest.empty() && rest.front() == '[';
-  const std::size_t end = bracketed ? rest.find(']') : rest.find(':');
-  if (bracketed && end == rest.npos) throw wrong("has a bracket that does not close");
-  LeapAddress address;
-  address.host = bracketed ? rest.substr(1, end - 1) : rest.substr(0, end);
-  const std::size_t host_end = std::min(bracketed ? end + 1 : end, rest.size());
-  if (address.host.empty()) throw wrong("names no host");
-  if (address.host.find_first_of("/?#@ \t%\\") != address.host.npos)
-    throw wrong("has an invalid host");
-  if (host_end == rest.size()) return address;
-  const char* first = rest.data() + host_end + 1;
-  const char* last = rest.data() + rest.size();
-  const auto [stopped, error] = std::from_chars(first, last, address.port);
-  if (rest[host_end] != ':' || error != std::errc() || stopped != last || address.port == 0)
-    throw wrong("has a port that is not a number from 1 to 65535");
-  return address;
+HostPort leap_address(const std::string& text) {
+  return host_port(text, "leap", 6437);
 }
 
-std::unique_ptr<LiveTracker> make_leap_tracker(const LeapAddress& address) {
+std::unique_ptr<LiveTracker> make_leap_tracker(const HostPort& address) {
   return std::make_unique<LeapTracker>(address);
 }
 

@@ -1,26 +1,21 @@
 #pragma once
 /// Hands from a Leap Motion service, or from Ultraleap's WebSocket bridge, over its WebSocket.
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "prostm/core/host_port.hpp"
 #include "prostm/track/live/live_tracker.hpp"
 
 namespace prostm {
-
-struct LeapAddress {
-  std::string host;
-  std::uint16_t port = 6437;
-};
 
 /// Says which program must run where a tracker is to be reached.
 std::string_view leap_needs();
 
 /// Reads `leap://HOST:PORT`; without `:PORT` it is 6437, IPv6 addresses stand in brackets.
 /// @throws InputError with a sentence.
-LeapAddress leap_address(const std::string& text);
+HostPort leap_address(const std::string& text);
 
 /// A WebSocket client of protocol version 6 on its own thread: connects to `address`, tells the
 /// service that it reads in the background and that the device lies on a desk, and takes in
@@ -28,6 +23,6 @@ LeapAddress leap_address(const std::string& text);
 /// first after 50 ms and then after up to 1 s. Frames that leap_message() refuses are dropped and
 /// counted, and so are frames with a time that was seen already (StampClock).
 /// @throws InputError if `address.host` is neither an address nor a known host name.
-std::unique_ptr<LiveTracker> make_leap_tracker(const LeapAddress& address);
+std::unique_ptr<LiveTracker> make_leap_tracker(const HostPort& address);
 
 }  // namespace prostm
