@@ -20,10 +20,10 @@ std::unique_ptr<Device> make_simulated(const DeviceSetup& setup) {
 
 constexpr DeviceKind kKinds[] = {
     {"sim", nullptr, nullptr, "needs no hardware; nobody can feel it", simulated_info,
-     make_simulated},
-    {"autd3", "HOST:PORT", "autd3", "never tried on real hardware", nullptr, nullptr},
+     make_simulated, nullptr},
+    {"autd3", "HOST:PORT", "autd3", "never tried on real hardware", nullptr, nullptr, nullptr},
     {"ultraleap", nullptr, nullptr, "needs the vendor's SDK; never tried on real hardware", nullptr,
-     nullptr},
+     nullptr, nullptr},
 };
 
 /// NAME, or NAME://ADDRESS.

@@ -18,6 +18,12 @@ struct DeviceSetup {
   int foci = 4;              ///< focal points of a sample
 };
 
+/// Result of a look for a device.
+struct DeviceFinding {
+  bool found = false;
+  std::string words;  ///< what is there; or what is missing and what to do, in one sentence
+};
+
 struct DeviceKind {
   const char* name;     ///< in --device and settings, where an address may follow
   const char* address;  ///< form of the address in NAME://ADDRESS; null: NAME alone
@@ -27,6 +33,9 @@ struct DeviceKind {
   DeviceInfo (*info)(const DeviceSetup& setup);
   /// @throws std::invalid_argument with a sentence.
   std::unique_ptr<Device> (*make)(const DeviceSetup& setup);
+  /// Looks for the device at its address, for a second at most, without making it sound. Null where
+  /// there is nothing to look for.
+  DeviceFinding (*look)(const DeviceSetup& setup);
 
   bool is_built() const { return make != nullptr; }
 };
