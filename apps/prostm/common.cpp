@@ -72,7 +72,32 @@ void check_bounds(const CommonOptions& options, const PipelineSettings& settings
   if (options.seed) require_bounds(as_option(plan, "seed", "--seed"), *options.seed);
 }
 
+/// Where nobody chose the transducers, they are those of the device.
+/// @throws InputError for others that are built in.
+void settle_array(PipelineSettings& settings, bool is_chosen) {
+  const DeviceKind& kind = *device_named(settings.device).kind;
+  if (kind.array == nullptr) return;
+  if (!is_chosen) settings.array = kind.array;
+  if (settings.array == kind.array || names_json(settings.array)) return;
+  throw InputError(
+      fmt::format("--array {} contradicts --device {}, whose transducers are {}; leave --array "
+                  "out, or give a file (.json) with those of your units",
+                  settings.array, settings.device, kind.array));
+}
+
 }  // namespace
+
+std::string doubt_of_array(const PipelineSettings& settings) {
+  const DeviceKind& kind = *device_named(settings.device).kind;
+  if (kind.array == nullptr || settings.array == kind.array) return {};
+  const std::size_t of_unit = array_from_name(kind.array).position.size(),
+                    given = settings.transducers.position.size();
+  if (given % of_unit == 0) return {};
+  return fmt::format(
+      "{} has {} transducers, and the units of --device {} have {} each: its focal points may not "
+      "be as wide as the plans count on.",
+      settings.array, given, settings.device, of_unit);
+}
 
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays) {
@@ -81,7 +106,9 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (!options.settings_file.empty())
     given = read_settings(options.settings_file, settings_groups(settings));
   if (scene) settings.scene = *scene;
+  if (options.device) settings.device = *options.device;
   if (options.array) settings.array = *options.array;
+  if (plays) settle_array(settings, options.array || std::ranges::count(given, "pipeline.array") > 0);
   if (options.tracker) settings.tracker = *options.tracker;
   if (!options.settings_file.empty()) check_files_of(settings, options);
   settings.transducers = array_from_name(settings.array);

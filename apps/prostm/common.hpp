@@ -18,9 +18,14 @@
 namespace prostm::app {
 
 /// Defaults, then the settings file, then the options. @throws InputError also for an output that
-/// is a file which the settings name. @param plays whether an array is to play what is planned.
+/// is a file which the settings name, and for an array that contradicts the device.
+/// @param plays whether an array is to play what is planned: the device's own, unless another is
+/// given.
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays = false);
+
+/// Says where an array file cannot be the transducers of the device; empty where it may be.
+std::string doubt_of_array(const PipelineSettings& settings);
 
 /// Whether `--array` or `--tracker` names a file, rather than one that is built in.
 bool names_json(const std::string& name);

@@ -18,7 +18,7 @@ struct CommonOptions {
   std::string json;  ///< file, "-" for standard output, empty for none
   std::string figure;
   std::optional<int> seed;
-  std::optional<std::string> method, preset, array, tracker;
+  std::optional<std::string> method, preset, array, tracker, device;
   std::optional<int> paths;
   std::optional<double> budget_ms;
   std::optional<int> grid;
@@ -28,7 +28,7 @@ inline constexpr const char* kTrackerFile = "prostm-tracker.json";  ///< unless 
 
 struct RunOptionsGiven {
   CommonOptions common;
-  std::optional<std::string> scene, device;
+  std::optional<std::string> scene;
   std::string hand = "scripted";
   std::optional<double> seconds, figure_at;
   bool as_fast_as_possible = false, stepped = false;

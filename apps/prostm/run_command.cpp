@@ -180,9 +180,10 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
                  : given.as_fast_as_possible ? RunMode::AsFastAsPossible
                                              : RunMode::RealTime;
   const bool realtime = options.mode == RunMode::RealTime;
-  if (given.device) settings.device = *given.device;
-  device_named(settings.device);
   settings.simulated_array.realtime = realtime;
+  const DeviceInfo device = device_named(settings.device).kind->info(settings.device_setup());
+  const std::string problem = mode_problem(device, options.mode);
+  if (!problem.empty()) throw InputError("--device " + settings.device + problem);
   if (given.switch_at) settings.emit.switch_at = from_name<SwitchAt>(*given.switch_at, "--switch");
   if (realtime && !given.common.budget_ms) set_live_budget(settings);
   settings.side_view = !given.common.figure.empty();

@@ -212,6 +212,12 @@ RunSummary Run::summary() {
 
 }  // namespace
 
+std::string mode_problem(const DeviceInfo& device, RunMode mode) {
+  if (!device.keeps_time || mode == RunMode::RealTime) return {};
+  return " keeps its own time, so it needs a run in real time, without --as-fast-as-possible and "
+         "--stepped";
+}
+
 RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
                RunObserver& observer) {
   Run run(pipeline, settings, options, observer);

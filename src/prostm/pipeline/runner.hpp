@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <exception>
 #include <span>
+#include <string>
 
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/names.hpp"
@@ -26,6 +27,9 @@ enum class RunMode : std::uint8_t {
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<RunMode> = {
     "realtime", "as-fast-as-possible", "stepped"};
+
+/// Says why a device cannot play in a mode, to follow its name; empty if it can.
+std::string mode_problem(const DeviceInfo& device, RunMode mode);
 
 struct RunOptions {
   double seconds = 60.0;  ///< of run time
