@@ -37,6 +37,12 @@ void add_device(CLI::App& command, CommonOptions& o) {
            "what plays: " + forms + "; default: sim; see prostm devices");
 }
 
+void add_lock_memory(CLI::App& command, bool& lock_memory) {
+  command.add_flag("--lock-memory", lock_memory,
+                   "keep all memory from being swapped out, and say whether that is allowed, and "
+                   "real-time priority");
+}
+
 CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help) {
   return add_output(command, o.files, "--figure", o.figure, prostm::check_figure, help);
 }

@@ -61,6 +61,7 @@ void add_common(CLI::App& command, CommonOptions& o);
 void add_array(CLI::App& command, CommonOptions& o, const std::string& help);
 /// --device, with the forms that a device's name has.
 void add_device(CLI::App& command, CommonOptions& o);
+void add_lock_memory(CLI::App& command, bool& lock_memory);
 CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help);
 /// How the file of a field is read. @param of the option that names the file, unless it is always
 /// there.

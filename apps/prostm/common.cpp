@@ -19,6 +19,7 @@
 #include "prostm/core/lower_case.hpp"
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/device/realtime_limits.hpp"
 #include "prostm/io/array_file.hpp"
 #include "prostm/io/hand_file.hpp"
 #include "prostm/io/pose_file.hpp"
@@ -129,6 +130,15 @@ PipelineSettings make_settings(const CommonOptions& options,
     throw InputError("--preset and --budget-ms belong to --method pro-stm; am has neither");
   }
   return settings;
+}
+
+void obey_lock_memory(bool asked, std::FILE* out) {
+  if (!asked) return;
+  fmt::print(out, "{}\n{}\n",
+             lock_memory() ? "All memory is locked: nothing of it waits for a disk."
+                           : memory_sentence(false),
+             priority_sentence(realtime_limits().priority));
+  std::fflush(out);
 }
 
 bool names_json(const std::string& name) {

@@ -24,6 +24,10 @@ namespace prostm::app {
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays = false);
 
+/// Locks the memory where `--lock-memory` asks for it, and says whether that was allowed, and
+/// whether real-time priority is.
+void obey_lock_memory(bool asked, std::FILE* out);
+
 /// Says where an array file cannot be the transducers of the device; empty where it may be.
 std::string doubt_of_array(const PipelineSettings& settings);
 

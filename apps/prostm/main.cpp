@@ -67,6 +67,7 @@ void add_run(CLI::App& app, Work& work) {
            "now, at the next block");
   add_output(*command, o->common.files, "--record", o->record, prostm::check_recording,
              "record targets, hands and plans (.h5, docs/recordings.md)");
+  add_lock_memory(*command, o->lock_memory);
   add_view(*command, *o);
   command->footer(
       "Example:\n  prostm run --scene four-plumes --hand data/wave.hands.jsonl --json "
@@ -178,8 +179,11 @@ void add_field(CLI::App& app, Work& work) {
 
 void add_devices(CLI::App& app, Work& work) {
   auto* command =
-      app.add_subcommand("devices", "what can be driven from here, and why not, for each kind");
+      app.add_subcommand("devices", "what can be driven from here, what is found, what is missing");
   auto o = std::make_shared<DevicesOptionsGiven>();
+  add_name(*command, "names", o->names,
+           "look at these alone, also on other machines: a device with its address, "
+           "leap://HOST:PORT, or openxr; default: all that this machine has");
   add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm devices");
   command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });

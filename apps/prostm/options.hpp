@@ -34,6 +34,7 @@ struct RunOptionsGiven {
   bool as_fast_as_possible = false, stepped = false;
   std::string record;
   std::optional<std::string> switch_at;
+  bool lock_memory = false;
   bool view = false, stay = false;
   std::optional<std::string> view_address;
   std::optional<int> view_port;
@@ -82,6 +83,7 @@ struct FieldOptionsGiven {
 
 struct DevicesOptionsGiven {
   Files files;
+  std::vector<std::string> names;  ///< what to look for; empty: all that is on this machine
   std::string json;
 };
 

@@ -273,6 +273,14 @@ struct Ending {
   }
 };
 
+/// Says beforehand what the user should know.
+void begin_words(const RunOptionsGiven& given, const PipelineSettings& settings) {
+  std::FILE* out = prose(given.common.json);
+  const std::string doubt = doubt_of_array(settings);
+  if (!doubt.empty()) fmt::print(out, "{}\n", doubt);
+  obey_lock_memory(given.lock_memory, out);
+}
+
 }  // namespace
 
 int run_command(const RunOptionsGiven& given) {
@@ -289,6 +297,7 @@ int run_command(const RunOptionsGiven& given) {
     options.stay = given.stay;
   }
   const Interrupt from_here_on;  // a Ctrl-C as soon as the page is announced ends in a summary
+  begin_words(given, settings);
   const auto mute = view ? view->link().mute : std::make_shared<Mute>();
   Pipeline pipeline(settings, std::move(hands), mute);
   if (view) view->serve(pipeline, prose(given.common.json));

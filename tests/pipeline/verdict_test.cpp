@@ -25,6 +25,7 @@ RunSummary good() {
   s.world_steps = 3000;
   s.plans = 1200;
   s.empty_updates = 300;
+  s.played_by.sample_rate = 40e3;
   s.device.blocks = 60'000;
   s.emit.samples = 9'600'000;
   s.contact_stats.joints = 39'000;

@@ -25,6 +25,8 @@ struct DeviceInfo {
 
   /// Rate of the samples that an emission makes for it [Hz].
   double emission_rate() const { return sample_rate * decimation; }
+  /// Length of a block [s].
+  double block_time() const { return block_samples / sample_rate; }
 };
 
 struct DeviceStats {

@@ -198,6 +198,7 @@ RunSummary Run::summary() {
   plans_.follow();
   world_.log().write(s);
   plans_.log().write(s);
+  s.played_by = pipeline_.device().info();
   s.device = pipeline_.device_stats();
   s.emit = pipeline_.emit_stats();
   s.limited_samples = pipeline_.limited_samples();

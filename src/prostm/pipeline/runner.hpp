@@ -57,6 +57,7 @@ struct RunSummary {
   std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
   std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
   ContactStats contact_stats;                  ///< of all updates
+  DeviceInfo played_by;
   DeviceStats device;
   EmitStats emit;
   std::int64_t limited_samples = 0;  ///< that the limiter before the device had to change

@@ -12,7 +12,7 @@ constexpr std::size_t kMostSentences = 4;  // that a newcomer reads in ten secon
 // A missing step stops the smoke for 20 ms, a missing plan lets the paths go round once or twice
 // more. One in a hundred is a hiccup every two seconds or less.
 constexpr double kLeastDone = 0.99;
-// A missed block is a millisecond of silence: one each second.
+// A missed block is a gap: of blocks of a millisecond, one each second.
 constexpr double kMostMissed = 1e-3;
 // Share of the time there is. The rest is for other stages, for the threads to wake up, and for
 // other programs.
@@ -75,10 +75,6 @@ std::string reason(const RunSummary& s, const PipelineSettings& settings) {
       1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
 }
 
-double samples_a_millisecond(const PipelineSettings& settings) {
-  return 1e-3 * device_named(settings.device).kind->info(settings.device_setup()).sample_rate;
-}
-
 void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict& out) {
   const HeldRate world = world_rate(s, settings), plans = plan_rate(s, settings);
   const bool in_time = world.held() && plans.held();
@@ -90,7 +86,7 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
   if (*out.held) {
     out.sentences.push_back(fmt::format(
         "The rates were held: {}, {:g} samples a millisecond{}.", rates,
-        samples_a_millisecond(settings),
+        1e-3 * s.played_by.sample_rate,
         s.device.missed_blocks > 0 ? fmt::format(" ({} missed, hardly to be felt)", missed) : ""));
     return;
   }
