@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <limits>
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
@@ -291,6 +293,16 @@ void flush(std::FILE* out) {
 
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value) {
   if (!json_option.empty()) write_file(json_option, to_text(value));
+}
+
+void pause(double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
+nlohmann::ordered_json device_json(const DeviceInfo& device) {
+  return {{"name", device.name},
+          {"sample_rate_hz", device.sample_rate},
+          {"block_ms", 1e3 * device.block_time()}};
 }
 
 nlohmann::ordered_json to_json(const Summary& s, double unit) {

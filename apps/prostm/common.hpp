@@ -113,6 +113,10 @@ void flush(std::FILE* out);
 /// names nothing.
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value);
 
+/// Waits [s].
+void pause(double seconds);
+
+nlohmann::ordered_json device_json(const DeviceInfo& device);
 nlohmann::ordered_json to_json(const Summary& summary, double unit);
 
 /// A table of metrics, a row for each of what they are of; a metric that no row knows has no

@@ -87,6 +87,21 @@ struct DevicesOptionsGiven {
   std::string json;
 };
 
+struct SelftestOptionsGiven {
+  CommonOptions common;       ///< device, array, settings file, JSON and figure
+  double seconds = 4.0;       ///< of each figure
+  double height_mm = 150.0;   ///< of the figures over the array
+  double level = 1.0;         ///< largest intensity
+  bool yes = false;           ///< play without being asked
+  bool silent = false;        ///< play nothing
+};
+
+struct SoakOptionsGiven {
+  RunOptionsGiven run;
+  double minutes = 30.0;
+  bool load = false;  ///< the middle third beside other work on all cores
+};
+
 struct SettingsOptionsGiven {
   CommonOptions common;
   std::string name;   ///< a group, a key, or group.key; empty: all
@@ -107,6 +122,8 @@ int bench_command(const BenchOptionsGiven& options);
 int solve_command(const SolveOptionsGiven& options);
 int field_command(const FieldOptionsGiven& options);
 int devices_command(const DevicesOptionsGiven& options);
+int selftest_command(const SelftestOptionsGiven& options);
+int soak_command(const SoakOptionsGiven& options);
 int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);
 

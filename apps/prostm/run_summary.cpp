@@ -155,12 +155,6 @@ nlohmann::ordered_json parts_json(const std::array<Summary, kLatencyParts>& part
   return json;
 }
 
-nlohmann::ordered_json device_json(const DeviceInfo& device) {
-  return {{"name", device.name},
-          {"sample_rate_hz", device.sample_rate},
-          {"block_ms", 1e3 * device.block_time()}};
-}
-
 nlohmann::ordered_json verdict_json(const Verdict& verdict) {
   nlohmann::ordered_json held = nullptr;
   if (verdict.held) held = *verdict.held;
