@@ -111,7 +111,8 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (scene) settings.scene = *scene;
   if (options.device) settings.device = *options.device;
   if (options.array) settings.array = *options.array;
-  if (plays) settle_array(settings, options.array || std::ranges::count(given, "pipeline.array") > 0);
+  if (plays)
+    settle_array(settings, options.array || std::ranges::count(given, "pipeline.array") > 0);
   if (options.tracker) settings.tracker = *options.tracker;
   if (!options.settings_file.empty()) check_files_of(settings, options);
   settings.transducers = array_from_name(settings.array);

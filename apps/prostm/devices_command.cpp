@@ -26,12 +26,13 @@ struct Row {
   std::string detail;
   std::optional<bool> found = {};  ///< nothing where nothing was looked for
   std::string words = {};          ///< result of the look
+  std::string array = {};          ///< the transducers that a device implies
 };
 
 /// A row that is there at the end of a look.
 using Looking = std::future<Row>;
 
-/// What a look found, or why there was none.
+/// Adds the finding of a look, or why there was none.
 template <class Look>
 Row looked(Row row, const Look& look) {
   try {
@@ -60,8 +61,7 @@ Row row_of(const DeviceKind& kind, const DeviceSetup& setup) {
   const DeviceInfo info = kind.info(setup);
   return {"array", kind.name, true,
           fmt::format("--device {}: {}, {:.0f} Hz, blocks of {} samples, {} focal points, {}; {}",
-                      form_of(kind), info.name, info.sample_rate, info.block_samples,
-                      info.max_foci,
+                      form_of(kind), info.name, info.sample_rate, info.block_samples, info.max_foci,
                       info.intensity_per_focus ? "an intensity each" : "one intensity for all",
                       kind.tried)};
 }
@@ -69,7 +69,8 @@ Row row_of(const DeviceKind& kind, const DeviceSetup& setup) {
 Looking look_for(const DeviceKind& kind, const std::string& address) {
   return std::async(std::launch::async, [&kind, address] {
     const DeviceSetup setup = setup_of(kind, address);
-    const Row row = row_of(kind, setup);
+    Row row = row_of(kind, setup);
+    if (kind.array != nullptr) row.array = kind.array;
     if (kind.look == nullptr) return row;
     return looked(row, [&] { return kind.look(setup); });
   });
@@ -129,9 +130,9 @@ std::vector<Looking> look_around() {
   std::vector<Looking> looks;
   for (const DeviceKind& kind : device_kinds()) looks.push_back(look_for(kind, ""));
   looks.push_back(known({"hand", "scripted", true, "--hand scripted: needs nothing"}));
-  looks.push_back(known(
-      {"hand", "recording", true,
-       "--hand FILE: .hands.jsonl, or Leap JSON v6; tried with recordings of real hands"}));
+  looks.push_back(
+      known({"hand", "recording", true,
+             "--hand FILE: .hands.jsonl, or Leap JSON v6; tried with recordings of real hands"}));
   looks.push_back(known({"hand", "page", true, "--hand page --view: mouse, touch or keys"}));
   looks.push_back(look_for_leap_at("leap://127.0.0.1:6437"));
   looks.push_back(look_for_openxr());
@@ -192,11 +193,13 @@ std::string wrapped(const std::string& text) {
 }
 
 nlohmann::ordered_json json_of(const Row& row) {
-  nlohmann::ordered_json found = nullptr, words = nullptr;
+  nlohmann::ordered_json found = nullptr, words = nullptr, array = nullptr;
+  if (!row.array.empty()) array = row.array;
   if (row.found) found = *row.found;
   if (!row.words.empty()) words = row.words;
   return {{"role", row.role},     {"kind", row.kind}, {"available", row.available},
-          {"detail", row.detail}, {"found", found},   {"words", words}};
+          {"detail", row.detail}, {"found", found},   {"words", words},
+          {"array", array}};
 }
 
 }  // namespace

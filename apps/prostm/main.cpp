@@ -44,6 +44,14 @@ void add_view(CLI::App& command, RunOptionsGiven& o) {
   for (CLI::Option* option : {stay, port, address, tracker_file}) option->needs(view);
 }
 
+/// Only a page writes the tracker's pose; a file that nobody named need not be writable until then.
+void expect_tracker_file(RunOptionsGiven& o) {
+  if (!o.view) return;
+  const auto check = o.tracker_file ? check_pose_output : nullptr;
+  o.common.files.writes("--tracker-file", o.tracker_file.value_or(kTrackerFile), check,
+                        "--tracker");
+}
+
 void add_run(CLI::App& app, Work& work) {
   auto* command =
       app.add_subcommand("run", "a hand in smoke, felt through focal-point paths: the main job");
@@ -73,12 +81,7 @@ void add_run(CLI::App& app, Work& work) {
       "Example:\n  prostm run --scene four-plumes --hand data/wave.hands.jsonl --json "
       "summary.json");
   command->callback([o, &work] {
-    // only a page writes it; one that nobody named need not be writable until then
-    if (o->view) {
-      const auto check = o->tracker_file ? check_pose_output : nullptr;
-      o->common.files.writes("--tracker-file", o->tracker_file.value_or(kTrackerFile), check,
-                             "--tracker");
-    }
+    expect_tracker_file(*o);
     work = {&o->common.files, [o] { return run_command(*o); }};
   });
 }
@@ -189,6 +192,49 @@ void add_devices(CLI::App& app, Work& work) {
   command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
 }
 
+void add_selftest(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand(
+      "selftest", "what is connected, and whether a hand can feel it: asks before it plays");
+  auto o = std::make_shared<SelftestOptionsGiven>();
+  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+            "settings of any stage, a TOML file (docs/files.md)");
+  add_json(*command, o->common.files, o->common.json);
+  add_device(*command, o->common);
+  add_array(*command, o->common,
+            "usx, autd3, or an array file (.json); default: the device's, or usx");
+  add_figure(*command, o->common, "a picture of the array, seen from above (.png or .svg)");
+  command->add_option("--seconds", o->seconds, "of each figure, 0.2 to 60")->capture_default_str();
+  command->add_option("--height-mm", o->height_mm, "of the figures over the array, 50 to 500")
+      ->capture_default_str();
+  command->add_option("--level", o->level, "largest intensity, 0.05 to 1")->capture_default_str();
+  auto* yes = command->add_flag("--yes", o->yes, "play without being asked");
+  command->add_flag("--silent", o->silent, "connect, and play nothing")->excludes(yes);
+  command->footer("Example:\n  prostm selftest --silent --figure array.png");
+  command->callback([o, &work] {
+    work = {&o->common.files, [o] { return selftest_command(*o); }};
+  });
+}
+
+void add_soak(CLI::App& app, Work& work) {
+  auto* command =
+      app.add_subcommand("soak", "a long run that counts every dip, and says when it was and why");
+  auto o = std::make_shared<SoakOptionsGiven>();
+  RunOptionsGiven& run = o->run;
+  add_pipeline(*command, run.common, run.scene, run.hand);
+  add_device(*command, run.common);
+  command->add_option("--minutes", o->minutes, "how long, 0.05 to 1440")->capture_default_str();
+  command->add_flag("--load", o->load,
+                    "during the middle third, let another process use all cores");
+  add_lock_memory(*command, run.lock_memory);
+  add_view(*command, run);
+  command->footer("Example:\n  prostm soak --minutes 0.1 --json soak.json");
+  command->callback([o, &work] {
+    if (o->run.stay) throw prostm::InputError("--stay belongs to prostm run: a soak has an end");
+    expect_tracker_file(o->run);
+    work = {&o->run.common.files, [o] { return soak_command(*o); }};
+  });
+}
+
 void add_settings(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand(
       "settings", "every setting of a settings file: its value, bounds and meaning");
@@ -255,6 +301,8 @@ int obey(int argc, char** argv) {
   add_solve(app, work);
   add_field(app, work);
   add_devices(app, work);
+  add_selftest(app, work);
+  add_soak(app, work);
   add_settings(app, work);
   add_help(app, work);
   add_check(app, work);

@@ -88,12 +88,12 @@ struct DevicesOptionsGiven {
 };
 
 struct SelftestOptionsGiven {
-  CommonOptions common;       ///< device, array, settings file, JSON and figure
-  double seconds = 4.0;       ///< of each figure
-  double height_mm = 150.0;   ///< of the figures over the array
-  double level = 1.0;         ///< largest intensity
-  bool yes = false;           ///< play without being asked
-  bool silent = false;        ///< play nothing
+  CommonOptions common;      ///< device, array, settings file, JSON and figure
+  double seconds = 4.0;      ///< of each figure
+  double height_mm = 150.0;  ///< of the figures over the array
+  double level = 1.0;        ///< largest intensity
+  bool yes = false;          ///< play without being asked
+  bool silent = false;       ///< play nothing
 };
 
 struct SoakOptionsGiven {

@@ -115,8 +115,8 @@ void print_share_of_device(std::FILE* out, const RunSummary& s) {
   fmt::print(out,
              "  {} adds {:.1f} ms on average: {:.1f} until it asks for its next block of {:.3g} "
              "ms, {:.1f} in its queue\n",
-             s.played_by.name, 1e3 * (block + queue), 1e3 * block,
-             1e3 * s.played_by.block_time(), 1e3 * queue);
+             s.played_by.name, 1e3 * (block + queue), 1e3 * block, 1e3 * s.played_by.block_time(),
+             1e3 * queue);
 }
 
 void print_latency(std::FILE* out, const RunSummary& s) {

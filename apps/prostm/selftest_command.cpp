@@ -22,7 +22,7 @@ constexpr int kFailed = 1;           // exit status
 constexpr double kLook = 0.01;       // [s]
 constexpr double kLongestEnd = 1.0;  // until the last sample is played [s]
 
-/// What became of a figure.
+/// The answers to a figure.
 struct Outcome {
   std::string name;
   bool played = false;

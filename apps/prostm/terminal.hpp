@@ -28,7 +28,7 @@ class Terminal {
 
   std::FILE* out_;
   const Interrupt& interrupt_;
-  std::string waiting_;   // characters after the last whole line
+  std::string waiting_;  // characters after the last whole line
   bool ended_ = false;
 };
 

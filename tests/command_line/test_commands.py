@@ -44,7 +44,8 @@ def without_times(plan):
 
 
 def test_help_has_an_example(prostm):
-    for command in ["run", "plan", "capture", "bench", "field", "solve", "devices", "check", "settings", "help"]:
+    for command in ["run", "plan", "capture", "bench", "field", "solve", "devices", "selftest", "soak", "check", "settings",
+                    "help"]:
         done = prostm(command, "--help")
         assert "Example:" in done.stdout
 

@@ -10,7 +10,7 @@ namespace prostm {
 /// Consecutive transducers of an array.
 struct ArrayUnit {
   std::size_t first = 0, count = 0;
-  Vec3 centre = Vec3::Zero();    ///< mean of the positions in D [m]
+  Vec3 centre = Vec3::Zero();   ///< mean of the positions in D [m]
   Vec3 normal = Vec3::UnitZ();  ///< unit vector along the mean of the normals in D
 };
 

@@ -78,16 +78,15 @@ std::vector<TestFigure> test_figures(const TransducerArray& array, double emissi
   }
   const Vec3 middle =
       centre + height * (normal.norm() > 1e-6 ? normal.normalized() : Vec3(Vec3::UnitZ()));
-  std::vector<TestFigure> figures = {
-      {"a point that moves slowly to and fro along x, 60 mm", TestShape::Line, middle, 0.03, 0.5,
-       modulation, seconds},
-      {"a circle of 40 mm, drawn 60 times a second", TestShape::Circle, middle, 0.02, 60.0, 0.0,
-       seconds}};
+  std::vector<TestFigure> figures = {{"a point that moves slowly to and fro along x, 60 mm",
+                                      TestShape::Line, middle, 0.03, 0.5, modulation, seconds},
+                                     {"a circle of 40 mm, drawn 60 times a second",
+                                      TestShape::Circle, middle, 0.02, 60.0, 0.0, seconds}};
   for (std::size_t i = 0; units.size() > 1 && i < units.size(); ++i) {
-    figures.push_back({"a point over unit " + std::to_string(i + 1) + " of " +
-                           std::to_string(units.size()),
-                       TestShape::Point, units[i].centre + height * units[i].normal, 0.0, 0.0,
-                       modulation, seconds});
+    figures.push_back(
+        {"a point over unit " + std::to_string(i + 1) + " of " + std::to_string(units.size()),
+         TestShape::Point, units[i].centre + height * units[i].normal, 0.0, 0.0, modulation,
+         seconds});
   }
   return figures;
 }

@@ -17,13 +17,13 @@ struct TestFigure {
   std::string name;  ///< for people
   TestShape shape = TestShape::Point;
   Vec3 centre = Vec3::Zero();  ///< in D [m]
-  double radius = 0.0;     ///< of a circle, half of a line along x; both parallel to D's x and y [m]
-  double frequency = 0.0;  ///< rounds, or ways to and fro, a second [Hz]
+  double radius = 0.0;  ///< of a circle, half of a line along x; both parallel to D's x and y [m]
+  double frequency = 0.0;   ///< rounds, or ways to and fro, a second [Hz]
   double modulation = 0.0;  ///< of the intensity, between 0 and its full value [Hz]; 0: steady
   double seconds = 4.0;     ///< fades included
 
-  double speed() const;            ///< largest of the focal point [m/s]
-  Vec3 position(double t) const;   ///< [m], t since its beginning [s]
+  double speed() const;              ///< largest of the focal point [m/s]
+  Vec3 position(double t) const;     ///< [m], t since its beginning [s]
   double intensity(double t) const;  ///< 0..1, gentle at first, without the fades
 };
 

@@ -73,7 +73,8 @@ void draw_array(const ArrayFigure& f, const std::string& path) {
   }
   const Vec2 first = panel.to_page(f.position.front().head<2>());
   canvas.disc(first, 0.6 * radius, figure::kPaper);
-  canvas.text(first + Vec2(radius + 3.0, -radius - 1.0), "transducer 0", {.size = 11.0, .bold = true});
+  canvas.text(first + Vec2(radius + 3.0, -radius - 1.0), "transducer 0",
+              {.size = 11.0, .bold = true});
   draw_axis(canvas, panel, Vec2::UnitX(), "x");
   draw_axis(canvas, panel, Vec2::UnitY(), "y");
   panel.axes({.title = ""});
