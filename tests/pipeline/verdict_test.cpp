@@ -57,6 +57,23 @@ TEST(Verdict, AGoodRunIsToldInTwoSentences) {
                           "Nothing was unusual."));
 }
 
+TEST(Verdict, TheSamplesAreThoseOfTheDeviceThatPlayed) {
+  EXPECT_THAT(said([](RunSummary& s) { s.played_by.sample_rate = 20e3 / 3.0; }).front(),
+              HasSubstr(", 6.667 samples a millisecond"));
+}
+
+TEST(Verdict, ASlowLinkMayBeWhyADeviceFellSilent) {
+  RunSummary s = good();
+  s.device.blocks = 3000;
+  s.device.missed_blocks = 30;
+  PipelineSettings settings;
+  EXPECT_THAT(verdict_of(s, settings).sentences.front(), Not(HasSubstr("link")));
+  settings.device = "autd3://127.0.0.1:8080";
+  EXPECT_THAT(verdict_of(s, settings).sentences.front(),
+              HasSubstr("fell silent for 600 ms in all, which is felt as gaps: its thread woke, or "
+                        "its link passed blocks on, too late for 30 of 3000 blocks"));
+}
+
 TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {
   const Verdict verdict = judged([](RunSummary& s) {
     s.world_steps = 2610;

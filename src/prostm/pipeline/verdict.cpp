@@ -85,7 +85,7 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
       fmt::format("{} of {} blocks", s.device.missed_blocks, s.device.blocks);
   if (*out.held) {
     out.sentences.push_back(fmt::format(
-        "The rates were held: {}, {:g} samples a millisecond{}.", rates,
+        "The rates were held: {}, {:.4g} samples a millisecond{}.", rates,
         1e-3 * s.played_by.sample_rate,
         s.device.missed_blocks > 0 ? fmt::format(" ({} missed, hardly to be felt)", missed) : ""));
     return;
@@ -97,10 +97,13 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
   if (samples_held(s)) return;
   const double silent = s.seconds * share(s.device.missed_blocks, s.device.blocks);
   out.sentences.push_back(fmt::format(
-      "{} array fell silent for {:.0f} ms in all, which is felt as gaps: its thread woke too late "
-      "for {}. Allow it real-time priority (ulimit -r 10), or close what else runs.",
+      "{} array fell silent for {:.0f} ms in all, which is felt as gaps: {} too late for {}. Allow "
+      "it real-time priority (ulimit -r 10), or close what else runs.",
       in_time ? fmt::format("Smoke and plans kept their rates ({}), but the", rates) : "The",
-      1e3 * silent, missed));
+      1e3 * silent,
+      settings.device == "sim" ? "its thread woke"
+                               : "its thread woke, or its link passed blocks on,",
+      missed));
 }
 
 void judge_pace(const RunSummary& s, Verdict& out) {
