@@ -79,9 +79,9 @@ Looking look_for(const DeviceKind& kind, const std::string& address) {
 Looking look_for_leap_at(const std::string& name) {
   return std::async(std::launch::async, [name] {
     const Row row{"hand", "leap", true,
-                  fmt::format("--hand {}: {}; tried with a server that replays recordings, never "
-                              "with the real thing",
-                              name, leap_needs())};
+                  fmt::format("--hand {}: tried with a server that replays recordings, never with "
+                              "the real thing",
+                              name)};
     return looked(row, [&] { return look_for_leap(leap_address(name)); });
   });
 }

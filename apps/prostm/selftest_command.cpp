@@ -227,7 +227,8 @@ Judgement judge(const Tested& tested, Device& device, const std::vector<Outcome>
     sentence += fmt::format(" {} of {} blocks were missed: the device fell silent in between.",
                             stats.missed_blocks, stats.blocks);
   }
-  return {with(false) == 0, sentence};
+  if (device.is_hot()) sentence += " The hardware says that it is too hot: let it cool down.";
+  return {with(false) == 0 && !device.is_hot(), sentence};
 }
 
 nlohmann::ordered_json vector_json(const Vec3& v, double unit) {

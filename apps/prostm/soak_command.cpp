@@ -63,6 +63,9 @@ class SoakObserver final : public RunObserver {
     counts_.stalls = pipeline_.emit_stats().stalls;
     counts_.limited = pipeline_.limited_samples();
     counts_.problem = pipeline_.device().problem();
+    const bool is_hot = pipeline_.device().is_hot();
+    counts_.hot += is_hot && !was_hot_ ? 1 : 0;
+    was_hot_ = is_hot;
     log_.count(now, counts_);
     if (now - looked_ >= kLookAtUse) {
       looked_ = now;
@@ -124,6 +127,7 @@ class SoakObserver final : public RunObserver {
   SoakCounts counts_;
   double looked_ = 0.0;  // at the machine [s]
   int part_ = -1;
+  bool was_hot_ = false;
   std::size_t said_ = 0;
   std::int64_t said_of_part_ = 0;
   Progress progress_{"soaking"};

@@ -54,6 +54,18 @@ void draw_axis(Canvas& canvas, const Panel& panel, const Vec2& along, const std:
               {.size = 13.0, .colour = figure::kInk, .align = Align::Centre, .bold = true});
 }
 
+/// Marks transducer 0, with a label that is legible on other transducers.
+void mark(Canvas& canvas, const Vec2& centre, double radius) {
+  constexpr double kHeight = 14.0;
+  const figure::TextStyle style{.size = 11.0, .bold = true};
+  const std::string label = "transducer 0";
+  canvas.disc(centre, 0.5 * radius, figure::kPaper);
+  const Vec2 corner = centre + Vec2(-radius, radius + 3.0);
+  canvas.fill({corner.x() - 2.0, corner.y(), canvas.text_width(label, style) + 4.0, kHeight},
+              figure::kPaper);
+  canvas.text(corner + Vec2(0.0, kHeight - 3.0), label, style);
+}
+
 }  // namespace
 
 void draw_array(const ArrayFigure& f, const std::string& path) {
@@ -68,20 +80,19 @@ void draw_array(const ArrayFigure& f, const std::string& path) {
   Panel panel(canvas, space, extent);
   const double radius = std::max(1.0, f.radius * panel.scale());
   for (std::size_t i = 0; i < f.position.size(); ++i) {
+    const figure::Colour of_unit = figure::path_colour(static_cast<std::size_t>(f.unit[i]));
+    const bool is_first = i == 0 || f.unit[i] != f.unit[i - 1];
     panel.disc(f.position[i].head<2>(), radius,
-               figure::path_colour(static_cast<std::size_t>(f.unit[i])));
+               is_first ? of_unit : figure::mix(of_unit, figure::kPaper, 0.6));
   }
-  const Vec2 first = panel.to_page(f.position.front().head<2>());
-  canvas.disc(first, 0.6 * radius, figure::kPaper);
-  canvas.text(first + Vec2(radius + 3.0, -radius - 1.0), "transducer 0",
-              {.size = 11.0, .bold = true});
+  mark(canvas, panel.to_page(f.position.front().head<2>()), radius);
   draw_axis(canvas, panel, Vec2::UnitX(), "x");
   draw_axis(canvas, panel, Vec2::UnitY(), "y");
   panel.axes({.title = ""});
   const int units = 1 + *std::ranges::max_element(f.unit);
   canvas.text(Vec2(kLeft, kTop + space.height + 62.0),
-              fmt::format("{} transducers in {} unit{}; the arrows leave D's origin, +z points "
-                          "at the reader",
+              fmt::format("{} transducers in {} unit{}, of which the first of each is dark; the "
+                          "arrows leave D's origin",
                           f.position.size(), units, units == 1 ? "" : "s"),
               {.size = 11.0});
   canvas.save();

@@ -54,6 +54,7 @@ void SoakLog::count(double time, const SoakCounts& counts) {
   add(time, "skipped steps", counts.skipped_steps - counts_.skipped_steps, false);
   add(time, "skipped plans", counts.skipped_plans - counts_.skipped_plans, false);
   add(time, "fades for lack of a plan", counts.stalls - counts_.stalls, false);
+  add(time, "times too hot", counts.hot - counts_.hot, false);
   add(time, "samples outside the limits", counts.limited - counts_.limited, false);
   counts_ = counts;
 }

@@ -19,6 +19,7 @@ struct SoakCounts {
   std::int64_t skipped_plans = 0;  ///< targets that were not planned
   std::int64_t stalls = 0;         ///< fade-outs because no plan came
   std::int64_t limited = 0;        ///< samples that the limiter changed
+  std::int64_t hot = 0;            ///< times that the hardware said it was too hot
   std::string problem;             ///< of the device
 };
 
