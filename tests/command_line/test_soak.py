@@ -16,8 +16,11 @@ def soak(program, folder, *arguments, minutes="0.1"):
                             cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def children_of(process):
-    return [int(pid) for pid in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+def child_of(process):
+    """Waits for the process that loads the cores."""
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    wait_for(lambda: children.read_text().split())
+    return int(children.read_text())
 
 
 def check(result):
@@ -52,7 +55,7 @@ def test_a_soak_counts_what_its_run_counts(program, tmp_path):
 
 def test_the_load_uses_all_cores_for_a_third_and_goes(program, tmp_path):
     process = soak(program, tmp_path, "--load")
-    (child,) = children_of(process.pid)
+    child = child_of(process)
     used = lambda: sum(map(int, Path(f"/proc/{child}/stat").read_text().rsplit(")", 1)[1].split()[11:13]))  # noqa: E731
     time.sleep(1.5)
     before = used()
@@ -81,7 +84,7 @@ def test_ctrl_c_leaves_a_whole_result(program, tmp_path):
 
 def test_the_load_ends_with_a_program_that_is_killed(program, tmp_path):
     process = soak(program, tmp_path, "--load", minutes="30")
-    (child,) = children_of(process.pid)
+    child = child_of(process)
     process.kill()
     process.wait(timeout=30)
 

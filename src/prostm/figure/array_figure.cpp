@@ -91,7 +91,7 @@ void draw_array(const ArrayFigure& f, const std::string& path) {
   panel.axes({.title = ""});
   const int units = 1 + *std::ranges::max_element(f.unit);
   canvas.text(Vec2(kLeft, kTop + space.height + 62.0),
-              fmt::format("{} transducers in {} unit{}, of which the first of each is dark; the "
+              fmt::format("{} transducers in {} unit{}; transducer 0 of each unit is dark; the "
                           "arrows leave D's origin",
                           f.position.size(), units, units == 1 ? "" : "s"),
               {.size = 11.0});
