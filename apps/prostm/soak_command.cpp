@@ -66,6 +66,7 @@ class SoakObserver final : public RunObserver {
     const bool is_hot = pipeline_.device().is_hot();
     counts_.hot += is_hot && !was_hot_ ? 1 : 0;
     was_hot_ = is_hot;
+    if (part_ < 0) say_part(now);
     log_.count(now, counts_);
     if (now - looked_ >= kLookAtUse) {
       looked_ = now;

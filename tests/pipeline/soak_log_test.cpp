@@ -48,6 +48,13 @@ TEST(SoakLog, AQuietRunHasNoDips) {
   EXPECT_TRUE(soak.log.dips().empty() && soak.log.is_quiet_clean());
 }
 
+TEST(SoakLog, TheCountersMayHaveBegunBeforeTheRun) {
+  Soak soak;
+  soak.to(1.0, [](SoakCounts& counts, MachineUse&) { counts.device.missed_blocks = 3; });
+  soak.log.end(1.0, soak.use);
+  EXPECT_TRUE(soak.log.dips().empty());
+}
+
 TEST(SoakLog, EveryCounterOfTheDeviceThatShouldStaySmallIsWatched) {
   for (const Quantity<DeviceStats>& quantity : quantities<DeviceStats>()) {
     if (quantity.better != Better::Less) continue;
@@ -145,6 +152,7 @@ TEST(SoakLog, ASlowStepIsACauseAndRatesAreKeptForEachPart) {
 
 TEST(SoakLog, KeepsARoomForDipsAndCountsTheRest) {
   Soak soak;
+  soak.to(0.01);
   for (int i = 0; i < 12'000; ++i)
     soak.to(soak.time + 0.002, [](SoakCounts& counts, MachineUse&) { counts.skipped_steps += 1; });
   soak.log.end(soak.time, soak.use);

@@ -39,6 +39,12 @@ bool SoakLog::is_loaded_at(double time) const {
 }
 
 void SoakLog::count(double time, const SoakCounts& counts) {
+  if (!counting_) {
+    // the device began before the run
+    counting_ = true;
+    counts_ = counts;
+    counted_at_ = time;
+  }
   longest_gap_ = std::max(longest_gap_, time - counted_at_);
   counted_at_ = time;
   std::int64_t missed = 0;

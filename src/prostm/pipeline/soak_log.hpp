@@ -54,7 +54,7 @@ class SoakLog {
   bool is_loaded_at(double time) const;
 
   /// The counters, a few hundred times a second: the time between two calls tells how long the
-  /// program had to wait.
+  /// program had to wait. The first call says where they begin.
   void count(double time, const SoakCounts& counts);
   /// A plan update. @param step how many the world made.  @param due of the step [s].
   /// @param updates how many plan updates there were.  @param work of the step, and of the plan
@@ -83,6 +83,7 @@ class SoakLog {
   const double seconds_, settle_;
   const int cores_;
   std::array<SoakPart, 3> parts_;
+  bool counting_ = false;
   SoakCounts counts_;
   std::vector<SoakDip> dips_, open_;  // open: without a cause yet
   std::int64_t left_out_ = 0;
