@@ -93,8 +93,8 @@ class SoakObserver final : public RunObserver {
     for (; said_ < log_.dips().size(); ++said_) {
       const SoakDip& dip = log_.dips()[said_];
       if (dip.covered || ++said_of_part_ > kMostSaid) continue;
-      progress_.say(out_, fmt::format("{:.2f} s: {} {}; likely cause: {}", dip.time, dip.count,
-                                      dip.what, dip.cause));
+      progress_.say(out_, fmt::format("{:.2f} s, {}: {}; likely cause: {}", dip.time, dip.what,
+                                      dip.count, dip.cause));
     }
   }
 

