@@ -23,7 +23,7 @@ std::string words_of(const char* name) {
 }  // namespace
 
 SoakLog::SoakLog(double seconds, bool load, int cores)
-    : seconds_(seconds), settle_(load ? std::min(kSettle, seconds / 20.0) : 0.0), cores_(cores) {
+    : settle_(load ? std::min(kSettle, seconds / 20.0) : 0.0), cores_(cores) {
   const double third = seconds / 3.0;
   parts_[0] = {.to = third};
   parts_[1] = {.loaded = load, .from = third, .to = 2.0 * third + settle_};

@@ -80,7 +80,7 @@ class SoakLog {
   std::string cause_of(const SoakDip& dip, double seconds, const MachineUse& use) const;
   void forget_evidence();
 
-  const double seconds_, settle_;
+  const double settle_;  // [s]
   const int cores_;
   std::array<SoakPart, 3> parts_;
   bool counting_ = false;
