@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <limits>
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
@@ -19,6 +21,7 @@
 #include "prostm/core/lower_case.hpp"
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/device/realtime_limits.hpp"
 #include "prostm/io/array_file.hpp"
 #include "prostm/io/hand_file.hpp"
 #include "prostm/io/pose_file.hpp"
@@ -72,7 +75,32 @@ void check_bounds(const CommonOptions& options, const PipelineSettings& settings
   if (options.seed) require_bounds(as_option(plan, "seed", "--seed"), *options.seed);
 }
 
+/// Where nobody chose the transducers, they are those of the device.
+/// @throws InputError for others that are built in.
+void settle_array(PipelineSettings& settings, bool is_chosen) {
+  const DeviceKind& kind = *device_named(settings.device).kind;
+  if (kind.array == nullptr) return;
+  if (!is_chosen) settings.array = kind.array;
+  if (settings.array == kind.array || names_json(settings.array)) return;
+  throw InputError(
+      fmt::format("--array {} contradicts --device {}, whose transducers are {}; leave --array "
+                  "out, or give a file (.json) with those of your units",
+                  settings.array, settings.device, kind.array));
+}
+
 }  // namespace
+
+std::string doubt_of_array(const PipelineSettings& settings) {
+  const DeviceKind& kind = *device_named(settings.device).kind;
+  if (kind.array == nullptr || settings.array == kind.array) return {};
+  const std::size_t of_unit = array_from_name(kind.array).position.size(),
+                    given = settings.transducers.position.size();
+  if (given % of_unit == 0) return {};
+  return fmt::format(
+      "{} has {} transducers, and the units of --device {} have {} each: its focal points may not "
+      "be as wide as the plans count on.",
+      settings.array, given, settings.device, of_unit);
+}
 
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays) {
@@ -81,7 +109,10 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (!options.settings_file.empty())
     given = read_settings(options.settings_file, settings_groups(settings));
   if (scene) settings.scene = *scene;
+  if (options.device) settings.device = *options.device;
   if (options.array) settings.array = *options.array;
+  if (plays)
+    settle_array(settings, options.array || std::ranges::count(given, "pipeline.array") > 0);
   if (options.tracker) settings.tracker = *options.tracker;
   if (!options.settings_file.empty()) check_files_of(settings, options);
   settings.transducers = array_from_name(settings.array);
@@ -102,6 +133,15 @@ PipelineSettings make_settings(const CommonOptions& options,
     throw InputError("--preset and --budget-ms belong to --method pro-stm; am has neither");
   }
   return settings;
+}
+
+void obey_lock_memory(bool asked, std::FILE* out) {
+  if (!asked) return;
+  fmt::print(out, "{}\n{}\n",
+             lock_memory() ? "All memory is locked: nothing of it waits for a disk."
+                           : memory_sentence(false),
+             priority_sentence(realtime_limits().priority));
+  std::fflush(out);
 }
 
 bool names_json(const std::string& name) {
@@ -254,6 +294,16 @@ void flush(std::FILE* out) {
 
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value) {
   if (!json_option.empty()) write_file(json_option, to_text(value));
+}
+
+void pause(double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
+nlohmann::ordered_json device_json(const DeviceInfo& device) {
+  return {{"name", device.name},
+          {"sample_rate_hz", device.sample_rate},
+          {"block_ms", 1e3 * device.block_time()}};
 }
 
 nlohmann::ordered_json to_json(const Summary& s, double unit) {

@@ -18,9 +18,18 @@
 namespace prostm::app {
 
 /// Defaults, then the settings file, then the options. @throws InputError also for an output that
-/// is a file which the settings name. @param plays whether an array is to play what is planned.
+/// is a file which the settings name, and for an array that contradicts the device.
+/// @param plays whether an array is to play what is planned: the device's own, unless another is
+/// given.
 PipelineSettings make_settings(const CommonOptions& options,
                                const std::optional<std::string>& scene, bool plays = false);
+
+/// Locks the memory where `--lock-memory` asks for it, and says whether that was allowed, and
+/// whether real-time priority is.
+void obey_lock_memory(bool asked, std::FILE* out);
+
+/// Says where an array file cannot be the transducers of the device; empty where it may be.
+std::string doubt_of_array(const PipelineSettings& settings);
 
 /// Whether `--array` or `--tracker` names a file, rather than one that is built in.
 bool names_json(const std::string& name);
@@ -104,6 +113,10 @@ void flush(std::FILE* out);
 /// names nothing.
 void write_json(const std::string& json_option, const nlohmann::ordered_json& value);
 
+/// Waits [s].
+void pause(double seconds);
+
+nlohmann::ordered_json device_json(const DeviceInfo& device);
 nlohmann::ordered_json to_json(const Summary& summary, double unit);
 
 /// A table of metrics, a row for each of what they are of; a metric that no row knows has no

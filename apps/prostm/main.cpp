@@ -10,10 +10,10 @@
 #include <memory>
 #include <system_error>
 
+#include "add_options.hpp"
 #include "common.hpp"
 #include "options.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/version.hpp"
 #include "usage.hpp"
@@ -21,110 +21,6 @@
 namespace {
 
 using namespace prostm::app;
-
-/// The work that the command line asks for: it begins once all is parsed and files are checked.
-struct Work {
-  const Files* files = nullptr;  ///< null: none
-  std::function<int()> run;
-};
-
-/// An option, or a positional, whose value is a file that the command reads.
-template <class Value>
-CLI::Option* add_input(CLI::App& command, Files& files, const std::string& name, Value& value,
-                       const std::string& help) {
-  return command.add_option(name, value, help)
-      ->type_name("INPUT")
-      ->each([&files, name](const std::string& path) { files.reads(name, path); });
-}
-
-/// The same, where some values are names of what is built in. @param hint says which of them a file
-/// that is not there may stand for.
-template <class Value>
-CLI::Option* add_input_or_name(CLI::App& command, Files& files, const std::string& name,
-                               Value& value, bool (*is_file)(const std::string&),
-                               const std::string& help,
-                               std::string (*hint)(const std::string&) = nullptr) {
-  return command.add_option(name, value, help)
-      ->type_name("NAME|INPUT")
-      ->each([&files, name, is_file, hint](const std::string& path) {
-        if (is_file(path)) files.reads(name, path, hint != nullptr ? hint(path) : std::string());
-      });
-}
-
-/// An option whose value is a file that the command writes.
-template <class Value>
-CLI::Option* add_output(CLI::App& command, Files& files, const std::string& name, Value& value,
-                        Files::Check check, const std::string& help) {
-  return command.add_option(name, value, help)
-      ->type_name("OUTPUT")
-      ->each([&files, name, check](const std::string& path) { files.writes(name, path, check); });
-}
-
-/// One that takes one of a few words.
-template <class Value>
-CLI::Option* add_name(CLI::App& command, const std::string& name, Value& value,
-                      const std::string& help) {
-  return command.add_option(name, value, help)->type_name("NAME");
-}
-
-void add_json(CLI::App& command, Files& files, std::string& json) {
-  add_output(command, files, "--json", json, check_json_output,
-             "write the result as JSON; - is standard output");
-}
-
-void add_common(CLI::App& command, CommonOptions& o) {
-  add_input(command, o.files, "--settings", o.settings_file,
-            "settings of any stage, a TOML file (docs/files.md)");
-  add_json(command, o.files, o.json);
-  command.add_option("--seed", o.seed, "of everything that is drawn at random");
-  add_name(command, "--preset", o.preset, "best (default), fast, paper, or paper-valid");
-  command.add_option("--paths", o.paths, "focal points, 1 to 8");
-  command.add_option("--budget-ms", o.budget_ms,
-                     "time for a plan of preset best; 0: a fixed amount of work");
-  add_name(command, "--method", o.method,
-           "pro-stm (default): paths, or am: foci that stand still, modulated (docs/am.md)");
-}
-
-void add_array(CLI::App& command, CommonOptions& o, const std::string& help) {
-  add_input_or_name(command, o.files, "--array", o.array, names_json, help);
-}
-
-CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help) {
-  return add_output(command, o.files, "--figure", o.figure, prostm::check_figure, help);
-}
-
-/// How the file of a field is read. @param of the option that names the file, unless it is always
-/// there.
-void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of = nullptr) {
-  auto* cell = command.add_option("--cell-mm", o.cell_mm, "edge of a cell of a .npy or .png field");
-  auto* width = command.add_option("--width-mm", o.width_mm,
-                                   "instead: width of the whole .npy or .png field");
-  width->excludes(cell);
-  auto* invert = command.add_flag("--invert", o.invert, "the .png field is drawn black on white");
-  auto* frame = command.add_option("--frame", o.frame, "frame of a .h5 recording");
-  frame->capture_default_str();
-  if (of == nullptr) return;
-  for (CLI::Option* option : {cell, width, invert, frame}) option->needs(of);
-}
-
-void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
-                  std::string& hand) {
-  add_common(command, common);
-  add_name(command, "--scene", scene,
-           "one-plume (default), two-plumes, three-plumes, four-plumes, or still-air");
-  add_input_or_name(
-      command, common.files, "--hand", hand, names_recording,
-      "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
-      "page (docs/hands.md)",
-      hint_for_hand)
-      ->capture_default_str();
-  add_input_or_name(
-      command, common.files, "--tracker", common.tracker, names_json,
-      "where the tracker is: centre (default), ultraleap-kit, or a pose file (.json)");
-  command.add_option("--grid", common.grid,
-                     "cells along each edge of the fluid's box, a multiple of 16");
-  add_array(command, common, "usx (default), autd3, or an array file (.json)");
-}
 
 /// The page of a run.
 void add_view(CLI::App& command, RunOptionsGiven& o) {
@@ -148,13 +44,20 @@ void add_view(CLI::App& command, RunOptionsGiven& o) {
   for (CLI::Option* option : {stay, port, address, tracker_file}) option->needs(view);
 }
 
+/// Only a page writes the tracker's pose; a file that nobody named need not be writable until then.
+void expect_tracker_file(RunOptionsGiven& o) {
+  if (!o.view) return;
+  const auto check = o.tracker_file ? check_pose_output : nullptr;
+  o.common.files.writes("--tracker-file", o.tracker_file.value_or(kTrackerFile), check,
+                        "--tracker");
+}
+
 void add_run(CLI::App& app, Work& work) {
   auto* command =
       app.add_subcommand("run", "a hand in smoke, felt through focal-point paths: the main job");
   auto o = std::make_shared<RunOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand);
-  add_name(*command, "--device", o->device,
-           "what plays the paths: sim (default), see prostm devices");
+  add_device(*command, o->common);
   auto* figure = add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
   command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle")
       ->needs(figure);
@@ -172,17 +75,13 @@ void add_run(CLI::App& app, Work& work) {
            "now, at the next block");
   add_output(*command, o->common.files, "--record", o->record, prostm::check_recording,
              "record targets, hands and plans (.h5, docs/recordings.md)");
+  add_lock_memory(*command, o->lock_memory);
   add_view(*command, *o);
   command->footer(
       "Example:\n  prostm run --scene four-plumes --hand data/wave.hands.jsonl --json "
       "summary.json");
   command->callback([o, &work] {
-    // only a page writes it; one that nobody named need not be writable until then
-    if (o->view) {
-      const auto check = o->tracker_file ? check_pose_output : nullptr;
-      o->common.files.writes("--tracker-file", o->tracker_file.value_or(kTrackerFile), check,
-                             "--tracker");
-    }
+    expect_tracker_file(*o);
     work = {&o->common.files, [o] { return run_command(*o); }};
   });
 }
@@ -283,11 +182,57 @@ void add_field(CLI::App& app, Work& work) {
 
 void add_devices(CLI::App& app, Work& work) {
   auto* command =
-      app.add_subcommand("devices", "what can be driven from here, and why not, for each kind");
+      app.add_subcommand("devices", "what can be driven from here, what is found, what is missing");
   auto o = std::make_shared<DevicesOptionsGiven>();
+  add_name(*command, "names", o->names,
+           "look at these alone, also on other machines: a device with its address, "
+           "leap://HOST:PORT, or openxr; default: all that this machine has");
   add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm devices");
   command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
+}
+
+void add_selftest(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand(
+      "selftest", "what is connected, and whether a hand can feel it: asks before it plays");
+  auto o = std::make_shared<SelftestOptionsGiven>();
+  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+            "settings of any stage, a TOML file (docs/files.md)");
+  add_json(*command, o->common.files, o->common.json);
+  add_device(*command, o->common);
+  add_array(*command, o->common,
+            "usx, autd3, or an array file (.json); default: the device's, or usx");
+  add_figure(*command, o->common, "a picture of the array, seen from above (.png or .svg)");
+  command->add_option("--seconds", o->seconds, "of each figure, 0.2 to 60")->capture_default_str();
+  command->add_option("--height-mm", o->height_mm, "of the figures over the array, 50 to 500")
+      ->capture_default_str();
+  command->add_option("--level", o->level, "largest intensity, 0.05 to 1")->capture_default_str();
+  auto* yes = command->add_flag("--yes", o->yes, "play without being asked");
+  command->add_flag("--silent", o->silent, "connect, and play nothing")->excludes(yes);
+  command->footer("Example:\n  prostm selftest --silent --figure array.png");
+  command->callback([o, &work] {
+    work = {&o->common.files, [o] { return selftest_command(*o); }};
+  });
+}
+
+void add_soak(CLI::App& app, Work& work) {
+  auto* command =
+      app.add_subcommand("soak", "a long run that counts every dip, and says when it was and why");
+  auto o = std::make_shared<SoakOptionsGiven>();
+  RunOptionsGiven& run = o->run;
+  add_pipeline(*command, run.common, run.scene, run.hand);
+  add_device(*command, run.common);
+  command->add_option("--minutes", o->minutes, "how long, 0.05 to 1440")->capture_default_str();
+  command->add_flag("--load", o->load,
+                    "during the middle third, let another process use all cores");
+  add_lock_memory(*command, run.lock_memory);
+  add_view(*command, run);
+  command->footer("Example:\n  prostm soak --minutes 0.1 --json soak.json");
+  command->callback([o, &work] {
+    if (o->run.stay) throw prostm::InputError("--stay belongs to prostm run: a soak has an end");
+    expect_tracker_file(o->run);
+    work = {&o->run.common.files, [o] { return soak_command(*o); }};
+  });
 }
 
 void add_settings(CLI::App& app, Work& work) {
@@ -356,6 +301,8 @@ int obey(int argc, char** argv) {
   add_solve(app, work);
   add_field(app, work);
   add_devices(app, work);
+  add_selftest(app, work);
+  add_soak(app, work);
   add_settings(app, work);
   add_help(app, work);
   add_check(app, work);

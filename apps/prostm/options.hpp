@@ -18,7 +18,7 @@ struct CommonOptions {
   std::string json;  ///< file, "-" for standard output, empty for none
   std::string figure;
   std::optional<int> seed;
-  std::optional<std::string> method, preset, array, tracker;
+  std::optional<std::string> method, preset, array, tracker, device;
   std::optional<int> paths;
   std::optional<double> budget_ms;
   std::optional<int> grid;
@@ -28,12 +28,13 @@ inline constexpr const char* kTrackerFile = "prostm-tracker.json";  ///< unless 
 
 struct RunOptionsGiven {
   CommonOptions common;
-  std::optional<std::string> scene, device;
+  std::optional<std::string> scene;
   std::string hand = "scripted";
   std::optional<double> seconds, figure_at;
   bool as_fast_as_possible = false, stepped = false;
   std::string record;
   std::optional<std::string> switch_at;
+  bool lock_memory = false;
   bool view = false, stay = false;
   std::optional<std::string> view_address;
   std::optional<int> view_port;
@@ -82,7 +83,23 @@ struct FieldOptionsGiven {
 
 struct DevicesOptionsGiven {
   Files files;
+  std::vector<std::string> names;  ///< what to look for; empty: all that is on this machine
   std::string json;
+};
+
+struct SelftestOptionsGiven {
+  CommonOptions common;      ///< device, array, settings file, JSON and figure
+  double seconds = 4.0;      ///< of each figure
+  double height_mm = 150.0;  ///< of the figures over the array
+  double level = 1.0;        ///< largest intensity
+  bool yes = false;          ///< play without being asked
+  bool silent = false;       ///< play nothing
+};
+
+struct SoakOptionsGiven {
+  RunOptionsGiven run;
+  double minutes = 30.0;
+  bool load = false;  ///< the middle third beside other work on all cores
 };
 
 struct SettingsOptionsGiven {
@@ -105,6 +122,8 @@ int bench_command(const BenchOptionsGiven& options);
 int solve_command(const SolveOptionsGiven& options);
 int field_command(const FieldOptionsGiven& options);
 int devices_command(const DevicesOptionsGiven& options);
+int selftest_command(const SelftestOptionsGiven& options);
+int soak_command(const SoakOptionsGiven& options);
 int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);
 

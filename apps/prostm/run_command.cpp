@@ -180,9 +180,10 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
                  : given.as_fast_as_possible ? RunMode::AsFastAsPossible
                                              : RunMode::RealTime;
   const bool realtime = options.mode == RunMode::RealTime;
-  if (given.device) settings.device = *given.device;
-  device_named(settings.device);
   settings.simulated_array.realtime = realtime;
+  const DeviceInfo device = device_named(settings.device).kind->info(settings.device_setup());
+  const std::string problem = mode_problem(device, options.mode);
+  if (!problem.empty()) throw InputError("--device " + settings.device + problem);
   if (given.switch_at) settings.emit.switch_at = from_name<SwitchAt>(*given.switch_at, "--switch");
   if (realtime && !given.common.budget_ms) set_live_budget(settings);
   settings.side_view = !given.common.figure.empty();
@@ -272,6 +273,14 @@ struct Ending {
   }
 };
 
+/// Says beforehand what the user should know.
+void begin_words(const RunOptionsGiven& given, const PipelineSettings& settings) {
+  std::FILE* out = prose(given.common.json);
+  const std::string doubt = doubt_of_array(settings);
+  if (!doubt.empty()) fmt::print(out, "{}\n", doubt);
+  obey_lock_memory(given.lock_memory, out);
+}
+
 }  // namespace
 
 int run_command(const RunOptionsGiven& given) {
@@ -288,6 +297,7 @@ int run_command(const RunOptionsGiven& given) {
     options.stay = given.stay;
   }
   const Interrupt from_here_on;  // a Ctrl-C as soon as the page is announced ends in a summary
+  begin_words(given, settings);
   const auto mute = view ? view->link().mute : std::make_shared<Mute>();
   Pipeline pipeline(settings, std::move(hands), mute);
   if (view) view->serve(pipeline, prose(given.common.json));

@@ -46,10 +46,10 @@ void print_output(std::FILE* out, const RunSummary& s) {
                         e.samples, percent(e.saturated, e.samples), s.full_scale_pressure,
                         percent(e.limited, e.samples), e.max_focus_step * 1e3));
   print_row(out, "array",
-            fmt::format("{} blocks; {} missed (nothing to play), {} late (covered by the queue "
-                        "unless missed); queue of {} blocks at the end",
-                        s.device.blocks, s.device.missed_blocks, s.device.late_blocks,
-                        s.device.queue_blocks));
+            fmt::format("{}: {} blocks of {:.3g} ms; {} missed (nothing to play), {} late (covered "
+                        "by the queue unless missed); queue of {} blocks at the end",
+                        s.played_by.name, s.device.blocks, 1e3 * s.played_by.block_time(),
+                        s.device.missed_blocks, s.device.late_blocks, s.device.queue_blocks));
   if (s.limited_samples > 0)
     print_row(out, "array", fmt::format("{} samples outside its limits", s.limited_samples));
 }
@@ -105,16 +105,26 @@ constexpr std::array<const char*, kLatencyParts> kPartMeanings = {
     "the planner wakes up",
     "the plan is made",
     "it is laid on the skin",
-    "the array asks for a block (negative: late)",
+    "the device asks for a block (negative: late)",
     "the lap that is being drawn ends",
-    "the array plays what was queued before"};
+    "the device plays what was queued before, and passes it on"};
+
+/// Prints what the device has to do with the latency: the time between its blocks, and its queue.
+void print_share_of_device(std::FILE* out, const RunSummary& s) {
+  const double block = s.latency_parts[kBlockWait].mean, queue = s.latency_parts[kQueuePart].mean;
+  fmt::print(out,
+             "  {} adds {:.1f} ms on average: {:.1f} until it asks for its next block of {:.3g} "
+             "ms, {:.1f} in its queue\n",
+             s.played_by.name, 1e3 * (block + queue), 1e3 * block, 1e3 * s.played_by.block_time(),
+             1e3 * queue);
+}
 
 void print_latency(std::FILE* out, const RunSummary& s) {
   if (s.latency.n == 0) return;
   fmt::print(out,
              "\nLatency, from the tracker's frame to the first sample planned from it: of {} plans "
-             "that were played\n",
-             s.latency.n);
+             "that were played by {}\n",
+             s.latency.n, s.played_by.name);
   print_heading(out);
   print_times(out, "latency", s.latency, "the sum of these parts:");
   for (int part = 0; part < kLatencyParts; ++part) {
@@ -125,6 +135,7 @@ void print_latency(std::FILE* out, const RunSummary& s) {
     print_times(out, fmt::format("  {}", latency_part_name(part)), times, kPartMeanings[i]);
   }
   print_times(out, "redraw", s.redraw, "until 90 % of the new paths were drawn");
+  if (s.mode == RunMode::RealTime) print_share_of_device(out, s);
 }
 
 void print_stages(std::FILE* out, const RunSummary& s) {
@@ -161,6 +172,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
       {"scene", settings.scene},
       {"method", name_of(settings.method)},
       {"switch_at", name_of(settings.emit.switch_at)},
+      {"device", device_json(s.played_by)},
       {"stopped", s.stopped},
       {"failure", s.failure ? nlohmann::ordered_json(sentence_of(s.failure))
                             : nlohmann::ordered_json(nullptr)}};

@@ -11,7 +11,8 @@ import pytest
 
 from test_bad_input import foci_file, hand_lines
 
-COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices", "check", "settings"]
+COMMANDS = ["run", "plan", "capture", "bench", "field", "solve", "devices", "check", "settings",
+            "selftest", "soak"]
 # options that are texts and yet no files; one that is not among these must say that it is INPUT or OUTPUT
 WORDS = {"NAME", "ADDRESS"}
 
@@ -52,7 +53,7 @@ def test_no_output_may_be_another_file_of_the_command(program, refuses, tmp_path
                 arguments.append(tmp_path / "given.json")
         if command == "capture" and "--out" not in (output, other):
             arguments += ["--out", "o.h5"]
-        if command == "run":
+        if command in ("run", "soak"):
             arguments += ["--view"]
         if other == "--beside" and output != "--figure":
             arguments += ["--figure", "f.png"]

@@ -22,5 +22,13 @@ TEST(DeviceNamed, ListsTheDevicesForAnUnknownName) {
   }
 }
 
+TEST(DeviceKinds, SayHowTheyAreNamedWithAnAddress) {
+  for (const DeviceKind& kind : device_kinds()) {
+    const std::string form = form_of(kind);
+    EXPECT_EQ(form.substr(0, form.find("://")), kind.name);
+    EXPECT_EQ(form.find("://") != std::string::npos, kind.address != nullptr) << form;
+  }
+}
+
 }  // namespace
 }  // namespace prostm

@@ -10,7 +10,7 @@ from pages import ROOT
 
 PROSTM = Path(os.environ["PROSTM"])
 # statuses other than 0 that a command may end with here, where no tracker is and any machine will do
-STATUSES = {"leap://": {3}, "openxr": {3}, "prostm check": {0, 1}}
+STATUSES = {"leap://": {3}, "openxr": {3}, "prostm check": {0, 1}, "prostm soak": {0, 1}}
 # commands that are not typed here: other tests run them, or they need another machine
 ELSEWHERE = ("cmake ", "g++ ", "ssh ", "tools/", "PKG_CONFIG_PATH=")
 SECONDS = 3  # of a run that keeps the clock's time: after 1.5 s it says that a tracker is missing
@@ -35,6 +35,8 @@ def shortened(command):
     """The same for 3 s where it would keep the clock's time for longer, and with few fields where it would record or
     plan many."""
     words = re.sub(r"--frames \S+", f"--frames {FRAMES}", command.split("  #")[0])
+    if words.startswith("prostm soak"):
+        return re.sub(r" --minutes \S+", "", words) + f" --minutes {SECONDS / 60}"
     if not words.startswith("prostm run") or "--as-fast-as-possible" in words or "--stepped" in words:
         return words
     short, replaced = re.subn(r"--seconds \S+", f"--seconds {SECONDS}", words)

@@ -4,7 +4,8 @@ import shell
 from pages import ROOT
 
 # each finds the files that those before it wrote; first-run.md types prostm check, which takes long
-COMMANDS = ["run", "plan", "field", "solve", "capture", "bench", "settings", "devices", "help"]
+COMMANDS = ["run", "plan", "field", "solve", "capture", "bench", "settings", "devices", "selftest", "soak",
+            "help"]
 
 
 def test_the_examples_of_help_run_in_the_projects_folder(tmp_path):

@@ -56,5 +56,16 @@ TEST(OtherDevice, IsPlayedInStepsAndInRealTime) {
   }
 }
 
+TEST(OtherDevice, OneThatKeepsTimeIsRefusedWithoutAClock) {
+  std::vector<FocusSample> kept;
+  const OtherDevice clocked(true, kept), stepped(false, kept);
+  for (const RunMode mode : {RunMode::Stepped, RunMode::AsFastAsPossible}) {
+    EXPECT_NE(mode_problem(clocked.info(), mode).find("without --as-fast-as-possible"),
+              std::string::npos);
+    EXPECT_EQ(mode_problem(stepped.info(), mode), "");
+  }
+  EXPECT_EQ(mode_problem(clocked.info(), RunMode::RealTime), "");
+}
+
 }  // namespace
 }  // namespace prostm

@@ -25,6 +25,7 @@ RunSummary good() {
   s.world_steps = 3000;
   s.plans = 1200;
   s.empty_updates = 300;
+  s.played_by.sample_rate = 40e3;
   s.device.blocks = 60'000;
   s.emit.samples = 9'600'000;
   s.contact_stats.joints = 39'000;
@@ -54,6 +55,23 @@ TEST(Verdict, AGoodRunIsToldInTwoSentences) {
               ElementsAre("The rates were held: smoke 50.0 of 50 Hz, plans 25.0 of 25 Hz, 40 "
                           "samples a millisecond.",
                           "Nothing was unusual."));
+}
+
+TEST(Verdict, TheSamplesAreThoseOfTheDeviceThatPlayed) {
+  EXPECT_THAT(said([](RunSummary& s) { s.played_by.sample_rate = 20e3 / 3.0; }).front(),
+              HasSubstr(", 6.667 samples a millisecond"));
+}
+
+TEST(Verdict, ASlowLinkMayBeWhyADeviceFellSilent) {
+  RunSummary s = good();
+  s.device.blocks = 3000;
+  s.device.missed_blocks = 30;
+  PipelineSettings settings;
+  EXPECT_THAT(verdict_of(s, settings).sentences.front(), Not(HasSubstr("link")));
+  settings.device = "autd3://127.0.0.1:8080";
+  EXPECT_THAT(verdict_of(s, settings).sentences.front(),
+              HasSubstr("fell silent for 600 ms in all, which is felt as gaps: its thread woke, or "
+                        "its link passed blocks on, too late for 30 of 3000 blocks"));
 }
 
 TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {

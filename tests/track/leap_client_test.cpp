@@ -322,5 +322,36 @@ TEST(StampClock, AStampThatWasSeenIsNoFrameHoweverLateItComes) {
   EXPECT_NEAR(clock.time_of(5.02, 111.0).value(), 111.0, 1e-9);
 }
 
+TEST(LeapLook, SaysWhatIsThereWithinItsTime) {
+  const auto look = [](const HostPort& address) { return look_for_leap(address, 0.5); };
+  {
+    const LeapServer server(messages_of(scripted_frames(200)), true);
+    const TrackerFinding finding = look(address_of(server));
+    EXPECT_TRUE(finding.found);
+    EXPECT_NE(finding.words.find("frames come in"), std::string::npos) << finding.words;
+  }
+  {
+    const LeapServer server({{60.0, "{}"}});
+    const TrackerFinding finding = look(address_of(server));
+    EXPECT_TRUE(finding.found);
+    EXPECT_NE(finding.words.find("no frame came in 0.5 s"), std::string::npos) << finding.words;
+  }
+  {
+    const LeapServer server({}, false, "/other");
+    const TrackerFinding finding = look(address_of(server));
+    EXPECT_FALSE(finding.found);
+    EXPECT_NE(finding.words.find("does not serve /v6.json"), std::string::npos) << finding.words;
+  }
+  std::uint16_t free_port = 0;
+  {
+    const LeapServer server({});
+    free_port = server.port();
+  }
+  const TrackerFinding finding = look({"127.0.0.1", free_port});
+  EXPECT_FALSE(finding.found);
+  EXPECT_NE(finding.words.find("nothing answers"), std::string::npos) << finding.words;
+  EXPECT_NE(finding.words.find("UltraleapTrackingWebSocket"), std::string::npos) << finding.words;
+}
+
 }  // namespace
 }  // namespace prostm

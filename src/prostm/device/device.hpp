@@ -25,6 +25,8 @@ struct DeviceInfo {
 
   /// Rate of the samples that an emission makes for it [Hz].
   double emission_rate() const { return sample_rate * decimation; }
+  /// Length of a block [s].
+  double block_time() const { return block_samples / sample_rate; }
 };
 
 struct DeviceStats {
@@ -82,6 +84,9 @@ class Device {
   virtual double play_time(std::int64_t sample) const = 0;
   /// Time when the block of a sample was asked for, likewise: play_time less the queue before it.
   virtual double ask_time(std::int64_t sample) const { return play_time(sample); }
+  /// Says what the device told of itself when it was reached, such as the versions of its firmware;
+  /// empty if it tells nothing.
+  virtual std::string description() const { return {}; }
   /// Whether the hardware says that it is too hot. Any thread.
   virtual bool is_hot() const { return false; }
   /// The samples that it played; null if it does not remember them.

@@ -26,11 +26,6 @@ constexpr DeviceKind kKinds[] = {
      nullptr, nullptr},
 };
 
-/// NAME, or NAME://ADDRESS.
-std::string form_of(const DeviceKind& kind) {
-  return kind.address == nullptr ? kind.name : std::string(kind.name) + "://" + kind.address;
-}
-
 const DeviceKind& kind_named(const std::string& name) {
   std::string built;
   std::vector<std::string> names;
@@ -51,6 +46,10 @@ const DeviceKind& kind_named(const std::string& name) {
 
 std::span<const DeviceKind> device_kinds() {
   return kKinds;
+}
+
+std::string form_of(const DeviceKind& kind) {
+  return kind.address == nullptr ? kind.name : std::string(kind.name) + "://" + kind.address;
 }
 
 DeviceName device_named(const std::string& name) {

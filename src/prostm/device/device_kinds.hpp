@@ -42,6 +42,9 @@ struct DeviceKind {
 
 std::span<const DeviceKind> device_kinds();
 
+/// How --device names a kind: NAME, or NAME://ADDRESS with the form of its address.
+std::string form_of(const DeviceKind& kind);
+
 /// A device as --device names it: NAME, or NAME://ADDRESS.
 struct DeviceName {
   const DeviceKind* kind;

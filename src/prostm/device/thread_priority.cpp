@@ -41,10 +41,9 @@ void ask_for_short_slices() noexcept {
 bool raise_thread_priority() noexcept {
   bool is_realtime = false;
 #if defined(__linux__)
-  constexpr int kRealTime = 10;  // above ordinary threads, below what the system itself runs
   constexpr int kNice = -11;
   sched_param parameter{};
-  parameter.sched_priority = kRealTime;
+  parameter.sched_priority = kRealtimePriority;
   is_realtime = pthread_setschedparam(pthread_self(), SCHED_RR, &parameter) == 0;
   if (!is_realtime) {
     setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);

@@ -135,4 +135,16 @@ struct SceneFigure {
 /// array's middle. @throws std::invalid_argument: sizes that disagree, or an upright plane.
 void draw_scene(const SceneFigure& figure, const std::string& path);
 
+/// Where the transducers of an array are.
+struct ArrayFigure {
+  std::string title;
+  std::vector<Vec3> position;  ///< in D [m]
+  std::vector<int> unit;       ///< of each transducer, from 0; each has a colour of its own
+  double radius = 4.5e-3;      ///< of a transducer [m]
+};
+/// The array seen from above, with D's axes and origin, and transducer 0 marked.
+/// @throws std::invalid_argument: no transducer, or not as many units as transducers. @throws
+/// InputError when the file cannot be written.
+void draw_array(const ArrayFigure& figure, const std::string& path);
+
 }  // namespace prostm

@@ -6,6 +6,11 @@
 #endif
 #include <hwy/highway.h>
 
+#if defined(__linux__)
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
+
 #include <chrono>
 #include <fstream>
 #include <thread>
@@ -54,6 +59,29 @@ Machine look_at_machine(double seconds) {
   sleeper.join();
   machine.sleep_late = late.summary();
   return machine;
+}
+
+MachineUse machine_use() {
+  MachineUse use;
+#if defined(__linux__)
+  const double tick = 1.0 / static_cast<double>(sysconf(_SC_CLK_TCK));
+  std::ifstream file("/proc/stat");
+  std::string name;
+  double user = 0, nice = 0, system = 0, idle = 0, waiting = 0, irq = 0, soft = 0, stolen = 0;
+  if (file >> name >> user >> nice >> system >> idle >> waiting >> irq >> soft >> stolen) {
+    use.busy = tick * (user + nice + system + irq + soft);
+    use.stolen = tick * stolen;
+  }
+  rusage own{};
+  if (getrusage(RUSAGE_SELF, &own) == 0) {
+    const auto seconds = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    use.own = seconds(own.ru_utime) + seconds(own.ru_stime);
+    use.faults = own.ru_majflt;
+  }
+#endif
+  return use;
 }
 
 }  // namespace prostm

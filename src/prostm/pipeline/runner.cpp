@@ -198,6 +198,7 @@ RunSummary Run::summary() {
   plans_.follow();
   world_.log().write(s);
   plans_.log().write(s);
+  s.played_by = pipeline_.device().info();
   s.device = pipeline_.device_stats();
   s.emit = pipeline_.emit_stats();
   s.limited_samples = pipeline_.limited_samples();
@@ -211,6 +212,12 @@ RunSummary Run::summary() {
 }
 
 }  // namespace
+
+std::string mode_problem(const DeviceInfo& device, RunMode mode) {
+  if (!device.keeps_time || mode == RunMode::RealTime) return {};
+  return " keeps its own time, so it needs a run in real time, without --as-fast-as-possible and "
+         "--stepped";
+}
 
 RunSummary run(Pipeline& pipeline, const PipelineSettings& settings, const RunOptions& options,
                RunObserver& observer) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <exception>
 #include <span>
+#include <string>
 
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/names.hpp"
@@ -26,6 +27,9 @@ enum class RunMode : std::uint8_t {
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<RunMode> = {
     "realtime", "as-fast-as-possible", "stepped"};
+
+/// Says why a device cannot play in a mode, to follow its name; empty if it can.
+std::string mode_problem(const DeviceInfo& device, RunMode mode);
 
 struct RunOptions {
   double seconds = 60.0;  ///< of run time
@@ -53,6 +57,7 @@ struct RunSummary {
   std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
   std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
   ContactStats contact_stats;                  ///< of all updates
+  DeviceInfo played_by;
   DeviceStats device;
   EmitStats emit;
   std::int64_t limited_samples = 0;  ///< that the limiter before the device had to change

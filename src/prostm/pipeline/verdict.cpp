@@ -12,7 +12,7 @@ constexpr std::size_t kMostSentences = 4;  // that a newcomer reads in ten secon
 // A missing step stops the smoke for 20 ms, a missing plan lets the paths go round once or twice
 // more. One in a hundred is a hiccup every two seconds or less.
 constexpr double kLeastDone = 0.99;
-// A missed block is a millisecond of silence: one each second.
+// A missed block is a gap: of blocks of a millisecond, one each second.
 constexpr double kMostMissed = 1e-3;
 // Share of the time there is. The rest is for other stages, for the threads to wake up, and for
 // other programs.
@@ -75,10 +75,6 @@ std::string reason(const RunSummary& s, const PipelineSettings& settings) {
       1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
 }
 
-double samples_a_millisecond(const PipelineSettings& settings) {
-  return 1e-3 * device_named(settings.device).kind->info(settings.device_setup()).sample_rate;
-}
-
 void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict& out) {
   const HeldRate world = world_rate(s, settings), plans = plan_rate(s, settings);
   const bool in_time = world.held() && plans.held();
@@ -89,8 +85,8 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
       fmt::format("{} of {} blocks", s.device.missed_blocks, s.device.blocks);
   if (*out.held) {
     out.sentences.push_back(fmt::format(
-        "The rates were held: {}, {:g} samples a millisecond{}.", rates,
-        samples_a_millisecond(settings),
+        "The rates were held: {}, {:.4g} samples a millisecond{}.", rates,
+        1e-3 * s.played_by.sample_rate,
         s.device.missed_blocks > 0 ? fmt::format(" ({} missed, hardly to be felt)", missed) : ""));
     return;
   }
@@ -101,10 +97,13 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
   if (samples_held(s)) return;
   const double silent = s.seconds * share(s.device.missed_blocks, s.device.blocks);
   out.sentences.push_back(fmt::format(
-      "{} array fell silent for {:.0f} ms in all, which is felt as gaps: its thread woke too late "
-      "for {}. Allow it real-time priority (ulimit -r 10), or close what else runs.",
+      "{} array fell silent for {:.0f} ms in all, which is felt as gaps: {} too late for {}. Allow "
+      "it real-time priority (ulimit -r 10), or close what else runs.",
       in_time ? fmt::format("Smoke and plans kept their rates ({}), but the", rates) : "The",
-      1e3 * silent, missed));
+      1e3 * silent,
+      settings.device == "sim" ? "its thread woke"
+                               : "its thread woke, or its link passed blocks on,",
+      missed));
 }
 
 void judge_pace(const RunSummary& s, Verdict& out) {

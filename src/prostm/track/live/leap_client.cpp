@@ -77,6 +77,13 @@ class LeapTracker final : public LiveTracker {
     return link_.load(std::memory_order_relaxed) == Link::Connected;
   }
 
+  /// Whether an attempt to connect has failed, or frames come in.
+  bool is_settled() const noexcept {
+    const Link link = link_.load(std::memory_order_relaxed);
+    if (link == Link::Connected) return frames_.load(std::memory_order_relaxed) > 0;
+    return link != Link::Connecting;
+  }
+
   TrackerStatus status() const override {
     TrackerStatus status;
     const Link link = link_.load(std::memory_order_relaxed);
@@ -233,6 +240,22 @@ HostPort leap_address(const std::string& text) {
 
 std::unique_ptr<LiveTracker> make_leap_tracker(const HostPort& address) {
   return std::make_unique<LeapTracker>(address);
+}
+
+TrackerFinding look_for_leap(const HostPort& address, double seconds) {
+  const LeapTracker tracker(address);
+  const double end = steady_now() + seconds;
+  while (!tracker.is_settled() && steady_now() < end) std::this_thread::sleep_for(milliseconds(5));
+  const TrackerStatus status = tracker.status();
+  if (!status.connected) {
+    if (tracker.is_settled()) return {false, status.sentence};
+    return {false, fmt::format("nothing answered at leap://{}:{} within {:g} s; {}, and a firewall "
+                               "must let it in",
+                               address.host, address.port, seconds, leap_needs())};
+  }
+  if (status.frames > 0) return {true, status.sentence + ", and frames come in"};
+  return {true, status.sentence + ", but no frame came in " + fmt::format("{:g} s", seconds) +
+                    ": is the tracker plugged in?"};
 }
 
 }  // namespace prostm

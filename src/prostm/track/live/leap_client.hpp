@@ -25,4 +25,15 @@ HostPort leap_address(const std::string& text);
 /// @throws InputError if `address.host` is neither an address nor a known host name.
 std::unique_ptr<LiveTracker> make_leap_tracker(const HostPort& address);
 
+/// Result of a look for a tracker.
+struct TrackerFinding {
+  bool found = false;
+  std::string words;  ///< what is there; or what is missing and what to do
+};
+
+/// Looks whether a service answers at `address`, speaks the protocol, and sends frames, for
+/// `seconds` at most, apart from the time that a host's name takes.
+/// @throws InputError as make_leap_tracker() does.
+TrackerFinding look_for_leap(const HostPort& address, double seconds = 1.0);
+
 }  // namespace prostm

@@ -1,0 +1,81 @@
+#include "add_options.hpp"
+
+#include "common.hpp"
+#include "prostm/device/device_kinds.hpp"
+#include "prostm/figure/figures.hpp"
+
+namespace prostm::app {
+
+void add_json(CLI::App& command, Files& files, std::string& json) {
+  add_output(command, files, "--json", json, check_json_output,
+             "write the result as JSON; - is standard output");
+}
+
+void add_common(CLI::App& command, CommonOptions& o) {
+  add_input(command, o.files, "--settings", o.settings_file,
+            "settings of any stage, a TOML file (docs/files.md)");
+  add_json(command, o.files, o.json);
+  command.add_option("--seed", o.seed, "of everything that is drawn at random");
+  add_name(command, "--preset", o.preset, "best (default), fast, paper, or paper-valid");
+  command.add_option("--paths", o.paths, "focal points, 1 to 8");
+  command.add_option("--budget-ms", o.budget_ms,
+                     "time for a plan of preset best; 0: a fixed amount of work");
+  add_name(command, "--method", o.method,
+           "pro-stm (default): paths, or am: foci that stand still, modulated (docs/am.md)");
+}
+
+void add_array(CLI::App& command, CommonOptions& o, const std::string& help) {
+  add_input_or_name(command, o.files, "--array", o.array, names_json, help);
+}
+
+void add_device(CLI::App& command, CommonOptions& o) {
+  std::string forms;
+  for (const DeviceKind& kind : device_kinds()) {
+    if (kind.is_built()) forms += (forms.empty() ? "" : ", ") + form_of(kind);
+  }
+  add_name(command, "--device", o.device,
+           "what plays: " + forms + "; default: sim; see prostm devices");
+}
+
+void add_lock_memory(CLI::App& command, bool& lock_memory) {
+  command.add_flag("--lock-memory", lock_memory,
+                   "keep all memory from being swapped out, and say whether that is allowed, and "
+                   "real-time priority");
+}
+
+CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help) {
+  return add_output(command, o.files, "--figure", o.figure, prostm::check_figure, help);
+}
+
+void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of) {
+  auto* cell = command.add_option("--cell-mm", o.cell_mm, "edge of a cell of a .npy or .png field");
+  auto* width = command.add_option("--width-mm", o.width_mm,
+                                   "instead: width of the whole .npy or .png field");
+  width->excludes(cell);
+  auto* invert = command.add_flag("--invert", o.invert, "the .png field is drawn black on white");
+  auto* frame = command.add_option("--frame", o.frame, "frame of a .h5 recording");
+  frame->capture_default_str();
+  if (of == nullptr) return;
+  for (CLI::Option* option : {cell, width, invert, frame}) option->needs(of);
+}
+
+void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
+                  std::string& hand) {
+  add_common(command, common);
+  add_name(command, "--scene", scene,
+           "one-plume (default), two-plumes, three-plumes, four-plumes, or still-air");
+  add_input_or_name(
+      command, common.files, "--hand", hand, names_recording,
+      "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
+      "page (docs/hands.md)",
+      hint_for_hand)
+      ->capture_default_str();
+  add_input_or_name(
+      command, common.files, "--tracker", common.tracker, names_json,
+      "where the tracker is: centre (default), ultraleap-kit, or a pose file (.json)");
+  command.add_option("--grid", common.grid,
+                     "cells along each edge of the fluid's box, a multiple of 16");
+  add_array(command, common, "usx (default), autd3, or an array file (.json)");
+}
+
+}  // namespace prostm::app

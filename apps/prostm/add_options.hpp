@@ -1,0 +1,73 @@
+#pragma once
+/// Options of the command line that several commands have.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "options.hpp"
+
+namespace prostm::app {
+
+/// The work that the command line asks for: it begins once all is parsed and files are checked.
+struct Work {
+  const Files* files = nullptr;  ///< null: none
+  std::function<int()> run;
+};
+
+/// An option, or a positional, whose value is a file that the command reads.
+template <class Value>
+CLI::Option* add_input(CLI::App& command, Files& files, const std::string& name, Value& value,
+                       const std::string& help) {
+  return command.add_option(name, value, help)
+      ->type_name("INPUT")
+      ->each([&files, name](const std::string& path) { files.reads(name, path); });
+}
+
+/// The same, where some values are names of what is built in. @param hint says which of them a file
+/// that is not there may stand for.
+template <class Value>
+CLI::Option* add_input_or_name(CLI::App& command, Files& files, const std::string& name,
+                               Value& value, bool (*is_file)(const std::string&),
+                               const std::string& help,
+                               std::string (*hint)(const std::string&) = nullptr) {
+  return command.add_option(name, value, help)
+      ->type_name("NAME|INPUT")
+      ->each([&files, name, is_file, hint](const std::string& path) {
+        if (is_file(path)) files.reads(name, path, hint != nullptr ? hint(path) : std::string());
+      });
+}
+
+/// An option whose value is a file that the command writes.
+template <class Value>
+CLI::Option* add_output(CLI::App& command, Files& files, const std::string& name, Value& value,
+                        Files::Check check, const std::string& help) {
+  return command.add_option(name, value, help)
+      ->type_name("OUTPUT")
+      ->each([&files, name, check](const std::string& path) { files.writes(name, path, check); });
+}
+
+/// One that takes one of a few words.
+template <class Value>
+CLI::Option* add_name(CLI::App& command, const std::string& name, Value& value,
+                      const std::string& help) {
+  return command.add_option(name, value, help)->type_name("NAME");
+}
+
+void add_json(CLI::App& command, Files& files, std::string& json);
+/// Settings, JSON, seed, and the options of planning.
+void add_common(CLI::App& command, CommonOptions& o);
+void add_array(CLI::App& command, CommonOptions& o, const std::string& help);
+/// --device, with the forms that a device's name has.
+void add_device(CLI::App& command, CommonOptions& o);
+void add_lock_memory(CLI::App& command, bool& lock_memory);
+CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& help);
+/// How the file of a field is read. @param of the option that names the file, unless it is always
+/// there.
+void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of = nullptr);
+/// Those of add_common(), and what a run is made of.
+void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
+                  std::string& hand);
+
+}  // namespace prostm::app

@@ -1,0 +1,76 @@
+#pragma once
+/// Figures of one focal point by which a hand can tell whether an array works.
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "prostm/acoustics/array.hpp"
+#include "prostm/emit/focus_sample.hpp"
+
+namespace prostm {
+
+enum class TestShape : std::uint8_t { Point, Line, Circle };
+
+struct TestFigure {
+  std::string name;  ///< for people
+  TestShape shape = TestShape::Point;
+  Vec3 centre = Vec3::Zero();  ///< in D [m]
+  double radius = 0.0;  ///< of a circle, half of a line along x; both parallel to D's x and y [m]
+  double frequency = 0.0;   ///< rounds, or ways to and fro, a second [Hz]
+  double modulation = 0.0;  ///< of the intensity, between 0 and its full value [Hz]; 0: steady
+  double seconds = 4.0;     ///< fades included
+
+  double speed() const;              ///< largest of the focal point [m/s]
+  Vec3 position(double t) const;     ///< [m], t since its beginning [s]
+  double intensity(double t) const;  ///< 0..1, gentle at first, without the fades
+};
+
+/// Returns the figures for an array: a point that moves, a circle, and, where the array has several
+/// units, a point over each of them.
+/// @param height over the array, or the unit, along its normal [m].
+std::vector<TestFigure> test_figures(const TransducerArray& array, double emission_rate,
+                                     double height, double seconds);
+
+/// Plays one figure when it is told to, and silence otherwise. The intensity never changes faster
+/// than over its full range in 40 samples, and the focal point moves only while it may: by at most
+/// kMaxFocusSpeed where it sounds.
+class TestPattern final : public SampleSource {
+ public:
+  /// @param emission_rate samples a second [Hz].  @param level largest intensity, 0..1.
+  /// @throws std::invalid_argument with a sentence for figures that are too fast, too short, or
+  /// have a number that is not finite.
+  TestPattern(std::vector<TestFigure> figures, double emission_rate, double level);
+
+  int foci() const override { return 1; }
+  void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
+
+  // ---- one other thread ----
+  /// Plays a figure, by its place, after the fade of what still sounds.
+  void play(std::size_t figure) noexcept;
+  /// Fades out.
+  void silence() noexcept;
+  /// Whether all samples of what was asked for last are made, its fade included.
+  bool done() const noexcept { return finished_.load() == order_.load(); }
+
+  static constexpr double kFade = 2e-3;  ///< time of a fade over the full range [s]
+
+ private:
+  void order(std::int64_t figure) noexcept;
+  FocusSample next(std::int64_t order) noexcept;
+
+  const std::vector<TestFigure> figures_;
+  const double rate_, level_;
+  const int fade_samples_;
+  std::atomic<std::int64_t> order_{0}, finished_{0};  // 256 · count + place of the figure + 1
+
+  // of the thread that fills
+  std::int64_t playing_ = 0;  // order
+  std::int64_t sample_ = 0;   // of the figure
+  int faded_in_ = 0;          // 0..fade_samples_
+  bool over_ = true;          // what plays is silent, and stays so
+  Vec3 last_ = Vec3::Zero();
+};
+
+}  // namespace prostm
