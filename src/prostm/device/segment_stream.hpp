@@ -35,6 +35,8 @@ class SegmentStream final : public Device {
   std::int64_t samples() const override;
   double play_time(std::int64_t sample) const override;
   double ask_time(std::int64_t sample) const override;
+  bool is_hot() const override { return device_->is_hot(); }
+  std::string description() const override { return device_->description(); }
   const PlayedSamples* played() const override { return device_->played(); }
 
  private:

@@ -55,7 +55,7 @@ int connect_to(const addrinfo& to, Clock::time_point end) {
 
 }  // namespace
 
-std::string TcpConnection::open(const TcpAddress& address, Duration patience) {
+std::string TcpConnection::open(const HostPort& address, Duration patience) {
   close();
   const Clock::time_point end = Clock::now() + patience;
   addrinfo wanted{};

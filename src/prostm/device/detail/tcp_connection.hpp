@@ -5,14 +5,11 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
+
+#include "prostm/core/host_port.hpp"
 
 namespace prostm {
-
-/// HOST:PORT, where HOST is a name, an IPv4 address, or an IPv6 address in brackets.
-struct TcpAddress {
-  std::string host;
-  int port = 0;
-};
 
 /// A client's end. Nothing but open() allocates, and nothing throws. Not for several threads.
 class TcpConnection {
@@ -20,14 +17,23 @@ class TcpConnection {
   using Duration = std::chrono::steady_clock::duration;
 
   TcpConnection() = default;
+  /// Takes over a connected stream socket that does not block.
+  explicit TcpConnection(int socket) : socket_(socket) {}
   ~TcpConnection() { close(); }
   TcpConnection(const TcpConnection&) = delete;
   TcpConnection& operator=(const TcpConnection&) = delete;
+  TcpConnection(TcpConnection&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
+  TcpConnection& operator=(TcpConnection&& other) noexcept {
+    close();
+    socket_ = std::exchange(other.socket_, -1);
+    return *this;
+  }
 
   /// Connects, or says in a few words why it cannot; empty if it could.
-  std::string open(const TcpAddress& address, Duration patience);
+  std::string open(const HostPort& address, Duration patience);
   void close() noexcept;
   bool is_open() const { return socket_ >= 0; }
+  int socket() const { return socket_; }  ///< −1: not open
 
   /// Sends all bytes; false if that took longer than `patience` or the connection is lost. The
   /// connection is of no use then.
