@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "common.hpp"
+#include "frame_budget.hpp"
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/track/live/leap_client.hpp"
 #include "prostm/track/live/openxr_hands.hpp"
@@ -29,6 +30,7 @@ Row row_of(const DeviceKind& kind) {
 }  // namespace
 
 int devices_command(const DevicesOptionsGiven& options) {
+  if (options.budget) return frame_budget(options);
   const std::string openxr = openxr_problem();
   std::vector<Row> rows;
   for (const DeviceKind& kind : device_kinds()) rows.push_back(row_of(kind));

@@ -286,6 +286,7 @@ void add_devices(CLI::App& app, Work& work) {
       app.add_subcommand("devices", "what can be driven from here, and why not, for each kind");
   auto o = std::make_shared<DevicesOptionsGiven>();
   add_json(*command, o->files, o->json);
+  command->add_flag("--budget", o->budget, "what a link to AUTD3 carries: a table, nothing else");
   command->footer("Example:\n  prostm devices");
   command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
 }

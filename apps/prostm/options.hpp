@@ -83,6 +83,7 @@ struct FieldOptionsGiven {
 struct DevicesOptionsGiven {
   Files files;
   std::string json;
+  bool budget = false;
 };
 
 struct SettingsOptionsGiven {
