@@ -134,7 +134,7 @@ void Ear::check_phases(const Playing& playing) {
         sum += std::polar(
             1.0, kTurn * (std::sqrt(ex * ex + ey * ey + ez * ez) / wavelength + offset / 256.0));
       }
-      if (std::abs(sum) < 0.1 * slots) continue;
+      if (std::abs(sum) < 0.5 * slots) continue;
       const int sine_mean = (sine_sum / slots) >> 1, cosine_mean = (cosine_sum / slots) >> 1;
       const double told = std::atan2(sine_mean - 63.5, cosine_mean - 63.5);
       const double away = std::remainder(told - std::arg(sum), kTurn);

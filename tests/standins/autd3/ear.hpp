@@ -35,7 +35,7 @@ class Ear {
   double longest_silence = 0.0;  // between sounds [s]
   double largest_step = 0.0;     // of a focal point above 1 % from sample to sample [m]
   double largest_speed = 0.0;    // a step over the sampling period [m/s]
-  double phase_error = 0.0;      // of a transducer whose sum is ≥ 0.1 of the slots [1/256 turn]
+  double phase_error = 0.0;      // of a transducer whose sum is ≥ 0.5 of the slots [1/256 turn]
   int largest_key = 0;           // largest intensity · modulation / 255, of 255
 
  private:

@@ -41,7 +41,9 @@ std::string loop_problem(std::span<const FocusSample> samples, int foci, int mos
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FocusSample& s = samples[i];
-    if (s.p_D.allFinite() && s.intensity >= 0.0F && s.intensity <= 1.0F) continue;
+    if (s.p_D.allFinite() && std::isfinite(s.intensity) && s.intensity >= 0.0F &&
+        s.intensity <= 1.0F)
+      continue;
     return fmt::format(
         "Sample {} of the loop has a number that is not finite or an intensity outside of 0 to 1.",
         i / static_cast<std::size_t>(foci));

@@ -1,5 +1,7 @@
 #include "prostm/device/detail/autd3_session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -35,8 +37,7 @@ constexpr int kNeeded = 0xA5;  // v12.1
 std::string version_of(int number, int patch) {
   for (const Versions& v : kVersions) {
     if (number < v.first || number > v.last) continue;
-    return "v" + std::to_string(v.major) + "." + std::to_string(number - v.first) + "." +
-           std::to_string(patch);
+    return fmt::format("v{}.{}.{}", v.major, number - v.first, patch);
   }
   return number < kVersions.front().first ? "older than v9" : "newer than v12.1";
 }

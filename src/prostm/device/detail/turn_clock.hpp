@@ -16,7 +16,7 @@ class TurnClock {
   using Duration = std::chrono::steady_clock::duration;
 
   /// The device's clock may run slower than the host's by this much of a period.
-  static constexpr int kDrift = 1'000;
+  static constexpr int kDrift = 5'000;
 
   void start(Time now, int segment, Duration period);
   /// An answer that came in at `now`. @param segment 0 or 1, or −1 if it did not tell.
