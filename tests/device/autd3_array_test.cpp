@@ -14,7 +14,7 @@ using test::sleep_s;
 using test::StandIn;
 using testing::HasSubstr;
 
-/// What an exception says; empty if there is none.
+/// Words of the exception that construction throws; empty if it throws nothing.
 std::string refusal_of(const Autd3Setup& setup) {
   try {
     const Autd3Array array(setup);

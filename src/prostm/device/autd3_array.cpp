@@ -65,7 +65,7 @@ struct Autd3Array::Impl {
 
   const Autd3Setup setup;
   const std::vector<Pose> units;
-  autd3::Session session;  // of the thread that plays, while there is one
+  autd3::Session session;  // of the thread that plays, while it runs
   SlotEncoder encoder;     // likewise, or of the one that loads loops
   autd3::Output output;
   Autd3Budget budget;

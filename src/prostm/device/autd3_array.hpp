@@ -75,7 +75,7 @@ class Autd3Array final : public Device {
   std::string description() const override;
 
   const Autd3Budget& budget() const;
-  int link_process() const;  ///< its id; 0 while there is none
+  int link_process() const;  ///< its id; 0 without a link
 
  private:
   struct Impl;
@@ -85,7 +85,7 @@ class Autd3Array final : public Device {
 /// Its setup from what a registry is given. @throws InputError about the address or the file.
 Autd3Setup autd3_setup(const DeviceSetup& setup);
 
-/// What is at an address.
+/// Result of a look at an address.
 struct Autd3Finding {
   bool found = false;
   std::string words;  ///< the units and their firmware; or what is missing and what to do

@@ -1,5 +1,5 @@
 #pragma once
-/// What a link to AUTD3 units carries.
+/// Samples that a link to AUTD3 units carries.
 
 #include <vector>
 

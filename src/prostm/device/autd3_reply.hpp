@@ -30,7 +30,7 @@ inline constexpr std::size_t kMostReply = 5 + kMostWords;
 /// @param units told in the geometry.
 std::size_t request_bytes(std::span<const std::uint8_t> begin, std::size_t units) noexcept;
 
-/// What a server answered.
+/// A server's answer.
 struct Reply {
   enum class Kind : std::uint8_t {
     Incomplete,

@@ -1,5 +1,5 @@
 #pragma once
-/// What a unit's output is like: when it sounds, how its focal points move, and whether its phases
+/// A unit's output: when it sounds, how its focal points move, and whether its phases
 /// are those of the focal points.
 
 #include <array>

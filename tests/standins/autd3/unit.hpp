@@ -13,7 +13,7 @@ namespace standin {
 
 inline constexpr int kFrameBytes = 626, kPayloadBytes = 622;
 
-/// What plays at an instant.
+/// Output at an instant.
 struct Playing {
   int segment = 0;
   std::int64_t index = 0;
@@ -25,8 +25,8 @@ struct Playing {
   std::int64_t divider = 1;
 };
 
-/// What the firmware calls errors is answered and counted; what it would not notice, but what a
-/// correct client never sends, is counted as a problem and described.
+/// Errors of the firmware are answered and counted. Faults that it would not notice, but that a
+/// correct client never makes, are counted as problems and described.
 class Unit {
  public:
   Unit();

@@ -47,7 +47,7 @@ class Session {
   bool exchange() noexcept { return send() && confirm(); }
   /// The same with the first unit's frame for all.
   bool exchange_for_all() noexcept;
-  /// Asks for the units' answers without a new frame. @return false if there is none.
+  /// Asks for the units' answers without a new frame. @return false if they do not come.
   bool poll() noexcept;
 
   int playing_segment()
