@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common.hpp"
+#include "frame_budget.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/device/realtime_limits.hpp"
@@ -205,6 +206,7 @@ nlohmann::ordered_json json_of(const Row& row) {
 }  // namespace
 
 int devices_command(const DevicesOptionsGiven& options) {
+  if (options.budget) return frame_budget(options);
   std::vector<Looking> looks = options.names.empty() ? look_around() : look_at(options.names);
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   bool all_found = true;

@@ -188,6 +188,7 @@ void add_devices(CLI::App& app, Work& work) {
            "look at these alone, also on other machines: a device with its address, "
            "leap://HOST:PORT, or openxr; default: all that this machine has");
   add_json(*command, o->files, o->json);
+  command->add_flag("--budget", o->budget, "what a link to AUTD3 carries: a table, nothing else");
   command->footer("Example:\n  prostm devices");
   command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
 }

@@ -85,6 +85,7 @@ struct DevicesOptionsGiven {
   Files files;
   std::vector<std::string> names;  ///< what to look for; empty: all that is on this machine
   std::string json;
+  bool budget = false;
 };
 
 struct SelftestOptionsGiven {

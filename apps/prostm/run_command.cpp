@@ -61,6 +61,7 @@ class Observer final : public RunObserver {
   bool on_progress(double time) override {
     say_whether_muted();
     say_news_of_tracker();
+    say_news_of_array();
     if (view_ != nullptr) view_->check();
     if (!reported_) progress_.show(time, options_.seconds, "s");
     return !interrupt_.requested();
@@ -112,6 +113,16 @@ class Observer final : public RunObserver {
     if (const auto news = tracker_news_.look(*tracker, now)) progress_.say(out_, *news);
   }
 
+  /// Says when an array that comes back by itself has gone, and when it is back.
+  void say_news_of_array() {
+    if (pipeline_ == nullptr) return;
+    const bool gone = pipeline_->device().status() == DeviceStatus::Vanished;
+    if (gone == array_gone_) return;
+    array_gone_ = gone;
+    progress_.say(out_, gone ? pipeline_->device().problem() + "; trying again, silent meanwhile."
+                             : "The array is back.");
+  }
+
   Recorder* recorder_;
   const View* view_;
   std::optional<double> picture_at_;
@@ -125,7 +136,7 @@ class Observer final : public RunObserver {
   WorldFrame contact_;
   PlanFrame plan_;
   std::function<void(const RunSummary&)> report_;
-  bool reported_ = false, muted_ = false;
+  bool reported_ = false, muted_ = false, array_gone_ = false;
   std::shared_ptr<const Mute> mute_;
   Interrupt interrupt_;
   Progress progress_{"running"};
@@ -230,6 +241,7 @@ struct Ending {
     nlohmann::ordered_json json = summary_json(summary, settings, verdict);
     json["hand"] = given.hand;
     json["tracker"] = tracker_json(tracker);
+    json["array"] = pipeline.device().description();
     json["settings"] = settings_to_json(settings_groups(settings));
     Attempts attempts;
     attempts.add([&] {
@@ -302,6 +314,8 @@ int run_command(const RunOptionsGiven& given) {
   Pipeline pipeline(settings, std::move(hands), mute);
   if (view) view->serve(pipeline, prose(given.common.json));
 
+  const std::string array = pipeline.device().description();
+  if (!array.empty()) fmt::print(prose(given.common.json), "The array: {}.\n", array);
   const std::unique_ptr<Recorder> recorder = make_recorder(given, settings);
   std::optional<double> picture_at;
   if (settings.side_view) picture_at = given.figure_at.value_or(0.5 * options.seconds);

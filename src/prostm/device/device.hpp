@@ -22,6 +22,7 @@ struct DeviceInfo {
   bool loads_segments = false;       ///< plays segments that are loaded whole
   bool keeps_time = true;            ///< plays at its own times; false: when pull() is called
   int decimation = 1;                ///< samples of an emission per sample of the device
+  bool comes_back = false;           ///< plays on by itself after it was Vanished for a while
 
   /// Rate of the samples that an emission makes for it [Hz].
   double emission_rate() const { return sample_rate * decimation; }
@@ -43,7 +44,9 @@ enum class DeviceStatus : std::uint8_t {
   Idle,  ///< not started, or stopped
   Running,
   Refused,  ///< did not start or take a segment; see Device::problem
-  Vanished  ///< gone while running: output has stopped; call start() when it is back
+  /// Gone while running: output has stopped. Call start() when it is back, unless DeviceInfo says
+  /// that it comes back by itself.
+  Vanished
 };
 
 /// Samples that a device has played and remembers. Any thread.
@@ -89,6 +92,8 @@ class Device {
   virtual std::string description() const { return {}; }
   /// Whether the hardware says that it is too hot. Any thread.
   virtual bool is_hot() const { return false; }
+  /// Says in a few words what was found out about it and what it costs: versions, rates, times.
+  virtual std::string description() const { return {}; }
   /// The samples that it played; null if it does not remember them.
   virtual const PlayedSamples* played() const { return nullptr; }
 };

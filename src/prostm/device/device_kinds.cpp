@@ -18,10 +18,24 @@ std::unique_ptr<Device> make_simulated(const DeviceSetup& setup) {
   return std::make_unique<SimulatedArray>(setup.simulated, setup.array, setup.medium);
 }
 
+DeviceInfo autd3_info(const DeviceSetup& setup) {
+  return Autd3Array::info_of(autd3_setup(setup));
+}
+
+std::unique_ptr<Device> make_autd3(const DeviceSetup& setup) {
+  return std::make_unique<Autd3Array>(autd3_setup(setup));
+}
+
+DeviceFinding look_for_autd3_units(const DeviceSetup& setup) {
+  const Autd3Finding finding = look_for_autd3(autd3_setup(setup));
+  return {finding.found, finding.words};
+}
+
 constexpr DeviceKind kKinds[] = {
     {"sim", nullptr, nullptr, "needs no hardware; nobody can feel it", simulated_info,
      make_simulated, nullptr},
-    {"autd3", "HOST:PORT", "autd3", "never tried on real hardware", nullptr, nullptr, nullptr},
+    {"autd3", "HOST:PORT", "autd3", "tried with a stand-in for AUTD3 v38, never with real units",
+     autd3_info, make_autd3, look_for_autd3_units},
     {"ultraleap", nullptr, nullptr, "needs the vendor's SDK; never tried on real hardware", nullptr,
      nullptr, nullptr},
 };

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "prostm/device/autd3_array.hpp"
 #include "prostm/device/simulated_array.hpp"
 
 namespace prostm {
@@ -16,6 +17,7 @@ struct DeviceSetup {
   Medium medium;
   std::string address = {};  ///< behind NAME:// in --device; empty: the kind's usual one
   int foci = 4;              ///< focal points of a sample
+  Autd3Settings autd3 = {};
 };
 
 /// Result of a look for a device.

@@ -92,6 +92,7 @@ class Run {
   }
   void check_device() const {
     const Device& device = pipeline_.device();
+    if (device.info().comes_back) return;
     if (device.status() == DeviceStatus::Vanished) throw std::runtime_error(device.problem());
   }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kHead = 4;
 constexpr int kFirstFoci = 74, kNextFoci = 77;  // slots in a frame
-constexpr std::uint16_t kForEver = 0xFFFF, kOnce = 0;
+constexpr std::uint16_t kEndless = 0xFFFF, kOnce = 0;
 
 enum Tag : std::uint8_t {
   kNop = 0x00,
@@ -102,6 +102,11 @@ int foci_frames(int slots, int samples) {
   return 1 + (after > 0 ? (after + each - 1) / each : 0);
 }
 
+int samples_in_frames(int slots, int samples, int frames) {
+  if (frames <= 0) return 0;
+  return std::min(samples, most_samples(slots, 0) + (frames - 1) * most_samples(slots, 1));
+}
+
 void foci(Frame& frame, const FociSegment& segment, std::span<const SlotWord> words, int index) {
   const auto [first, count] = samples_of(segment, index);
   const bool last = first + count == segment.samples,
@@ -113,7 +118,7 @@ void foci(Frame& frame, const FociSegment& segment, std::span<const SlotWord> wo
   if (index == 0) {
     out.u8(static_cast<int>(segment.transition)).u8(segment.slots);
     out.u16(static_cast<int>(std::lround(64.0 * segment.sound_speed)));
-    out.u16(segment.divider).u16(kForEver).zeros(4).u64(0);
+    out.u16(segment.divider).u16(kEndless).zeros(4).u64(0);
   }
   const auto begin = static_cast<std::size_t>(first * segment.slots);
   for (const SlotWord word : words.subspan(begin, static_cast<std::size_t>(count * segment.slots)))

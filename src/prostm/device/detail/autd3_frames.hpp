@@ -63,6 +63,8 @@ struct FociSegment {
 /// Number of frames that a segment takes: whole samples, up to 74 slots in the first frame and 77
 /// in each of the others.
 int foci_frames(int slots, int samples);
+/// Number of samples that the first `frames` of them hold.
+int samples_in_frames(int slots, int samples, int frames);
 /// Writes frame `index` of a segment.
 /// @param words of one unit for the whole segment, sample-major.
 void foci(Frame& frame, const FociSegment& segment, std::span<const SlotWord> words, int index);

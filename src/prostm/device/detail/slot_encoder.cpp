@@ -32,16 +32,6 @@ LiveFocusSettings solver_settings(std::span<const Pose> units, const Medium& med
   return settings;
 }
 
-int slots_of(const SlotSettings& settings) {
-  const int most = settings.own_intensities && settings.foci > 1 ? kMostSlots / 2 : kMostSlots;
-  if (settings.foci < 1 || settings.foci > most) {
-    throw std::invalid_argument("AUTD3 plays 1 to " + std::to_string(most) + " focal points" +
-                                (most < kMostSlots ? " with an intensity each" : "") + ", not " +
-                                std::to_string(settings.foci));
-  }
-  return settings.own_intensities && settings.foci > 1 ? 2 * settings.foci : settings.foci;
-}
-
 SlotWord word_of(const Eigen::Vector3f& p_U, int byte) {
   SlotWord word = static_cast<SlotWord>(byte & 0xFF) << 54;
   for (int axis = 0; axis < 3; ++axis) {
@@ -63,6 +53,16 @@ bool is_in_reach(const FocusSample& focus) {
 
 }  // namespace
 
+int slot_count(const SlotSettings& settings) {
+  const int most = settings.own_intensities && settings.foci > 1 ? kMostSlots / 2 : kMostSlots;
+  if (settings.foci < 1 || settings.foci > most) {
+    throw std::invalid_argument("AUTD3 plays 1 to " + std::to_string(most) + " focal points" +
+                                (most < kMostSlots ? " with an intensity each" : "") + ", not " +
+                                std::to_string(settings.foci));
+  }
+  return settings.own_intensities && settings.foci > 1 ? 2 * settings.foci : settings.foci;
+}
+
 Pose autd3_middle() {
   return Pose(
       Eigen::Translation3d(-0.5 * kPitch * (kColumns - 1), -0.5 * kPitch * (kRows - 1), 0.0));
@@ -78,7 +78,7 @@ TransducerArray autd3_units(std::span<const Pose> units) {
 SlotEncoder::SlotEncoder(std::span<const Pose> units, const Medium& medium,
                          const SlotSettings& settings)
     : settings_(settings),
-      slots_(slots_of(settings)),
+      slots_(slot_count(settings)),
       per_focus_(slots_ / settings.foci),
       solver_(autd3_units(units), medium, solver_settings(units, medium)),
       foci_(static_cast<std::size_t>(settings.foci), LiveFocus{{0.0F, 0.0F, 0.2F}, 0.0F}),

@@ -25,6 +25,9 @@ struct SlotSettings {
   bool own_intensities = true;
 };
 
+/// Slots of a sample. @throws std::invalid_argument for more focal points than fit.
+int slot_count(const SlotSettings& settings);
+
 /// Encodes sample after sample for an array of one or several units. All units get the same phases
 /// and the same intensity, and positions in their own frames, (A23). Allocates nothing after
 /// construction. A focal point whose numbers are not finite, that is out of reach or behind the
