@@ -92,8 +92,6 @@ class Device {
   virtual std::string description() const { return {}; }
   /// Whether the hardware says that it is too hot. Any thread.
   virtual bool is_hot() const { return false; }
-  /// Says in a few words what was found out about it and what it costs: versions, rates, times.
-  virtual std::string description() const { return {}; }
   /// The samples that it played; null if it does not remember them.
   virtual const PlayedSamples* played() const { return nullptr; }
 };
