@@ -58,6 +58,7 @@ std::string Session::number_units(const std::stop_token& stop) {
     return fmt::format("has {} units, but the settings place {}; give each unit a pose",
                        units.size(), settings_.units);
   if (std::string why = discovery.start_clock(units, stop); !why.empty()) return why;
+  settings_.units = static_cast<int>(units.size());
   peers_.assign(units.size(), Peer());
   for (std::size_t u = 0; u < units.size(); ++u) peers_[u].address = units[u].address;
   return {};

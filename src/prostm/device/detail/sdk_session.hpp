@@ -15,7 +15,7 @@ namespace prostm::sdk {
 
 struct SessionSettings {
   std::string address;  ///< as group_address() takes it
-  int units = 0;        ///< expected; 0: as many as answer
+  int units = 0;        ///< expected; 0: as many as answer first
   int failsafe_ms = 80;
 };
 
@@ -39,7 +39,10 @@ class Session {
   bool hears_units();
   /// Silences the units.
   void close() noexcept;
-  bool is_open() const { return is_open_; }
+  /// Whether nothing has failed since open() or resume().
+  bool works() const { return is_open_ && !failed_; }
+  /// Fails, for what the caller found out: a clause after "autd3-sdk://ADDRESS". @return false.
+  bool give_up(std::string clause) noexcept { return fail(std::move(clause)); }
 
   std::size_t units() const { return peers_.size(); }
   /// The next frame of a unit, to be written; waits for room. @return null if the session failed.
@@ -128,7 +131,7 @@ class Session {
   void do_what_is_due(Clock::time_point now) noexcept;
   Clock::time_point next_due() const;
 
-  const SessionSettings settings_;
+  SessionSettings settings_;
   const UdpAddress group_;
   UdpSocket socket_;
   std::vector<Peer> peers_;
