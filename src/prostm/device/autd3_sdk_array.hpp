@@ -18,8 +18,8 @@ struct Autd3SdkSetup {
   std::string address;  ///< %INTERFACE or [IPv6], with :PORT if it is not 44336
   /// X_DU of the units' own frames, along their chain; empty: as many as there are, side by side
   /// along x in the order of the chain, their middle in D's origin.
-  std::vector<Pose> units;
-  Medium medium;
+  std::vector<Pose> units = {};
+  Medium medium = {};
   int foci = 4;  ///< focal points of a sample
   /// An intensity for each of up to four focal points; false: up to eight, which share the largest.
   bool own_intensities = true;

@@ -24,7 +24,7 @@ Autd3SdkSetup setup_of(const DeviceSetup& setup) {
     throw std::invalid_argument(
         "autd3-sdk needs the network interface of its units, as autd3-sdk://%eth0, or a "
         "simulator's address, as autd3-sdk://[::1]:44336");
-  return {.address = setup.address, .units = {}, .medium = setup.medium, .foci = setup.foci};
+  return {.address = setup.address, .medium = setup.medium, .foci = setup.foci};
 }
 
 std::string unit_words(const sdk::Unit& unit) {
@@ -63,7 +63,7 @@ Autd3SdkBudget best_autd3_sdk_budget(int slots, double frames_per_ms) {
 
 DeviceInfo autd3_sdk_info(const DeviceSetup& setup) {
   return Autd3SdkArray::info_of(
-      {.address = setup.address, .units = {}, .medium = setup.medium, .foci = setup.foci});
+      {.address = setup.address, .medium = setup.medium, .foci = setup.foci});
 }
 
 std::unique_ptr<Device> make_autd3_sdk(const DeviceSetup& setup) {
