@@ -15,7 +15,7 @@ constexpr milliseconds kHurry{2};       // between two bursts that are sent agai
 constexpr milliseconds kNap{1};         // while waiting for room
 constexpr milliseconds kStall{20};      // without listening, in which nobody can be heard
 constexpr milliseconds kPatience{250};  // for a unit that answers to execute something
-constexpr milliseconds kKnown{60};      // for units that know their numbers to answer
+constexpr milliseconds kKnown{90};      // for units that know their numbers to answer
 constexpr milliseconds kProbe{50};
 constexpr milliseconds kHalfSecond{500};
 constexpr std::chrono::seconds kAlone{1};  // that a clock may run alone
@@ -153,6 +153,9 @@ bool Session::read_state() noexcept {
 }
 
 bool Session::activate(int bank, Transition transition) noexcept {
+  // a unit executes frames in sequence, so the bank is whole by then; but two forms to choose from
+  // must not be confused with what came before
+  if (!margin_known_ && !finish()) return false;
   for (int form = 0; form < 2; ++form) {
     refusal_ = kNoError;
     const auto write = [&](Datagram& d) { sdk::activate(d, bank, transition, margin_field_); };

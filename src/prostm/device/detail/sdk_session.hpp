@@ -68,7 +68,8 @@ class Session {
   bool read_state() noexcept;
   /// The flags of a unit's state, FpgaFlag.
   std::uint8_t state(std::size_t unit) const { return peers_[unit].state; }
-  /// Makes all units change over to a bank. Finds out which form of the command the firmware takes.
+  /// Makes all units change over to a bank, once they have executed what was posted before, and
+  /// waits for that. Finds out which form of the command the firmware takes. Likewise.
   bool activate(int bank, Transition transition) noexcept;
   /// Sets the silencer; before a pattern with this divider.
   bool set_silencer(int steps) noexcept;
