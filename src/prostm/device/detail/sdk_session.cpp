@@ -46,10 +46,7 @@ void Session::lose(std::size_t unit, const char* clause) noexcept {
 
 std::string Session::number_units(const std::stop_token& stop) {
   if (std::string why = socket_.open(group_); !why.empty())
-    return fmt::format(
-        "cannot be used: {}; give the interface an IPv6 address, as 'ip link set "
-        "{} up' does",
-        why, "INTERFACE");
+    return "cannot be used: " + why + "; switch the interface on, and IPv6 on it";
   Discovery discovery(socket_, group_);
   std::vector<Unit> units;
   if (std::string why = discovery.number(units, stop); !why.empty())
