@@ -79,7 +79,7 @@ struct Autd3SdkArray::Impl {
   void connect_again(const std::stop_token& stop);
 
   const Autd3SdkSetup setup;
-  sdk::Session session;  // by the thread that streams, while there is one
+  sdk::Session session;  // used by the thread that streams while it runs
   std::unique_ptr<SlotEncoder> encoder;
   Autd3SdkBudget budget;
   DeviceInfo info;

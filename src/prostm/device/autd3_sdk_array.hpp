@@ -26,7 +26,7 @@ struct Autd3SdkSetup {
   int failsafe_ms = 80;  ///< 60..100; the units fall silent when they hear nothing for so long
 };
 
-/// What the link carries: samples of so many periods of 40 kHz, in blocks.
+/// Load of the link: samples of so many periods of 40 kHz, in blocks.
 struct Autd3SdkBudget {
   int slots = 8;
   int divider = 4;  ///< periods of 40 kHz per sample

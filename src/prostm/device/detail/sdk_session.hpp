@@ -101,7 +101,7 @@ class Session {
     std::size_t oldest = 0, count = 0;
     std::uint8_t sequence = 0;  // of the oldest
     int tries = 0;              // of the oldest
-    std::uint16_t reset = 0;    // id of a Reset that waits, 0: there is none
+    std::uint16_t reset = 0;    // id of the Reset that waits, or 0
     Clock::time_point reset_at;
     Clock::time_point heard, done_at, resent, beat_at;
     std::uint16_t beat = 0;
