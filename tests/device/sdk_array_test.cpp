@@ -1,68 +1,24 @@
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <optional>
-#include <thread>
 
-#include "device/sdk_units.hpp"
-#include "fields/moving_foci.hpp"
+#include "device/sdk_trial.hpp"
 #include "prostm/device/autd3_sdk_array.hpp"
 #include "prostm/device/detail/slot_encoder.hpp"
-#include "support/eventually.hpp"
-#include "support/heap_guard.hpp"
 
 namespace prostm {
 namespace {
 
-using std::chrono::milliseconds;
+using test::Moving;
+using test::now_ns;
+using test::sleep;
+using test::sounding;
+using test::sounds_again;
 using testing::HasSubstr;
-
-void sleep(int time) {
-  std::this_thread::sleep_for(milliseconds(time));
-}
-
-std::int64_t now_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
-
-/// Focal points at up to 7 m/s, and the heap allocations between its calls.
-class Moving final : public SampleSource {
- public:
-  explicit Moving(int foci) : moving_(3, foci, 0.03) {}
-  void set_rate(double rate) { rate_ = rate; }
-
-  int foci() const override { return moving_.count(); }
-  void fill(std::int64_t first, std::span<FocusSample> out) noexcept override {
-    if (guard_) allocations_ = static_cast<int>(guard_->allocations());
-    const auto width = static_cast<std::size_t>(foci());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const std::int64_t sample = first + static_cast<std::int64_t>(i / width);
-      const int focus = static_cast<int>(i % width);
-      out[i] = {position(sample, focus).cast<float>(), 0.7F};
-    }
-    filled_ = first + static_cast<std::int64_t>(out.size() / width);
-    if (!guard_) guard_.emplace();
-  }
-  Vec3 position(std::int64_t sample, int focus) const {
-    return moving_.position(focus, static_cast<double>(sample) / rate_);
-  }
-  int allocations() const { return allocations_; }
-  std::int64_t filled() const { return filled_; }
-
- private:
-  fields::MovingFoci moving_;
-  double rate_ = 10e3;
-  std::optional<test::HeapGuard> guard_;
-  std::atomic<int> allocations_{-1};
-  std::atomic<std::int64_t> filled_{0};
-};
 
 /// A sample that a unit played, as the stand-in writes it.
 struct Played {
@@ -116,14 +72,6 @@ void expect_stream(const std::vector<Played>& played, const Moving& source, cons
     }
   }
   EXPECT_LT(worst, 0.05e-3);
-}
-
-double sounding(test::SdkUnits& chain) {
-  return chain.report()["last_sounding_ns"].get<double>() * 1e-9;
-}
-
-bool sounds_again(test::SdkUnits& chain, double since) {
-  return test::eventually([&] { return sounding(chain) > since; });
 }
 
 TEST(Autd3SdkBudget, FollowsFromFramesPerMillisecond) {
@@ -224,78 +172,6 @@ TEST(Autd3SdkArray, SurvivesLossDelayAndDisorder) {
   }
 }
 
-TEST(Autd3SdkArray, SoundsAgainAfterACut) {
-  test::SdkUnits chain;
-  Moving source(4);
-  Autd3SdkArray array({.address = chain.address()});
-  source.set_rate(array.info().sample_rate);
-  ASSERT_EQ(array.start(source), DeviceStatus::Running);
-  ASSERT_TRUE(sounds_again(chain, 0.0));
-  chain.tell("cut 500");
-  const double end = static_cast<double>(now_ns()) * 1e-9 + 0.5;
-  ASSERT_TRUE(test::eventually([&] { return array.status() == DeviceStatus::Vanished; }));
-  EXPECT_THAT(array.problem(), HasSubstr("unit 0 was silent for 100 ms"));
-  ASSERT_TRUE(test::eventually([&] { return array.status() == DeviceStatus::Running; }));
-  ASSERT_TRUE(sounds_again(chain, end));
-  const double gap = static_cast<double>(now_ns()) * 1e-9 - end;
-  std::printf("sounding %.0f ms after the end of a cut\n", 1e3 * gap);
-  EXPECT_LT(gap, 1.0);
-  EXPECT_EQ(array.problem(), "");
-  EXPECT_LE(chain.report()["largest_speed_m_s"], 8.0);
-}
-
-TEST(Autd3SdkArray, NumbersUnitsAgainThatLostTheirPower) {
-  test::SdkUnits chain({"--units", "2"});
-  Moving source(4);
-  Autd3SdkArray array({.address = chain.address()});
-  source.set_rate(array.info().sample_rate);
-  ASSERT_EQ(array.start(source), DeviceStatus::Running);
-  ASSERT_TRUE(sounds_again(chain, 0.0));
-  chain.tell("power-cycle");
-  const double cut = static_cast<double>(now_ns()) * 1e-9;
-  ASSERT_TRUE(sounds_again(chain, cut + 0.05));
-  const double gap = static_cast<double>(now_ns()) * 1e-9 - cut;
-  std::printf("sounding %.0f ms after a loss of power\n", 1e3 * gap);
-  EXPECT_LT(gap, 1.5);
-  array.stop();
-  EXPECT_EQ(chain.report()["protocol_errors"], 0) << chain.report();
-}
-
-TEST(Autd3SdkArray, IsReleasedFromTheFailsafe) {
-  test::SdkUnits chain({"--units", "2"});
-  Moving source(4);
-  Autd3SdkArray array({.address = chain.address()});
-  source.set_rate(array.info().sample_rate);
-  ASSERT_EQ(array.start(source), DeviceStatus::Running);
-  ASSERT_TRUE(sounds_again(chain, 0.0));
-  chain.tell("hold-latch 1");
-  chain.tell("latch");
-  sleep(300);
-  const double muted = sounding(chain);
-  EXPECT_LT(muted, static_cast<double>(now_ns()) * 1e-9 - 0.2);
-  EXPECT_EQ(array.status(), DeviceStatus::Running) << array.problem();
-  chain.tell("hold-latch 0");
-  ASSERT_TRUE(sounds_again(chain, muted));
-  const auto report = chain.report();
-  EXPECT_EQ(report["failsafe"], false);
-  EXPECT_GE(report["releases"], 2);
-  EXPECT_EQ(report["protocol_errors"], 0) << report;
-  EXPECT_EQ(array.muted(), 1);
-}
-
-TEST(Autd3SdkArray, SaysThatAUnitIsHot) {
-  test::SdkUnits chain({"--units", "2"});
-  Moving source(4);
-  Autd3SdkArray array({.address = chain.address()});
-  source.set_rate(array.info().sample_rate);
-  ASSERT_EQ(array.start(source), DeviceStatus::Running);
-  EXPECT_FALSE(array.is_hot());
-  chain.tell("hot 1");
-  EXPECT_TRUE(test::eventually([&] { return array.is_hot(); }));
-  chain.tell("hot 0");
-  EXPECT_TRUE(test::eventually([&] { return !array.is_hot(); }));
-}
-
 TEST(Autd3SdkArray, FallsSilentWhenItStops) {
   test::SdkUnits chain;
   Moving source(4);
@@ -314,51 +190,6 @@ TEST(Autd3SdkArray, FallsSilentWhenItStops) {
     sleep(700);                             // until the failsafe of an idle unit
   }
   EXPECT_EQ(chain.report()["protocol_errors"], 0);
-}
-
-TEST(Autd3SdkArray, UnitsFallSilentByThemselvesWhenItsProcessIsKilled) {
-  test::SdkUnits chain({"--units", "2"});
-  double longest = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const double before = sounding(chain);
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      Moving source(4);
-      Autd3SdkArray array({.address = chain.address()});
-      source.set_rate(array.info().sample_rate);
-      array.start(source);
-      for (;;) pause();
-    }
-    ASSERT_TRUE(sounds_again(chain, before));
-    sleep(200 + 3 * i);
-    const std::int64_t killed = now_ns();
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    sleep(250);
-    const auto report = chain.report();
-    const auto silent =
-        static_cast<double>(report["last_sounding_ns"].get<std::int64_t>() - killed);
-    EXPECT_TRUE(report["failsafe"]);
-    EXPECT_GT(silent, 0.0);
-    longest = std::max(longest, silent * 1e-6);
-  }
-  std::printf("silent %.1f ms after kill -9, by the units' failsafe alone\n", longest);
-  EXPECT_LE(longest, 110.0);
-}
-
-TEST(Autd3SdkArray, VanishesWithASentenceWhenAUnitRefuses) {
-  test::SdkUnits chain;
-  Moving source(4);
-  Autd3SdkArray array({.address = chain.address()});
-  source.set_rate(array.info().sample_rate);
-  chain.tell("refuse 48 4");  // the silencer
-  ASSERT_EQ(array.start(source), DeviceStatus::Running);
-  ASSERT_TRUE(test::eventually([&] { return array.status() == DeviceStatus::Vanished; }));
-  EXPECT_THAT(array.problem(), HasSubstr("unit 0 refused the silencer's setting"));
-  chain.tell("refuse 48 4 0");
-  EXPECT_TRUE(test::eventually([&] { return array.status() == DeviceStatus::Running; }));
-  ASSERT_TRUE(sounds_again(chain, 0.0));
 }
 
 TEST(Autd3SdkArray, RefusesWhatDoesNotFit) {

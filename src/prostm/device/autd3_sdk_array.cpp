@@ -77,6 +77,7 @@ struct Autd3SdkArray::Impl {
   bool look_after_units();
   void fall_silent();
   void connect_again(const std::stop_token& stop);
+  std::chrono::nanoseconds block_duration() const { return std::chrono::nanoseconds(block_time); }
 
   const Autd3SdkSetup setup;
   sdk::Session session;  // used by the thread that streams while it runs
@@ -270,9 +271,11 @@ bool Autd3SdkArray::Impl::all_play(int bank) {
 
 /// Waits until all units play a bank; then `turn` is the end of its block.
 bool Autd3SdkArray::Impl::wait_for_turn(int bank) {
+  // after a stall the turn is long gone
+  turn = std::max(turn, session.unit_time(Clock::now()) / block_time * block_time);
   for (int turns = 0; turns < kMostTurns; ++turns, turn += block_time) {
     // a clock that jumps must not be waited for
-    const Clock::time_point latest = Clock::now() + std::chrono::nanoseconds(2 * block_time);
+    const Clock::time_point latest = Clock::now() + 2 * block_duration();
     if (!session.listen(std::min(session.host_time(turn) + kMargin, latest))) return false;
     do {
       if (!session.read_state()) return false;
@@ -293,7 +296,8 @@ bool Autd3SdkArray::Impl::wait_for_turn(int bank) {
 void Autd3SdkArray::Impl::fall_silent() {
   if (!session.works() || source == nullptr) return;
   falls = true;
-  if (gain > 0.0F && play_block()) session.listen(session.host_time(turn));
+  if (gain > 0.0F && play_block())
+    session.listen(std::min(session.host_time(turn), Clock::now() + 2 * block_duration()));
   session.close();
 }
 
@@ -338,7 +342,7 @@ DeviceStatus Autd3SdkArray::Impl::begin(SampleSource& from) {
     status = DeviceStatus::Running;
     problem.clear();
     turn_block = 0;
-    turn_time = Clock::now() + std::chrono::nanoseconds(4 * block_time);
+    turn_time = Clock::now() + 4 * block_duration();
   }
   thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
   return DeviceStatus::Running;

@@ -19,7 +19,7 @@ constexpr milliseconds kKnown{90};      // for units that know their numbers to 
 constexpr milliseconds kProbe{50};
 constexpr milliseconds kHalfSecond{500};
 constexpr std::chrono::seconds kAlone{1};  // that a clock may run alone
-constexpr int kFirstBeats = 3;
+constexpr int kFirstBeats = 3, kMostBeats = 30;
 
 std::int64_t count_of(UdpSocket::Clock::time_point time) {
   return std::chrono::duration_cast<nanoseconds>(time.time_since_epoch()).count();
@@ -79,6 +79,7 @@ bool Session::resume() {
     peer.oldest = peer.count = 0;
     peer.heard = peer.done_at = now;
     peer.alone = {};
+    peer.reset = 0;
     reset(peer, now);
   }
   best_ = last_best_ = {};
@@ -103,8 +104,13 @@ bool Session::prepare() {
   firmware_ =
       "CPU " + version_text(versions.first(3)) + ", FPGA " + version_text(versions.subspan(3));
   const auto configure = [&](Datagram& d) { cpu_config(d, settings_.failsafe_ms); };
-  return simply(Command::Clear) && simply(Command::Synchronize) && post_all(configure) &&
-         finish() && listen(Clock::now() + kFirstBeats * kHeartbeat) && read_state();
+  if (!simply(Command::Clear) || !simply(Command::Synchronize) || !post_all(configure) || !finish())
+    return false;
+  for (int beats = 0; beats < kFirstBeats || best_.trip == Clock::duration::max(); ++beats) {
+    if (!listen(Clock::now() + kHeartbeat)) return false;
+    if (beats == kMostBeats) return fail("loses all heartbeats; look after the network");
+  }
+  return read_state();
 }
 
 void Session::close() noexcept {
@@ -209,7 +215,7 @@ Session::Clock::time_point Session::next_due() const {
 }
 
 void Session::do_what_is_due(Clock::time_point now) noexcept {
-  if (now - best_since_ > kHalfSecond) {
+  if (now - best_since_ > kHalfSecond && best_.trip != Clock::duration::max()) {
     last_best_ = best_;
     best_ = {};
     best_since_ = now;
@@ -261,9 +267,9 @@ void Session::send_again(Peer& peer, Clock::time_point now) noexcept {
 void Session::reset(Peer& peer, Clock::time_point now) noexcept {
   Datagram d;
   frame(d, Command::Reset);
-  if (++id_ == 0) ++id_;
-  d.renumber(id_, 0);
-  peer.reset = id_;
+  // the same number again, so that a slow answer to the first is known
+  if (peer.reset == 0) peer.reset = ++id_ == 0 ? ++id_ : id_;
+  d.renumber(peer.reset, 0);
   peer.reset_at = now;
   socket_.send(peer.address, d.bytes());
 }
