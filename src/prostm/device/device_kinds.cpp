@@ -6,6 +6,7 @@
 
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/device/segment_stream.hpp"
+#include "prostm/device/stream_device.hpp"
 
 namespace prostm {
 namespace {
@@ -24,6 +25,9 @@ constexpr DeviceKind kKinds[] = {
     {"autd3", "HOST:PORT", "autd3", "never tried on real hardware", nullptr, nullptr, nullptr},
     {"ultraleap", nullptr, nullptr, "needs the vendor's SDK; never tried on real hardware", nullptr,
      nullptr, nullptr},
+    {"stream", "ADDRESS:PORT", nullptr,
+     "for programs that subscribe; tried with receivers on this machine, never with an array",
+     stream_info, make_stream, look_for_stream},
 };
 
 /// NAME, or NAME://ADDRESS.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "prostm/device/simulated_array.hpp"
+#include "prostm/device/stream_settings.hpp"
 
 namespace prostm {
 
@@ -16,6 +17,7 @@ struct DeviceSetup {
   Medium medium;
   std::string address = {};  ///< behind NAME:// in --device; empty: the kind's usual one
   int foci = 4;              ///< focal points of a sample
+  StreamSettings stream = {};
 };
 
 /// Result of a look for a device.

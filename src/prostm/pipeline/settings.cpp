@@ -102,7 +102,8 @@ std::vector<SettingsGroup> groups_of(Settings& s) {
           group_of("plan", s.plan),
           group_of("am", s.am),
           group_of("emit", s.emit),
-          group_of("simulated_array", s.simulated_array)};
+          group_of("simulated_array", s.simulated_array),
+          group_of("stream", s.stream)};
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ struct PipelineSettings {
   AmSettings am;
   EmitSettings emit;
   SimulatedArraySettings simulated_array;
+  StreamSettings stream;  ///< of device stream
   TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
   Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
@@ -53,7 +54,7 @@ struct PipelineSettings {
 
   /// Returns the setup that `device` is made from.
   DeviceSetup device_setup() const {
-    return {simulated_array, transducers, Medium{}, {}, emit.foci};
+    return {simulated_array, transducers, Medium{}, {}, emit.foci, stream};
   }
 
   /// Samples of an emission for it [Hz].
