@@ -657,7 +657,7 @@ int main(int argc, char** argv) {
       Sample sample;
       const float gain = receiver.at(time, sample);
       sample.time = time;
-      play(sample, now, gain, played);
+      if (sample.foci > 0) play(sample, now, gain, played);  // not before the first one came
       if (sounds && gain == 0.0F)
         std::printf("silent %.1f ms after the last message\n",
                     static_cast<double>(time - receiver.statistics().last_heard) / 1e6);

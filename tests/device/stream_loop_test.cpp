@@ -92,7 +92,9 @@ TEST(StreamLoops, AreRefusedWhileAStreamPlays) {
   EXPECT_THAT(device.problem(), testing::HasSubstr("stop it first"));
   StreamClient client(Over::Tcp, device.port());
   ASSERT_TRUE(client.subscribe({.want = 2}));
-  const auto state = client.next_of(kState);
+  auto state = client.next_of(kState);
+  ASSERT_TRUE(state);
+  if (state->at<std::uint16_t>(0) == 1) state = client.next_of(kState);  // before the first block
   ASSERT_TRUE(state);
   EXPECT_EQ(state->body[2], 0);
   EXPECT_THAT(state->text(16), testing::HasSubstr("no loop"));
