@@ -230,8 +230,9 @@ float Receiver::at(Ns time, Sample& out) {
   const Sample* sample = played_ >= 0 ? &slot(played_) : nullptr;
   const bool here = sample != nullptr && sample->index == played_ && at >= sample->time &&
                     at < sample->time + period + period / 2;
-  const bool fresh = time - heard_ <= settings_.silence_after;
-  const bool good = here && fresh && subscribed_ && !stopped_;
+  const bool fresh = std::max(time, now_ns()) - heard_ <= settings_.silence_after;
+  const bool stalled = step > settings_.ramp && step > 2 * period;  // the caller was away
+  const bool good = here && fresh && !stalled && subscribed_ && !stopped_;
 
   // the silence rule: after any interruption down to 0 where the focal points are, and up again
   if ((!good || gap) && !falling_) {
@@ -650,8 +651,8 @@ int main(int argc, char** argv) {
   while (interrupted == 0 && time - begin < static_cast<Ns>(options.seconds * 1e9)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     const Ns now = now_ns();
-    // after a long sleep of this machine, the past is not played
-    if (now - time > 1000 * kMs) time = now - 1000 * kMs;
+    // after a sleep that was too long, the past is not played
+    if (now - time > 20 * kMs) time = now - step;
     while (time + step <= now) {
       time += step;
       Sample sample;

@@ -36,6 +36,7 @@ WANT_SAMPLES = 1
 
 MS = 1_000_000  # ns
 RENEW_EVERY = 250 * MS
+STALL = 20 * MS  # between two calls of step()
 GONE_AFTER = 1000 * MS  # without a message the connection is made anew
 
 
@@ -263,16 +264,19 @@ class Receiver:
         """Plays up to a time of this machine's clock, with the silence rule applied."""
         change = 1e-3 * (now - self.last) if self.last else 0.0
         self.offset += min(change, max(-change, self.wanted_offset - self.offset))
-        self.last = now
         until = now + self.offset
-        watch = self.heard + self.silence_after + self.offset  # by prostm's clock
-        good = self.subscribed and not self.stopped
-        while good and self.blocks and self.blocks[0].time <= min(until, watch):
-            if not self.play_block(min(until, watch)):
+        if now - self.last > STALL and self.held is not None:  # this program was away: the past is not played
+            if self.next_index is not None:
+                self.interrupt()
+            self.gain, self.next_time = 0.0, until
+            self.hand_over(until, self.held)
+        self.last = now
+        good = self.subscribed and not self.stopped and now - self.heard <= self.silence_after
+        while good and self.blocks and self.blocks[0].time <= until:
+            if not self.play_block(until):
                 break
-        silent = not good or watch < until
-        overdue = self.next_index is not None and self.next_time + self.period() // 2 < min(until, watch)
-        if self.next_index is not None and (silent or overdue):
+        overdue = self.next_index is not None and self.next_time + self.period() // 2 < until
+        if self.next_index is not None and (not good or overdue):
             self.interrupt()
         if self.falling:
             self.fall(until)

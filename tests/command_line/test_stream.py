@@ -131,7 +131,8 @@ def test_what_is_emitted_arrives(program, tmp_path, language, over):
     assert all(row[3][0][:3] in positions for row in whole[::100])
     for before, after in zip(played, played[1:]):
         assert after[2] - before[2] <= 0.0051
-        assert before[2] - after[2] <= 0.0051 or language == "python" and after[2] == 0.0
+        # at once only where the receiver itself was not run for 20 ms
+        assert before[2] - after[2] <= 0.0051 or (after[2] == 0.0 and after[1] - before[1] > 5_000_000)
     assert played[-1][2] == 0.0
     print(f"{language} over {over}: {statistics}")
 
@@ -146,16 +147,23 @@ def test_falls_silent_after_kill_9_and_comes_back(program, tmp_path, language, o
         # the hand is in the plume for most of the time; wait until it is felt
         def sounds():
             rows = newest_rows(listener.played)
-            return bool(rows) and all(row[3] == 1.0 and max(row[4][3::4]) > 0.02 for row in rows)
+            return (bool(rows) and rows[-1][1] > time.monotonic_ns() - 50_000_000
+                    and all(row[3] == 1.0 and max(row[4][3::4]) > 0.02 for row in rows))
 
         wait_for(sounds)
         killed = time.monotonic_ns()
         sender.send_signal(signal.SIGKILL)
         sender.wait()
         time.sleep(0.5)
+        started = time.monotonic_ns()
         again = start_sender(program, tmp_path, port, 600)
+
+        def sounds_again():
+            newest = newest_rows(listener.played)[-1]
+            return newest[1] > started and newest[3] == 1.0
+
         try:
-            wait_for(lambda: newest_rows(listener.played)[-1][3] == 1.0)
+            wait_for(sounds_again)
         finally:
             again.kill()
             again.communicate()
@@ -172,6 +180,8 @@ def test_falls_silent_after_kill_9_and_comes_back(program, tmp_path, language, o
           f"{1e3 * handed:.1f} ms")
     # a message may still have been on its way when the program died
     assert silent <= SILENT_AFTER + 0.005
+    # a receiver that is not run in the middle of its ramp ends it up to 20 ms later
+    assert handed <= SILENT_AFTER + 0.025
     assert statistics["subscriptions"] >= 2 and statistics["malformed"] == 0
     assert "silent " in printed
 

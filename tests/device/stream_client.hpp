@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
@@ -66,11 +67,17 @@ class StreamClient {
   std::uint32_t token = 0;
 
   static std::vector<std::uint8_t> message(int kind, const std::vector<std::uint8_t>& body) {
-    std::vector<std::uint8_t> out = {'P', 'S', 'T', 'M', 1, static_cast<std::uint8_t>(kind)};
-    out.push_back(static_cast<std::uint8_t>(body.size() & 0xFFU));
-    out.push_back(static_cast<std::uint8_t>(body.size() >> 8U));
-    out.resize(16);
-    out.insert(out.end(), body.begin(), body.end());
+    std::vector<std::uint8_t> out(16 + body.size());
+    const std::uint8_t header[] = {'P',
+                                   'S',
+                                   'T',
+                                   'M',
+                                   1,
+                                   static_cast<std::uint8_t>(kind),
+                                   static_cast<std::uint8_t>(body.size() & 0xFFU),
+                                   static_cast<std::uint8_t>(body.size() >> 8U)};
+    std::copy(std::begin(header), std::end(header), out.begin());
+    std::copy(body.begin(), body.end(), out.begin() + 16);
     return out;
   }
   std::vector<std::uint8_t> subscribe_message(const StreamWish& wish) const {

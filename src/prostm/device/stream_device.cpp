@@ -35,7 +35,8 @@ struct Stream {
   SampleSource* source = nullptr;
   std::optional<BlockClock> clock;
   DeviceStats stats;
-  std::int64_t loop = 0;  // number of the segment that plays
+  std::int64_t unsent = 0;  // samples that found no room
+  std::int64_t loop = 0;    // number of the segment that plays
   std::int64_t loop_first = 0, loop_play_ns = 0;
 };
 
@@ -140,7 +141,11 @@ void StreamDevice::Impl::pull_block() {
   stream.stats.missed_blocks += filled.missed;
   stream.stats.queue_blocks = stream.clock->queue_blocks();
   ++stream.stats.blocks;
-  if (record != nullptr) send(*record, block);
+  if (record != nullptr) {
+    send(*record, block);
+  } else {
+    stream.unsent += settings.block_samples;
+  }
 
   // a reader that holds the lock may have been put to sleep: do not wait for it
   const std::unique_lock lock(mutex, std::try_to_lock);
@@ -154,6 +159,7 @@ void StreamDevice::Impl::send(stream::BlockRecord& record, std::int64_t block) {
   record.first = before + block * settings.block_samples;
   record.play_ns = stream::to_ns(stream.clock->play_time(block));
   record.missed = stream.stats.missed_blocks;
+  record.unsent = stream.unsent;
   record.loop = 0;
   if (stream.source == &segment) {
     const SegmentPlayer::Playing playing = segment.playing();

@@ -72,6 +72,11 @@ class Peer {
   /// Sends a block, in datagrams that each hold a part of it. A block that finds no room is skipped
   /// and counted. @return whether it was sent.
   bool send_block(std::uint32_t session, const BlockView& block, Clock::time_point now);
+  /// Counts samples that are left out before the next block.
+  void skip(std::int64_t samples) {
+    skipped_ += samples;
+    gap_ = true;
+  }
   /// Sends the next parts of a loop while there is room.
   void send_loop(std::uint32_t session, const std::shared_ptr<const PlayedLoop>& loop,
                  Clock::time_point now);
@@ -90,9 +95,9 @@ class Peer {
   }
 
  private:
-  static constexpr std::size_t kBlocksMost = 64 << 10;   // bytes that may wait, of blocks
-  static constexpr std::size_t kWaitingMost = 80 << 10;  // and of all messages
-  static constexpr std::size_t kLoopPart = 1024;         // focal points of a LOOP
+  static constexpr std::size_t kBlocksMost = 256 << 10;   // bytes that may wait, of blocks: 100 ms
+  static constexpr std::size_t kWaitingMost = 272 << 10;  // and of all messages
+  static constexpr std::size_t kLoopPart = 1024;          // focal points of a LOOP
 
   std::span<std::uint8_t> room(std::size_t bytes, std::size_t most);
   bool commit(std::size_t bytes, Clock::time_point now);

@@ -15,10 +15,21 @@ constexpr milliseconds kExpiry{1000};  // of a receiver that is not heard
 constexpr milliseconds kHeartbeat{5};  // longest silence towards a subscriber
 constexpr milliseconds kClosing{500};  // in which a receiver reads its last message
 constexpr milliseconds kFinish{100};   // for the last messages of all
-constexpr int kSilentAfter = 400;      // samples with intensity 0: 10 ms
+constexpr int kSilentAfter = 4000;     // samples with intensity 0: 100 ms
 constexpr int kDatagramsAtOnce = 64;
 constexpr int kErrorsASecond = 20;  // over UDP, where anybody can make us answer
 constexpr int kWait_ms = 5;
+
+/// A ring whose blocks have room for the largest.
+std::unique_ptr<SpscRing<BlockRecord>> make_ring(std::size_t blocks, const StreamSettings& s) {
+  auto ring = std::make_unique<SpscRing<BlockRecord>>(blocks);
+  for (std::size_t i = 0; i <= blocks; ++i) {  // its slots are one more
+    ring->back()->focus.resize(static_cast<std::size_t>(s.block_samples * s.max_foci));
+    ring->commit();
+    ring->pop();
+  }
+  return ring;
+}
 
 std::uint64_t random_bits() {
   std::random_device device;
@@ -33,7 +44,7 @@ StreamServer::StreamServer(const HostPort& address, const StreamSettings& settin
       wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
       session_(static_cast<std::uint32_t>(random_bits()) | 1U),
       secret_(random_bits()),
-      ring_(std::make_unique<SpscRing<BlockRecord>>(kRing)),
+      ring_(make_ring(kRing, settings)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 StreamServer::~StreamServer() = default;
@@ -254,7 +265,7 @@ void StreamServer::take_blocks(Clock::time_point now) {
     ring_->pop();
   }
   if (!running && state_ != PlayState::Stopped && !running_) {
-    missed_ = 0;
+    missed_ = unsent_ = 0;
     playing_loop_ = 0;
     set_state(PlayState::Stopped, Reason::NotStarted, next_sample_, now);
   }
@@ -281,8 +292,11 @@ void StreamServer::take_block(BlockRecord& record, Clock::time_point now) {
     set_state(state, silent ? Reason::ZeroSamples : Reason::None, record.first, now);
   }
 
+  const std::int64_t unsent = record.unsent - unsent_;
+  unsent_ = record.unsent;
   for (Peer& peer : peers_) {
     if (!peer.is_subscribed() || peer.wishes().loops) continue;
+    if (unsent > 0) peer.skip(unsent);
     if (!peer.send_block(session_, block, now))
       count_.skipped.fetch_add(1, std::memory_order_relaxed);
   }

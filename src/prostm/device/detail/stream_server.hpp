@@ -24,8 +24,9 @@ struct BlockRecord {
   std::uint32_t loop = 0;         ///< id of the loop that plays at the block's end; 0: a stream
   std::int64_t loop_first = 0;    ///< sample at which it began
   std::int64_t loop_play_ns = 0;  ///< play time of that sample
+  std::int64_t unsent = 0;  ///< samples of blocks that found no room before it, since the start
   int samples = 0, foci = 1;
-  std::array<FocusSample, std::size_t{kMostBlockSamples} * kMostFoci> focus;
+  std::vector<FocusSample> focus;  ///< has room for the largest block
 
   std::span<FocusSample> span() {
     return std::span(focus).first(static_cast<std::size_t>(samples * foci));
@@ -56,7 +57,7 @@ class StreamServer {
 
  private:
   static constexpr std::size_t kPeers = 2 * kMostSubscribers;
-  static constexpr std::size_t kRing = 64;  // blocks
+  static constexpr std::size_t kRing = 256;  // blocks
 
   void run(const std::stop_token& stop);
   void wait();
@@ -101,7 +102,7 @@ class StreamServer {
   std::shared_ptr<const PlayedLoop> sent_loop_;
   PlayState state_ = PlayState::Stopped;
   Reason reason_ = Reason::NotStarted;
-  std::int64_t state_sample_ = 0, next_sample_ = 0, next_play_ns_ = 0, missed_ = 0;
+  std::int64_t state_sample_ = 0, next_sample_ = 0, next_play_ns_ = 0, missed_ = 0, unsent_ = 0;
   int silent_samples_ = 0;
   std::uint32_t playing_loop_ = 0;
   std::int64_t loop_first_ = 0, loop_play_ns_ = 0;
