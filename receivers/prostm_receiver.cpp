@@ -103,6 +103,7 @@ enum Kind : std::uint8_t {
 };
 constexpr std::size_t kHeader = 16;
 constexpr int kMostFoci = 8;
+constexpr int kReadsAtOnce = 64;  // then it is looked whether the subscription must be renewed
 
 struct Focus {
   float x = 0, y = 0, z = 0;  ///< [m], from the array's centre, z away from it
@@ -365,7 +366,7 @@ bool Receiver::send(Kind kind, const std::uint8_t* body, std::size_t size) {
 /// Reads what has arrived; false at the end of the connection.
 bool Receiver::receive() {
   std::uint8_t bytes[1 << 16];
-  for (;;) {
+  for (int i = 0; i < kReadsAtOnce; ++i) {
     const auto got = recv(socket_, reinterpret_cast<char*>(bytes), sizeof(bytes), 0);
     if (got < 0) return would_block();
     if (got == 0 && !settings_.udp) return false;
@@ -387,6 +388,7 @@ bool Receiver::receive() {
     }
     in_.erase(in_.begin(), in_.begin() + static_cast<std::ptrdiff_t>(begin));
   }
+  return true;
 }
 
 /// Takes a whole message; false if it ends the subscription.

@@ -35,6 +35,7 @@ FOCUS_BYTES = 16  # x, y, z [m] and the intensity 0..1, each a float
 WANT_SAMPLES = 1
 
 MS = 1_000_000  # ns
+READS_AT_ONCE = 64
 RENEW_EVERY = 250 * MS
 STALL = 20 * MS  # between two calls of step()
 GONE_AFTER = 1000 * MS  # without a message the connection is made anew
@@ -158,18 +159,21 @@ class Receiver:
         self.play_due(time.monotonic_ns())
 
     def receive(self):
-        """Takes all messages that have arrived."""
-        while self.socket is not None:
+        """Takes the messages that have arrived, not so many that the renewal is forgotten."""
+        for _ in range(READS_AT_ONCE):
+            if self.socket is None:
+                return None
             try:
                 data = self.socket.recv(1 << 16)
             except (BlockingIOError, ConnectionRefusedError):
-                return
+                return None
             except OSError:
                 return self.disconnect()
             if not data and not self.udp:
                 return self.disconnect()
             self.unread = data if self.udp else self.unread + data
             self.take_messages()
+        return None
 
     def take_messages(self):
         while len(self.unread) >= HEADER.size and self.socket is not None:
