@@ -7,6 +7,7 @@
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/device/autd3_sdk_array.hpp"
 #include "prostm/device/segment_stream.hpp"
+#include "prostm/device/stream_device.hpp"
 
 namespace prostm {
 namespace {
@@ -35,15 +36,15 @@ DeviceFinding look_for_autd3_units(const DeviceSetup& setup) {
 constexpr DeviceKind kKinds[] = {
     {"sim", nullptr, nullptr, "needs no hardware; nobody can feel it", simulated_info,
      make_simulated, nullptr},
-<<<<<<< HEAD
     {"autd3", "HOST:PORT", "autd3", "tried with a stand-in for AUTD3 v38, never with real units",
      autd3_info, make_autd3, look_for_autd3_units},
-=======
-    {"autd3", "HOST:PORT", "autd3", "never tried on real hardware", nullptr, nullptr, nullptr},
     {"autd3-sdk", "%INTERFACE", "autd3", "tried with a stand-in, never on real hardware",
      autd3_sdk_info, make_autd3_sdk, look_for_autd3_sdk},
     {"ultraleap", nullptr, nullptr, "needs the vendor's SDK; never tried on real hardware", nullptr,
      nullptr, nullptr},
+    {"stream", "ADDRESS:PORT", nullptr,
+     "for programs that subscribe; tried with receivers on this machine, never with an array",
+     stream_info, make_stream, look_for_stream},
 };
 
 const DeviceKind& kind_named(const std::string& name) {

@@ -7,6 +7,7 @@
 
 #include "prostm/device/autd3_array.hpp"
 #include "prostm/device/simulated_array.hpp"
+#include "prostm/device/stream_settings.hpp"
 
 namespace prostm {
 
@@ -18,6 +19,7 @@ struct DeviceSetup {
   std::string address = {};  ///< behind NAME:// in --device; empty: the kind's usual one
   int foci = 4;              ///< focal points of a sample
   Autd3Settings autd3 = {};
+  StreamSettings stream = {};
 };
 
 /// Result of a look for a device.

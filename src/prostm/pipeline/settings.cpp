@@ -103,7 +103,8 @@ std::vector<SettingsGroup> groups_of(Settings& s) {
           group_of("am", s.am),
           group_of("emit", s.emit),
           group_of("simulated_array", s.simulated_array),
-          group_of("autd3", s.autd3)};
+          group_of("autd3", s.autd3),
+          group_of("stream", s.stream)};
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ struct PipelineSettings {
   EmitSettings emit;
   SimulatedArraySettings simulated_array;
   Autd3Settings autd3;
+  StreamSettings stream;  ///< of device stream
   TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
   Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
@@ -54,7 +55,7 @@ struct PipelineSettings {
 
   /// Returns the setup that `device` is made from.
   DeviceSetup device_setup() const {
-    return {simulated_array, transducers, Medium{}, {}, emit.foci, autd3};
+    return {simulated_array, transducers, Medium{}, {}, emit.foci, autd3, stream};
   }
 
   /// Samples of an emission for it [Hz].

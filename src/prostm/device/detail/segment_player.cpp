@@ -37,6 +37,8 @@ void SegmentPlayer::reset(int foci) {
   next_.clear();
   has_next_ = false;
   at_ = 0;
+  loads_ = 0;
+  now_ = {};
 }
 
 void SegmentPlayer::load(std::span<const FocusSample> samples) {
@@ -46,15 +48,25 @@ void SegmentPlayer::load(std::span<const FocusSample> samples) {
     const std::lock_guard lock(mutex_);
     next_.swap(copy);
     has_next_ = true;
+    ++loads_;
   }
 }
 
-void SegmentPlayer::fill(std::int64_t /*first*/, std::span<FocusSample> out) noexcept {
+SegmentPlayer::Playing SegmentPlayer::playing() const {
   const std::lock_guard lock(mutex_);
+  return now_;
+}
+
+void SegmentPlayer::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
+  const std::lock_guard lock(mutex_);
+  const std::int64_t end = first + static_cast<std::int64_t>(out.size()) / foci_;
   while (!out.empty()) {
     if (at_ == playing_.size()) {
       at_ = 0;
-      if (has_next_) playing_.swap(next_);
+      if (has_next_) {
+        playing_.swap(next_);
+        now_ = {loads_, end - static_cast<std::int64_t>(out.size()) / foci_};
+      }
       has_next_ = false;
     }
     const std::size_t n = std::min(out.size(), playing_.size() - at_);

@@ -23,14 +23,23 @@ class SegmentPlayer final : public SampleSource {
   /// samples.
   void load(std::span<const FocusSample> samples);
 
+  /// The segment that plays.
+  struct Playing {
+    std::int64_t number = 0;  ///< loads since the reset up to it; 0: none plays yet
+    std::int64_t first = 0;   ///< sample at which it began
+  };
+  Playing playing() const;
+
   int foci() const override { return foci_; }
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 
  private:
   int foci_ = 1;
-  std::mutex mutex_;  // guards the members below
+  mutable std::mutex mutex_;  // guards the members below
   std::vector<FocusSample> playing_, next_;
   bool has_next_ = false;
+  std::int64_t loads_ = 0;
+  Playing now_;
   std::size_t at_ = 0;  // in playing_
 };
 
