@@ -1,0 +1,48 @@
+#pragma once
+/// Keeps focal points apart that a device cannot make side by side.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prostm/emit/focus_sample.hpp"
+
+namespace prostm {
+
+/// Where sounding focal points come closer than a least separation, only the strongest of them goes
+/// on sounding. The others fade out before, and in again after. It looks ahead by the time of a
+/// fade, so that every fade has ended when the points are too close; samples leave that much later.
+/// Positions never change. An intensity changes by at most its own change and a step of the fade.
+/// Points of intensity 0 may lie anywhere. A sample that is not finite is left out likewise.
+class PointSeparation {
+ public:
+  /// Forgets all samples. @param least smallest distance of two sounding points [m]; 0 or less:
+  /// any. @param fade samples of a fade over the full range, >= 1. Allocates.
+  void configure(int foci, double least, int fade);
+  /// Samples from one that is given to step() to the same one leaving it.
+  int delay() const { return delay_; }
+  /// Takes a sample and gives the one that came delay() samples before, silent at first; `in` and
+  /// `out` hold one sample each and may be the same.
+  void step(std::span<const FocusSample> in, std::span<FocusSample> out) noexcept;
+  /// Samples of a focal point that were silenced or weakened, since configure().
+  std::int64_t weakened() const { return weakened_; }
+
+ private:
+  struct Waiting {
+    FocusSample sample;
+    float gain = 1.0F;
+  };
+  Waiting& waiting(std::size_t focus, std::size_t back);
+  void choose();
+  void gate(std::size_t focus, bool silenced);
+
+  std::size_t foci_ = 0, newest_ = 0;
+  int delay_ = 0;
+  float least_squared_ = 0.0F, step_ = 1.0F;
+  std::vector<Waiting> line_;           // delay_ + 1 samples, a ring
+  std::vector<char> sounds_, refused_;  // of each focal point, for the newest sample
+  std::vector<std::size_t> order_;      // focal points, the strongest first
+  std::int64_t weakened_ = 0;
+};
+
+}  // namespace prostm
