@@ -207,7 +207,9 @@ result<void> StreamingEmitter::addDevice(const Device& device, const Transform& 
   if (!entry->owner.empty()) return failed("the device is claimed");
   entry->owner = kUs;
   streamer_->device = device.getIdentifier();
-  return setControlPointCount(1, AdjustRate::All);
+  streamer_->points.resize(1);
+  streamer_->change_rate(rate_limit(streamer_->device, 1));
+  return {};
 }
 
 result<void> StreamingEmitter::setControlPointCount(std::size_t count, AdjustRate adjust) {

@@ -38,9 +38,7 @@ class UltraleapArray final : public Device {
  private:
   DeviceStatus refuse(const std::string& sentence);
   DeviceStatus state() const;
-  bool is_stopped_by_fault() const {
-    return emission_.fault() != UltraleapEmission::Fault::None;
-  }
+  bool is_stopped_by_fault() const { return emission_.fault() != UltraleapEmission::Fault::None; }
   DeviceStatus begin(SampleSource& source);
   void reopen(int foci);
 
@@ -108,7 +106,7 @@ std::string UltraleapArray::problem() const {
   return "The Ultraleap Haptics SDK failed while it asked for samples: start again.";
 }
 
-/// Lets go of the session, if there is one, and makes another.
+/// Lets go of the session, if it is still there, and makes another.
 void UltraleapArray::reopen(int foci) {
   std::unique_ptr<UltraleapSession> old;
   {
@@ -128,9 +126,9 @@ DeviceStatus UltraleapArray::begin(SampleSource& source) {
     const std::lock_guard lock(mutex_);
     session_->set_foci(foci, info_.sample_rate);
     source_ = &source;
-    emission_.start(source, {.rate = session_->rate(),
-                             .foci = foci,
-                             .least_separation = session_->least_separation()});
+    emission_.start(
+        source,
+        {.rate = session_->rate(), .foci = foci, .least_separation = session_->least_separation()});
     session_->start();
     missed_ = 0;
     problem_.clear();
@@ -199,8 +197,8 @@ std::string words_of(const ulh::Device& device) {
   std::string out = device.getIdentifier();
   if (const auto info = device.getInfo()) {
     const ulh::DeviceInfo& told = info.value();
-    out += std::string(" (") + told.getModelDescription() + ", firmware " +
-           told.getFirmwareVersion();
+    out +=
+        std::string(" (") + told.getModelDescription() + ", firmware " + told.getFirmwareVersion();
     const UltraleapKit* kit = ultraleap_kit(told.getModelName(), told.getTransducerLayoutName());
     if (kit != nullptr)
       out += ", its kit's tracker at y = " +
@@ -218,19 +216,22 @@ DeviceFinding look(const DeviceSetup& setup) {
   connect_ultraleap(library, address.connection);
   const auto devices = library.getDevices();
   if (!devices)
-    return {false, "The Ultraleap Haptics SDK does not list its arrays (" + message_of(devices) + ")."};
+    return {false,
+            "The Ultraleap Haptics SDK does not list its arrays (" + message_of(devices) + ")."};
   DeviceFinding out;
   std::string list;
   for (const ulh::Device& device : devices.value()) {
     list += (list.empty() ? "" : "; ") + words_of(device);
     const auto info = device.getInfo();
-    const bool wanted = address.device.empty()
-                            ? info && info.value().hasSupportFor(ulh::DeviceFeatures::StreamingHaptics)
-                            : address.device == device.getIdentifier();
+    const bool wanted =
+        address.device.empty()
+            ? info && info.value().hasSupportFor(ulh::DeviceFeatures::StreamingHaptics)
+            : address.device == device.getIdentifier();
     out.found = out.found || (wanted && ultraleap_owner(device).empty());
   }
-  out.words = list.empty() ? "The Ultraleap Haptics SDK sees no array: connect one and switch it on."
-                           : "Arrays: " + list + ".";
+  out.words = list.empty()
+                  ? "The Ultraleap Haptics SDK sees no array: connect one and switch it on."
+                  : "Arrays: " + list + ".";
   return out;
 }
 

@@ -72,8 +72,7 @@ std::int64_t PlayLog::played(double now) const {
   if (!find([&](const Call& c) { return c.play_time <= now; }, call)) return 0;
   if (call.play_time > now) return call.first;
   const double since = std::floor((now - call.play_time) * rate_) + 1.0;
-  return call.first + static_cast<std::int64_t>(
-                          std::min(since, static_cast<double>(call.samples)));
+  return call.first + static_cast<std::int64_t>(std::min(since, static_cast<double>(call.samples)));
 }
 
 PlayLog::Call PlayLog::newest() const {

@@ -49,8 +49,8 @@ void SegmentPlayer::load(std::span<const FocusSample> samples) {
   }
 }
 
-/// Takes the segment that was loaded last, if there is one. Never waits: while one is being loaded,
-/// the playing one repeats.
+/// Takes the segment that was loaded last, if it has not been taken. Never waits: while another is
+/// being loaded, the playing one repeats.
 void SegmentPlayer::take_next() noexcept {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock || !has_next_) return;

@@ -1,9 +1,8 @@
 #pragma once
 /// The callback in which the vendor's SDK asks for control points. Needs the SDK.
 
-#include <ultraleap/haptics/streaming.hpp>
-
 #include <atomic>
+#include <ultraleap/haptics/streaming.hpp>
 #include <vector>
 
 #include "prostm/device/detail/play_log.hpp"

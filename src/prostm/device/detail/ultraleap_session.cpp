@@ -12,7 +12,7 @@ namespace {
 
 namespace ulh = Ultraleap::Haptics;
 
-constexpr float kCallRate = 1000.0F;              // callbacks a second
+constexpr float kCallRate = 1000.0F;                 // callbacks a second
 constexpr double kLeastRate = 1e3, kMostRate = 1e6;  // of samples that an emission can make [Hz]
 constexpr double kRateTolerance = 1e-4;
 constexpr double kCentreTolerance = 2e-3;  // of the middle of the transducers [m]
@@ -95,8 +95,7 @@ void UltraleapEvents::onLibraryDisconnected(const ulh::EndpointInfo& /*service*/
 }
 
 void connect_ultraleap(ulh::Library& library, const std::string& connection) {
-  const auto result =
-      connection.empty() ? library.connect() : library.connect(connection.c_str());
+  const auto result = connection.empty() ? library.connect() : library.connect(connection.c_str());
   if (connection == "direct") {
     require(result, "The Ultraleap Haptics SDK found no way to the arrays without its service");
   }
@@ -123,7 +122,8 @@ UltraleapSession::UltraleapSession(const UltraleapAddress& address, int foci,
   claim(device);
   set_rate(foci);
   const auto separation = device.getMinimumPointSeparation();
-  require(separation, "The Ultraleap array '" + identifier_ + "' does not say its least separation");
+  require(separation,
+          "The Ultraleap array '" + identifier_ + "' does not say its least separation");
   least_separation_ = static_cast<double>(separation.value());
   require(emitter_->setEmissionCallback(&UltraleapEmission::callback, &emission),
           "The Ultraleap Haptics SDK does not take a callback");
@@ -226,7 +226,8 @@ void UltraleapSession::stop() {
 }
 
 int UltraleapSession::most_foci() const {
-  return std::max(foci_, static_cast<int>(std::min<std::size_t>(emitter_->getControlPointLimit(), 8)));
+  return std::max(foci_,
+                  static_cast<int>(std::min<std::size_t>(emitter_->getControlPointLimit(), 8)));
 }
 
 int UltraleapSession::samples_a_call() const {

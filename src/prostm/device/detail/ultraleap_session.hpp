@@ -1,12 +1,11 @@
 #pragma once
 /// A connection to the vendor's SDK, with one array claimed. Needs the SDK.
 
-#include <ultraleap/haptics/streaming.hpp>
-
 #include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <ultraleap/haptics/streaming.hpp>
 
 #include "prostm/device/detail/ultraleap_emission.hpp"
 #include "prostm/device/ultraleap.hpp"

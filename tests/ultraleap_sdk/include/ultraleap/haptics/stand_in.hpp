@@ -16,7 +16,7 @@ struct Array {
   std::string identifier = "MockDevice:USX";
   std::string model = "USX", layout = "square", firmware = "3.1.0";
   std::vector<float> rates = {40e3F, 20e3F, 16e3F, 13333.3333F, 10e3F, 8e3F};  ///< [Hz], by points
-  float separation = 0.01F;  ///< [m]
+  float separation = 0.01F;                                                    ///< [m]
   ulh::Vector3 centre = {};  ///< middle of the transducers
   bool streams = true;
 };
@@ -42,13 +42,13 @@ void change_rate(float rate);
 
 /// Calls back n times, as the emission's thread would. @pre set_manual(true), an emission runs.
 void step(int n);
-void miss(int n);        ///< the next n callbacks' time passes without one
+void miss(int n);           ///< the next n callbacks' time passes without one
 void make_late(bool late);  ///< deadlines have passed already
 void make_callback_late_in_destructor(bool wanted);
 
-/// What the adapter did that the interface forbids: a second walk, an unfinished walk, a point that
-/// does not exist, numbers that are not finite, sounding points that are too close, a listener
-/// added or removed in a callback, a callback with an array that was not claimed.
+/// Number of things that the adapter did and the interface forbids: a second walk, an unfinished
+/// walk, a point that does not exist, numbers that are not finite, sounding points that are too
+/// close, a listener added or removed in a callback, a callback with an array that was not claimed.
 int violations();
 std::string last_violation();
 int emitters();  ///< alive
