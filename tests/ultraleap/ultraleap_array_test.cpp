@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <thread>
 
 #include "support/eventually.hpp"
 #include "support/heap_guard.hpp"
@@ -57,6 +58,27 @@ TEST_F(UltraleapArray, TakesTheRateThatComesWithTheNumberOfPoints) {
     // the registry knows it from then on
     EXPECT_EQ(ultraleap_info(setup_of(foci)).sample_rate, info.sample_rate);
   }
+}
+
+TEST_F(UltraleapArray, NeverRunsFasterThanTheArrayCan) {
+  stand_in::Array array;
+  array.emitter_follows = false;
+  stand_in::reset({array});
+  stand_in::set_manual(true);
+  EXPECT_EQ(make_ultraleap(setup_of(3))->info().sample_rate, 16e3);
+  EXPECT_EQ(make_ultraleap(setup_of(5))->info().sample_rate, 10e3);
+}
+
+TEST_F(UltraleapArray, NoticesThatNobodyAsksAnyMore) {
+  const auto device = make_ultraleap(setup_of(3));
+  Numbered source(3);
+  ASSERT_EQ(device->start(source), DeviceStatus::Running);
+  stand_in::step(10);
+  EXPECT_EQ(device->status(), DeviceStatus::Running);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1'100));
+  EXPECT_EQ(device->status(), DeviceStatus::Vanished);
+  EXPECT_THAT(device->problem(), HasSubstr("no samples for a second"));
+  ASSERT_EQ(device->start(source), DeviceStatus::Running);
 }
 
 TEST_F(UltraleapArray, SetsEverySampleOnceAndInOrder) {
@@ -160,8 +182,8 @@ TEST_F(UltraleapArray, FallsSilentWhenItIsTakenOrFails) {
     const auto heard = listener.heard();
     ASSERT_EQ(heard.size(), 105U * 16U);
     for (std::size_t i = 1'600; i < heard.size(); ++i) {
-      const double change = heard[i - 1].point[0].intensity - heard[i].point[0].intensity;
-      ASSERT_LE(change, 1.0 / kFade + 1e-3);
+      const float change = heard[i - 1].point[0].intensity - heard[i].point[0].intensity;
+      ASSERT_LE(change, 1.0F / kFade + 1e-3F);
     }
     EXPECT_GT(heard[1'600].point[0].intensity, 0.0F);
     EXPECT_EQ(heard[1'600 + kFade].point[0].intensity, 0.0F);

@@ -81,6 +81,7 @@ TEST(MakeUltraleap, SaysEachRefusalInASentence) {
       {"addDevice", "'MockDevice:USX' cannot be claimed (told so)"},
       {"setControlPointCount", "does not take 3 focal points (told so): try fewer --paths"},
       {"getEmitterUpdateRate", "does not say its rate (told so)"},
+      {"getDeviceUpdateRateLimit", "does not say its fastest rate (told so)"},
       {"getMinimumPointSeparation", "does not say its least separation (told so)"},
       {"setEmissionCallback", "does not take a callback (told so)"},
       {"setCallbackRate", "(told so)"}};

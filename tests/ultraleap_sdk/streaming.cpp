@@ -218,6 +218,11 @@ result<void> StreamingEmitter::setControlPointCount(std::size_t count, AdjustRat
   if (limit == 0.0) return failed("the device cannot focus on so many points");
   const bool too_fast = streamer_->rate > limit;
   if (too_fast && adjust == AdjustRate::None) return failed("the rate is too high");
+  const bool follows = world().find(streamer_->device)->array.emitter_follows;
+  if (!follows) {
+    streamer_->points.resize(count);
+    return {};
+  }
   if (adjust == AdjustRate::All || (adjust == AdjustRate::AsRequired && too_fast))
     streamer_->change_rate(limit);
   streamer_->points.resize(count);
@@ -251,6 +256,14 @@ result<void> StreamingEmitter::setEmitterUpdateRate(float rate) {
   if (static_cast<double>(rate) > limit * 1.00001) return failed("the rate is too high");
   streamer_->change_rate(static_cast<double>(rate));
   return {};
+}
+
+result<float> StreamingEmitter::getDeviceUpdateRateLimit(const Device& device,
+                                                         std::size_t count) const {
+  if (auto refused = world().refusal("getDeviceUpdateRateLimit")) return *refused;
+  const double limit = rate_limit(device.getIdentifier(), count);
+  if (limit == 0.0) return failed("the device cannot focus on so many points");
+  return static_cast<float>(limit);
 }
 
 std::size_t StreamingEmitter::getControlPointLimit() const {

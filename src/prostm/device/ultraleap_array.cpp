@@ -2,7 +2,8 @@
 #if defined(PROSTM_ULTRALEAP)
 #include <algorithm>
 #include <chrono>
-#include <optional>
+#include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "prostm/device/detail/segment_player.hpp"
@@ -31,14 +32,16 @@ class UltraleapArray final : public Device {
   void stop() override;
   DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override;
   DeviceStats stats() const override;
-  std::int64_t samples() const override { return emission_.log().played(seconds_now()); }
-  double play_time(std::int64_t sample) const override { return emission_.log().play_time(sample); }
-  double ask_time(std::int64_t sample) const override { return emission_.log().ask_time(sample); }
+  std::int64_t samples() const override { return emission_->log().played(seconds_now()); }
+  double play_time(std::int64_t sample) const override {
+    return emission_->log().play_time(sample);
+  }
+  double ask_time(std::int64_t sample) const override { return emission_->log().ask_time(sample); }
 
  private:
   DeviceStatus refuse(const std::string& sentence);
   DeviceStatus state() const;
-  bool is_stopped_by_fault() const { return emission_.fault() != UltraleapEmission::Fault::None; }
+  bool is_stopped_by_fault() const { return emission_->fault() != UltraleapEmission::Fault::None; }
   DeviceStatus begin(SampleSource& source);
   void reopen(int foci);
 
@@ -46,7 +49,8 @@ class UltraleapArray final : public Device {
   DeviceInfo info_;
   SegmentPlayer segment_;
   SampleSource* source_ = nullptr;
-  UltraleapEmission emission_;  // outlives the session, whose end may still call it
+  // outlives the session, whose end may still call it
+  const std::unique_ptr<UltraleapEmission> emission_ = std::make_unique<UltraleapEmission>();
 
   mutable std::mutex mutex_;  // guards the members below; never held in the callback
   DeviceStatus status_ = DeviceStatus::Idle;
@@ -69,7 +73,7 @@ DeviceInfo info_of(const UltraleapSession& session) {
 
 UltraleapArray::UltraleapArray(const DeviceSetup& setup)
     : address_(ultraleap_address(setup.address)),
-      session_(std::make_unique<UltraleapSession>(address_, setup.foci, emission_)) {
+      session_(std::make_unique<UltraleapSession>(address_, setup.foci, *emission_)) {
   info_ = info_of(*session_);
   remember_ultraleap(setup, info_);
 }
@@ -84,6 +88,7 @@ DeviceStatus UltraleapArray::refuse(const std::string& sentence) {
 /// The status, with what ended the emission. @pre locked.
 DeviceStatus UltraleapArray::state() const {
   if (status_ != DeviceStatus::Running) return status_;
+  emission_->watch();
   const bool gone = session_ == nullptr || session_->events().is_gone() || is_stopped_by_fault();
   return gone ? DeviceStatus::Vanished : DeviceStatus::Running;
 }
@@ -97,12 +102,14 @@ std::string UltraleapArray::problem() const {
   const std::lock_guard lock(mutex_);
   if (state() != DeviceStatus::Vanished) return problem_;
   if (session_ != nullptr && session_->events().is_gone()) return session_->events().problem();
-  if (emission_.fault() == UltraleapEmission::Fault::Rate) {
+  if (emission_->fault() == UltraleapEmission::Fault::Rate) {
     return "The Ultraleap array '" + (session_ ? session_->identifier() : address_.device) +
            "' changed its rate from " + std::to_string(std::lround(info_.sample_rate)) + " to " +
-           std::to_string(std::lround(1.0 / std::max(1e-9, emission_.found_interval()))) +
+           std::to_string(std::lround(1.0 / std::max(1e-9, emission_->found_interval()))) +
            " Hz while it played: open it anew.";
   }
+  if (emission_->fault() == UltraleapEmission::Fault::Stalled)
+    return "The Ultraleap Haptics SDK has asked for no samples for a second: start again.";
   return "The Ultraleap Haptics SDK failed while it asked for samples: start again.";
 }
 
@@ -114,7 +121,7 @@ void UltraleapArray::reopen(int foci) {
     old.swap(session_);
   }
   old.reset();  // the claim must be free first
-  auto fresh = std::make_unique<UltraleapSession>(address_, foci, emission_);
+  auto fresh = std::make_unique<UltraleapSession>(address_, foci, *emission_);
   const std::lock_guard lock(mutex_);
   session_ = std::move(fresh);
 }
@@ -126,7 +133,7 @@ DeviceStatus UltraleapArray::begin(SampleSource& source) {
     const std::lock_guard lock(mutex_);
     session_->set_foci(foci, info_.sample_rate);
     source_ = &source;
-    emission_.start(
+    emission_->start(
         source,
         {.rate = session_->rate(), .foci = foci, .least_separation = session_->least_separation()});
     session_->start();
@@ -134,7 +141,7 @@ DeviceStatus UltraleapArray::begin(SampleSource& source) {
     problem_.clear();
     return status_ = DeviceStatus::Running;
   } catch (const std::exception& error) {
-    emission_.stop();
+    emission_->stop();
     source_ = nullptr;
     return refuse(error.what());
   }
@@ -151,8 +158,8 @@ void UltraleapArray::stop() {
     status_ = DeviceStatus::Idle;
     return;
   }
-  emission_.fade_out();
-  emission_.stop();
+  emission_->fade_out();
+  emission_->stop();
   source_ = nullptr;
   const std::lock_guard lock(mutex_);
   if (session_ != nullptr) {
@@ -181,9 +188,9 @@ DeviceStatus UltraleapArray::load_segment(std::span<const FocusSample> samples, 
 
 DeviceStats UltraleapArray::stats() const {
   DeviceStats out;
-  out.blocks = emission_.log().calls();
-  out.late_blocks = emission_.late_calls();
-  const PlayLog::Call newest = emission_.log().newest();
+  out.blocks = emission_->log().calls();
+  out.late_blocks = emission_->late_calls();
+  const PlayLog::Call newest = emission_->log().newest();
   const double ahead = (newest.play_time - newest.time) * info_.sample_rate / info_.block_samples;
   out.queue_blocks = static_cast<int>(std::clamp(std::round(ahead), 0.0, 1e6));
   const std::lock_guard lock(mutex_);
@@ -200,9 +207,11 @@ std::string words_of(const ulh::Device& device) {
     out +=
         std::string(" (") + told.getModelDescription() + ", firmware " + told.getFirmwareVersion();
     const UltraleapKit* kit = ultraleap_kit(told.getModelName(), told.getTransducerLayoutName());
-    if (kit != nullptr)
-      out += ", its kit's tracker at y = " +
-             std::to_string(static_cast<int>(std::lround(1e4 * kit->tracker_y)) / 10) + " mm";
+    if (kit != nullptr) {
+      std::ostringstream place;
+      place << ", its kit's tracker at y = " << 1e3 * kit->tracker_y << " mm";
+      out += place.str();
+    }
     if (!told.hasSupportFor(ulh::DeviceFeatures::StreamingHaptics)) out += ", cannot stream";
     out += ")";
   }

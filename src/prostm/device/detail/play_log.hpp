@@ -20,7 +20,7 @@ class PlayLog {
     double time = 0.0;         ///< of the call
   };
 
-  /// Forgets all calls. @param rate samples a second. @pre nothing adds or asks.
+  /// Forgets all calls. @param rate samples a second. @pre nothing adds.
   void reset(double rate);
   void add(const Call& call) noexcept;
 
@@ -46,7 +46,7 @@ class PlayLog {
 
   std::array<Slot, kCalls> slots_;
   std::atomic<std::int64_t> calls_{0};
-  double rate_ = 1.0;
+  std::atomic<double> rate_{1.0};
 };
 
 }  // namespace prostm

@@ -15,6 +15,7 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::size_t kAtOnce = 256;     // samples that are taken from the source at a time
 constexpr double kRateTolerance = 0.01;  // of the interval between samples
 constexpr double kLongestFade = 0.1;     // time that fade_out() waits for [s]
+constexpr double kStalled = 1.0;         // time without a call after which it has failed [s]
 constexpr double kNoCalls = 0.02;        // time without a call after which nobody calls [s]
 
 double seconds_now() {
@@ -41,7 +42,19 @@ void UltraleapEmission::start(SampleSource& source, const Setup& setup) {
   fault_ = Fault::None;
   silent_from_ = 0.0;
   wanted_ = 1.0F;
+  last_call_ = seconds_now();
   open_ = true;
+}
+
+/// Fades out for the first fault that is found.
+void UltraleapEmission::fail(Fault fault) {
+  wanted_ = 0.0F;
+  Fault none = Fault::None;
+  fault_.compare_exchange_strong(none, fault);
+}
+
+void UltraleapEmission::watch() {
+  if (open_ && seconds_now() - last_call_ > kStalled) fail(Fault::Stalled);
 }
 
 void UltraleapEmission::fade_out() {
@@ -76,8 +89,7 @@ void UltraleapEmission::callback(const ulh::StreamingEmitter& /*emitter*/,
     }
   } catch (...) {
     // an exception must not reach the SDK's thread
-    self->wanted_ = 0.0F;
-    self->fault_.store(Fault::Sdk, std::memory_order_release);
+    self->fail(Fault::Sdk);
   }
   self->inside_ = false;
 }
@@ -120,11 +132,11 @@ void UltraleapEmission::set_points(ulh::TimePointOnOutputInterval& point) {
 void UltraleapEmission::emit(ulh::OutputInterval& interval, const ulh::LocalTimePoint& deadline) {
   const ulh::LocalTimePoint begin = ulh::LocalTimeClock::now();
   PlayLog::Call call{.first = emitted_, .pulled = pulled_, .time = seconds_now()};
+  last_call_ = call.time;
   const double step = Seconds(interval.iteratorTimeInterval()).count();
   if (std::abs(step * setup_.rate - 1.0) > kRateTolerance && fault() == Fault::None) {
-    wanted_ = 0.0F;
     found_interval_ = step;
-    fault_.store(Fault::Rate, std::memory_order_release);
+    fail(Fault::Rate);
   }
   const auto foci = static_cast<std::size_t>(setup_.foci);
   const auto ahead = static_cast<std::size_t>(separation_.delay());

@@ -17,7 +17,12 @@ namespace prostm {
 /// on after stop(), and is silent then.
 class UltraleapEmission {
  public:
-  enum class Fault : std::uint8_t { None, Rate, Sdk };
+  enum class Fault : std::uint8_t {
+    None,
+    Rate,     ///< the interval between samples is not what the source was made for
+    Stalled,  ///< no callback came for a second
+    Sdk       ///< an exception
+  };
 
   struct Setup {
     double rate = 0.0;              ///< of the device [Hz]
@@ -32,6 +37,8 @@ class UltraleapEmission {
   void fade_out();
   /// Begins to fade out. Any thread.
   void mute() { wanted_.store(0.0F, std::memory_order_relaxed); }
+  /// Finds out whether callbacks still come. Any thread. @pre started.
+  void watch();
   /// Lets go of the source. After this the source is not used, even if callbacks go on.
   void stop();
 
@@ -50,6 +57,7 @@ class UltraleapEmission {
  private:
   void emit(Ultraleap::Haptics::OutputInterval& interval,
             const Ultraleap::Haptics::LocalTimePoint& deadline);
+  void fail(Fault fault);
   void be_silent(Ultraleap::Haptics::OutputInterval& interval);
   std::size_t expected(const Ultraleap::Haptics::OutputInterval& interval) const;
   void pull(std::size_t samples);
@@ -72,6 +80,7 @@ class UltraleapEmission {
   std::atomic<double> silent_from_{0.0};  // when the first silent sample after mute() plays; 0: not
   std::atomic<bool> open_{false}, inside_{false};  // samples may be given; a callback is at work
   std::atomic<std::size_t> points_{0};             // control points that the SDK was asked for
+  std::atomic<double> last_call_{0.0};             // time, or that of start()
   std::atomic<std::int64_t> late_{0};
   std::atomic<Fault> fault_{Fault::None};
   std::atomic<double> found_interval_{0.0};

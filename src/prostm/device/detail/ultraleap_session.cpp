@@ -120,7 +120,7 @@ UltraleapSession::UltraleapSession(const UltraleapAddress& address, int foci,
   check_place(device);
   emitter_ = std::make_unique<ulh::StreamingEmitter>(library_);
   claim(device);
-  set_rate(foci);
+  set_rate(device, foci);
   const auto separation = device.getMinimumPointSeparation();
   require(separation,
           "The Ultraleap array '" + identifier_ + "' does not say its least separation");
@@ -179,12 +179,19 @@ void UltraleapSession::claim(ulh::Device& device) {
 }
 
 /// Sets the number of control points and asks for the rate that it leaves.
-void UltraleapSession::set_rate(int foci) {
+void UltraleapSession::set_rate(const ulh::Device& device, int foci) {
   require(emitter_->setControlPointCount(static_cast<std::size_t>(foci), ulh::AdjustRate::All),
           "The Ultraleap array '" + identifier_ + "' does not take " + std::to_string(foci) +
               " focal points",
           ": try fewer --paths");
   foci_ = foci;
+  // the emitter may keep a rate that the array cannot follow
+  const auto limit = emitter_->getDeviceUpdateRateLimit(device, static_cast<std::size_t>(foci));
+  require(limit, "The Ultraleap array '" + identifier_ + "' does not say its fastest rate");
+  if (emitter_rate() > static_cast<double>(limit.value()) * (1.0 + kRateTolerance)) {
+    require(emitter_->setEmitterUpdateRate(limit.value()),
+            "The Ultraleap array '" + identifier_ + "' does not take its fastest rate");
+  }
   rate_ = emitter_rate();
   if (!(rate_ >= kLeastRate && rate_ <= kMostRate)) {
     refuse("The Ultraleap array '" + identifier_ + "' gives a rate of " + hertz(rate_) + " with " +

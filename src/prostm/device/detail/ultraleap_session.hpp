@@ -75,7 +75,7 @@ class UltraleapSession {
 
  private:
   void claim(Ultraleap::Haptics::Device& device);
-  void set_rate(int foci);
+  void set_rate(const Ultraleap::Haptics::Device& device, int foci);
   double emitter_rate() const;
   void check_place(const Ultraleap::Haptics::Device& device) const;
 

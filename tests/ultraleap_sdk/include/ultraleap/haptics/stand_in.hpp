@@ -19,6 +19,7 @@ struct Array {
   float separation = 0.01F;                                                    ///< [m]
   ulh::Vector3 centre = {};  ///< middle of the transducers
   bool streams = true;
+  bool emitter_follows = true;  ///< a new number of points changes the emitter's rate too
 };
 
 /// Receives each sample as it is committed. Called by the emission's thread.

@@ -81,6 +81,7 @@ class StreamingEmitter {
   float getCallbackRate() const;
   result<float> getEmitterUpdateRate() const;
   result<void> setEmitterUpdateRate(float rate);
+  result<float> getDeviceUpdateRateLimit(const Device& device, std::size_t count) const;
   std::size_t getControlPointLimit() const;
   result<void> start();
   result<void> stop();
