@@ -63,7 +63,8 @@ double PlayLog::ask_time(std::int64_t sample) const {
   if (!find([&](const Call& c) { return c.pulled <= sample; }, call)) return 0.0;
   // a sample that was not asked for yet, or long ago: by the sample rate
   const std::int64_t later = sample - call.pulled;
-  const bool inside = later >= 0 && later < std::max<std::int64_t>(1, call.samples);
+  const bool is_newest = call.pulled == newest().pulled;
+  const bool inside = later >= 0 && (!is_newest || later < std::max<std::int64_t>(1, call.samples));
   return call.time + (inside ? 0.0 : static_cast<double>(later) / rate_);
 }
 

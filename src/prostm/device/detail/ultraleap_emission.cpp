@@ -6,6 +6,8 @@
 #include <cmath>
 #include <thread>
 
+#include "prostm/emit/emitter.hpp"
+
 namespace prostm {
 namespace {
 
@@ -29,7 +31,9 @@ void UltraleapEmission::start(SampleSource& source, const Setup& setup) {
   setup_ = setup;
   const int fade = std::max(1, static_cast<int>(std::ceil(setup.fade_time * setup.rate)));
   fade_step_ = 1.0F / static_cast<float>(fade);
-  separation_.configure(setup.foci, setup.least_separation, fade);
+  gate_.configure(setup.foci, {.least_separation = setup.least_separation,
+                               .largest_step = kMaxFocusSpeed / setup.rate,
+                               .fade = fade});
   const auto foci = static_cast<std::size_t>(setup.foci);
   block_.assign(kAtOnce * foci, FocusSample());
   now_.assign(foci, FocusSample());
@@ -139,19 +143,19 @@ void UltraleapEmission::emit(ulh::OutputInterval& interval, const ulh::LocalTime
     fail(Fault::Rate);
   }
   const auto foci = static_cast<std::size_t>(setup_.foci);
-  const auto ahead = static_cast<std::size_t>(separation_.delay());
+  const auto ahead = static_cast<std::size_t>(gate_.delay());
   std::size_t left = expected(interval) + (pulled_ == 0 ? ahead : 0);
   left -= std::min(left, end_ - at_);  // some may wait from the last call
   for (ulh::TimePointOnOutputInterval& point : interval) {
     if (call.samples == 0) call.play_time = call.time + Seconds(point - begin).count();
-    // the first samples only fill the separation's line
+    // the first samples only fill the gate's line
     for (;;) {
       if (at_ == end_) {
         pull(std::clamp<std::size_t>(left, 1, kAtOnce));
         left -= std::min(left, end_);
       }
       const bool first_ones = at_ + static_cast<std::size_t>(pulled_) - end_ < ahead;
-      separation_.step(std::span(block_).subspan(at_ * foci, foci), now_);
+      gate_.step(std::span(block_).subspan(at_ * foci, foci), now_);
       ++at_;
       if (!first_ones) break;
     }

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "prostm/device/detail/play_log.hpp"
-#include "prostm/device/detail/point_separation.hpp"
+#include "prostm/device/detail/point_gate.hpp"
 #include "prostm/device/device.hpp"
 
 namespace prostm {
 
 /// Gives a source's samples to the SDK, in order and each once, in one walk of each interval. Keeps
-/// points apart by PointSeparation, and rises from silence and falls into it within a fade, so that
+/// points apart by PointGate, and rises from silence and falls into it within a fade, so that
 /// neither a start nor an end clicks. The callback allocates, locks and throws nothing; it may go
 /// on after stop(), and is silent then.
 class UltraleapEmission {
@@ -69,7 +69,7 @@ class UltraleapEmission {
   float fade_step_ = 1.0F;
 
   // the callback's thread
-  PointSeparation separation_;
+  PointGate gate_;
   std::vector<FocusSample> block_, now_;   // samples waiting in one piece; the one that is set
   std::size_t at_ = 0, end_ = 0;           // samples of block_ that wait
   std::int64_t pulled_ = 0, emitted_ = 0;  // samples
