@@ -201,11 +201,13 @@ result<void> StreamingEmitter::addDevice(const Device& device, const Transform& 
   if (!std::equal(std::begin(identity.element), std::end(identity.element), transform.element))
     world().violate("the array is not at the origin");
   if (auto refused = world().refusal("addDevice")) return *refused;
-  const std::lock_guard lock(world().mutex);
-  Entry* entry = world().find(device.getIdentifier());
-  if (entry == nullptr || !entry->connected) return failed("the device is not connected");
-  if (!entry->owner.empty()) return failed("the device is claimed");
-  entry->owner = kUs;
+  {
+    const std::lock_guard lock(world().mutex);
+    Entry* entry = world().find(device.getIdentifier());
+    if (entry == nullptr || !entry->connected) return failed("the device is not connected");
+    if (!entry->owner.empty()) return failed("the device is claimed");
+    entry->owner = kUs;
+  }
   streamer_->device = device.getIdentifier();
   streamer_->points.resize(1);
   streamer_->change_rate(rate_limit(streamer_->device, 1));
