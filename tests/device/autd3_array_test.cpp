@@ -218,7 +218,7 @@ TEST(Autd3Array, SaysThatAUnitIsHot) {
 
 TEST(Autd3Array, IsFoundWithoutATouch) {
   StandIn server({"--frames-per-ms", "0"});
-  const Autd3Finding found = look_for_autd3(server.setup());
+  const DeviceFinding found = look_for_autd3(server.setup());
   EXPECT_TRUE(found.found);
   EXPECT_THAT(found.words, HasSubstr("CPU v12.1.0, FPGA v12.1.0"));
   EXPECT_EQ(server.report()["clears"], 0);
@@ -229,7 +229,7 @@ TEST(Autd3Array, IsFoundWithoutATouch) {
   // another program is connected
   Autd3Array busy(server.setup(1));
   const double begin = now_s();
-  const Autd3Finding waits = look_for_autd3(server.setup());
+  const DeviceFinding waits = look_for_autd3(server.setup());
   EXPECT_LT(now_s() - begin, 1.2);
   EXPECT_FALSE(waits.found);
   EXPECT_THAT(waits.words, HasSubstr("another program is connected"));

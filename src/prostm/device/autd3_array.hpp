@@ -91,7 +91,7 @@ struct Autd3Finding {
   std::string words;  ///< the units and their firmware; or what is missing and what to do
 };
 /// Looks for units for about a second, without changing what they do.
-Autd3Finding look_for_autd3(const Autd3Setup& setup);
+DeviceFinding look_for_autd3(const Autd3Setup& setup);
 
 /// Reads poses of units, {"format": "prostm-autd3/1", "units": [{"position_mm": [x, y, z],
 /// "quaternion": [x, y, z, w]}, …]}: where the middle of each unit is in D, and how it lies.

@@ -12,7 +12,6 @@
 namespace prostm {
 
 struct DeviceSetup;
-struct DeviceFinding;
 
 struct Autd3SdkSetup {
   std::string address;  ///< %INTERFACE or [IPv6], with :PORT if it is not 44336

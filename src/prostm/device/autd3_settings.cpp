@@ -72,12 +72,12 @@ std::vector<Pose> autd3_units_from_json(std::string_view text, const std::string
   return poses;
 }
 
-Autd3Finding look_for_autd3(const Autd3Setup& setup) {
+DeviceFinding look_for_autd3(const Autd3Setup& setup) {
   const std::vector<Pose> units =
       setup.units.empty() ? std::vector<Pose>{autd3_middle()} : setup.units;
   autd3::Session session(setup.address, units);
   if (!session.open(kLook)) return {false, session.problem()};
-  Autd3Finding finding{
+  DeviceFinding finding{
       true, fmt::format("autd3://{} drives {} unit{}, {}", setup.address.text(), units.size(),
                         units.size() == 1 ? "" : "s", session.firmware())};
   session.close();

@@ -30,6 +30,12 @@ struct DeviceInfo {
   double block_time() const { return block_samples / sample_rate; }
 };
 
+/// Result of a look for a device.
+struct DeviceFinding {
+  bool found = false;
+  std::string words;  ///< what is there; or what is missing and what to do, in one sentence
+};
+
 struct DeviceStats {
   std::int64_t blocks = 0;         ///< blocks filled
   std::int64_t late_blocks = 0;    ///< blocks filled after their deadline

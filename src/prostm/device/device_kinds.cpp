@@ -8,6 +8,7 @@
 #include "prostm/device/autd3_sdk_array.hpp"
 #include "prostm/device/segment_stream.hpp"
 #include "prostm/device/stream_device.hpp"
+#include "prostm/device/ultraleap.hpp"
 
 namespace prostm {
 namespace {
@@ -29,8 +30,7 @@ std::unique_ptr<Device> make_autd3(const DeviceSetup& setup) {
 }
 
 DeviceFinding look_for_autd3_units(const DeviceSetup& setup) {
-  const Autd3Finding finding = look_for_autd3(autd3_setup(setup));
-  return {finding.found, finding.words};
+  return look_for_autd3(autd3_setup(setup));
 }
 
 constexpr DeviceKind kKinds[] = {
@@ -40,8 +40,17 @@ constexpr DeviceKind kKinds[] = {
      autd3_info, make_autd3, look_for_autd3_units},
     {"autd3-sdk", "%INTERFACE", "autd3", "tried with a stand-in, never on real hardware",
      autd3_sdk_info, make_autd3_sdk, look_for_autd3_sdk},
-    {"ultraleap", nullptr, nullptr, "needs the vendor's SDK; never tried on real hardware", nullptr,
-     nullptr, nullptr},
+#if defined(PROSTM_ULTRALEAP)
+    {"ultraleap", "[DEVICE][@CONNECTION]", "usx",
+     "this build has the vendor's SDK; tried with a stand-in of its interface, never on real "
+     "hardware",
+     ultraleap_info, make_ultraleap, look_for_ultraleap},
+#else
+    {"ultraleap", "[DEVICE][@CONNECTION]", "usx",
+     "this build lacks the vendor's Haptics SDK 3: install that and configure prostm with "
+     "-DPROSTM_ULTRALEAP_ROOT=FOLDER (docs/ultraleap.md); never tried on real hardware",
+     nullptr, nullptr, look_for_ultraleap},
+#endif
     {"stream", "ADDRESS:PORT", nullptr,
      "for programs that subscribe; tried with receivers on this machine, never with an array",
      stream_info, make_stream, look_for_stream},
@@ -57,7 +66,8 @@ const DeviceKind& kind_named(const std::string& name) {
   for (const DeviceKind& kind : kKinds) {
     if (kind.name != name) continue;
     if (kind.is_built()) return kind;
-    throw std::invalid_argument("device '" + name + "' is not built yet: it must be " + built);
+    throw std::invalid_argument("device '" + name + "' is not in this build: it must be " + built +
+                                "; " + kind.name + ": " + kind.tried);
   }
   throw std::invalid_argument("device '" + name + "' is unknown: it must be " + built +
                               did_you_mean(name, names));

@@ -22,12 +22,6 @@ struct DeviceSetup {
   StreamSettings stream = {};
 };
 
-/// Result of a look for a device.
-struct DeviceFinding {
-  bool found = false;
-  std::string words;  ///< what is there; or what is missing and what to do, in one sentence
-};
-
 struct DeviceKind {
   const char* name;     ///< in --device and settings, where an address may follow
   const char* address;  ///< form of the address in NAME://ADDRESS; null: NAME alone

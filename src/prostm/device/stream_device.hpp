@@ -11,7 +11,6 @@
 
 namespace prostm {
 
-struct DeviceFinding;
 struct DeviceSetup;
 
 /// Counters of the subscribers' side.

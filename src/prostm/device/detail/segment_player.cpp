@@ -57,17 +57,26 @@ SegmentPlayer::Playing SegmentPlayer::playing() const {
   return now_;
 }
 
+/// Takes the segment that was loaded last, if it has not been taken, to play from sample `first`
+/// on. Never waits: while another is being loaded, the playing one repeats.
+void SegmentPlayer::take_next(std::int64_t first) noexcept {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || !has_next_) return;
+  playing_.swap(next_);
+  has_next_ = false;
+  now_ = {loads_, first};
+}
+
 void SegmentPlayer::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
-  const std::lock_guard lock(mutex_);
   const std::int64_t end = first + static_cast<std::int64_t>(out.size()) / foci_;
   while (!out.empty()) {
     if (at_ == playing_.size()) {
       at_ = 0;
-      if (has_next_) {
-        playing_.swap(next_);
-        now_ = {loads_, end - static_cast<std::int64_t>(out.size()) / foci_};
-      }
-      has_next_ = false;
+      take_next(end - static_cast<std::int64_t>(out.size()) / foci_);
+    }
+    if (playing_.empty()) {
+      std::fill(out.begin(), out.end(), FocusSample());
+      return;
     }
     const std::size_t n = std::min(out.size(), playing_.size() - at_);
     std::copy_n(playing_.begin() + static_cast<std::ptrdiff_t>(at_), n, out.begin());

@@ -34,13 +34,16 @@ class SegmentPlayer final : public SampleSource {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 
  private:
+  void take_next(std::int64_t first) noexcept;
+
   int foci_ = 1;
-  mutable std::mutex mutex_;  // guards the members below
-  std::vector<FocusSample> playing_, next_;
+  std::vector<FocusSample> playing_;  // of the thread that pulls
+  std::size_t at_ = 0;                // in playing_
+  mutable std::mutex mutex_;          // guards the members below
+  std::vector<FocusSample> next_;
   bool has_next_ = false;
   std::int64_t loads_ = 0;
   Playing now_;
-  std::size_t at_ = 0;  // in playing_
 };
 
 }  // namespace prostm
