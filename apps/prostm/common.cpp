@@ -77,13 +77,15 @@ void check_bounds(const CommonOptions& options, const PipelineSettings& settings
   if (options.seed) require_bounds(as_option(plan, "seed", "--seed"), *options.seed);
 }
 
-/// Where nobody chose the transducers, they are those of the device.
+/// Settles the transducers: where nobody chose them, they are those of the device.
 /// @throws InputError for others that are built in.
 void settle_array(PipelineSettings& settings, bool is_chosen) {
   const DeviceKind& kind = *device_named(settings.device).kind;
-  if (kind.array == nullptr) return;
-  if (!is_chosen) settings.array = kind.array;
-  if (settings.array == kind.array || names_json(settings.array)) return;
+  if (!is_chosen && kind.array != nullptr) settings.array = kind.array;
+  settings.transducers = array_from_name(settings.array);
+  if (!is_chosen && kind.transducers != nullptr)
+    settings.transducers = kind.transducers(settings.device_setup());
+  if (kind.array == nullptr || settings.array == kind.array || names_json(settings.array)) return;
   throw InputError(
       fmt::format("--array {} contradicts --device {}, whose transducers are {}; leave --array "
                   "out, or give a file (.json) with those of your units",
@@ -113,11 +115,14 @@ PipelineSettings make_settings(const CommonOptions& options,
   if (scene) settings.scene = *scene;
   if (options.device) settings.device = *options.device;
   if (options.array) settings.array = *options.array;
-  if (plays)
-    settle_array(settings, options.array || std::ranges::count(given, "pipeline.array") > 0);
   if (options.tracker) settings.tracker = *options.tracker;
   if (!options.settings_file.empty()) check_files_of(settings, options);
-  settings.transducers = array_from_name(settings.array);
+  const bool is_array_chosen = options.array || std::ranges::count(given, "pipeline.array") > 0;
+  if (plays) {
+    settle_array(settings, is_array_chosen);
+  } else {
+    settings.transducers = array_from_name(settings.array);
+  }
   settings.X_DT = tracker_pose_from_name(settings.tracker);
   check_bounds(options, settings);
   if (options.seed) settings.plan.seed = settings.scripted_hand.seed = *options.seed;

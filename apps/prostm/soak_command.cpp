@@ -61,8 +61,11 @@ class SoakObserver final : public RunObserver {
     if (view_ != nullptr) view_->check();
     counts_.device = pipeline_.device_stats();
     counts_.stalls = pipeline_.emit_stats().stalls;
-    counts_.limited = pipeline_.limited_samples();
-    counts_.problem = pipeline_.device().problem();
+    counts_.limited = pipeline_.plans().samples().limited();
+    const bool is_gone = pipeline_.device().status() == DeviceStatus::Vanished;
+    counts_.gone += is_gone && !was_gone_ ? 1 : 0;
+    counts_.problem = is_gone ? pipeline_.device().problem() : std::string();
+    was_gone_ = is_gone;
     const bool is_hot = pipeline_.device().is_hot();
     counts_.hot += is_hot && !was_hot_ ? 1 : 0;
     was_hot_ = is_hot;
@@ -128,7 +131,7 @@ class SoakObserver final : public RunObserver {
   SoakCounts counts_;
   double looked_ = 0.0;  // at the machine [s]
   int part_ = -1;
-  bool was_hot_ = false;
+  bool was_hot_ = false, was_gone_ = false;
   std::size_t said_ = 0;
   std::int64_t said_of_part_ = 0;
   Progress progress_{"soaking"};

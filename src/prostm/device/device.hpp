@@ -93,11 +93,10 @@ class Device {
   virtual double play_time(std::int64_t sample) const = 0;
   /// Time when the block of a sample was asked for, likewise: play_time less the queue before it.
   virtual double ask_time(std::int64_t sample) const { return play_time(sample); }
-  /// Says what the device told of itself when it was reached, such as the versions of its firmware;
-  /// empty if it tells nothing.
-  virtual std::string description() const { return {}; }
   /// Whether the hardware says that it is too hot. Any thread.
   virtual bool is_hot() const { return false; }
+  /// Says in a few words what was found out about it and what it costs: versions, rates, times.
+  virtual std::string description() const { return {}; }
   /// The samples that it played; null if it does not remember them.
   virtual const PlayedSamples* played() const { return nullptr; }
 };

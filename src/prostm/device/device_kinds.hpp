@@ -34,6 +34,9 @@ struct DeviceKind {
   /// Looks for the device at its address, for a second at most, without making it sound. Null where
   /// there is nothing to look for.
   DeviceFinding (*look)(const DeviceSetup& setup);
+  /// Returns the transducers that it plays on, where settings of its own place them; null: those of
+  /// `array`. @throws as make() does.
+  TransducerArray (*transducers)(const DeviceSetup& setup) = nullptr;
 
   bool is_built() const { return make != nullptr; }
 };

@@ -60,6 +60,8 @@ void SoakLog::count(double time, const SoakCounts& counts) {
   add(time, "skipped steps", counts.skipped_steps - counts_.skipped_steps, false);
   add(time, "skipped plans", counts.skipped_plans - counts_.skipped_plans, false);
   add(time, "fades for lack of a plan", counts.stalls - counts_.stalls, false);
+  if (!counts.problem.empty()) problem_ = counts.problem;
+  add(time, "times that the device was lost", counts.gone - counts_.gone, false);
   add(time, "times too hot", counts.hot - counts_.hot, false);
   add(time, "samples outside the limits", counts.limited - counts_.limited, false);
   counts_ = counts;
@@ -112,11 +114,12 @@ void SoakLog::end(double time, const MachineUse& use) {
 
 void SoakLog::forget_evidence() {
   longest_gap_ = longest_work_ = 0.0;
+  problem_.clear();
 }
 
 /// @param seconds since the look at the machine before.
 std::string SoakLog::cause_of(const SoakDip& dip, double seconds, const MachineUse& use) const {
-  if (!counts_.problem.empty()) return "the device: " + counts_.problem;
+  if (!problem_.empty()) return "the device: " + problem_;
   if (parts_[static_cast<std::size_t>(dip.part)].loaded) return "the load of this soak";
   const double stolen = use.stolen - use_.stolen,
                others = (use.busy - use_.busy - (use.own - use_.own)) / std::max(seconds, 1e-3);

@@ -20,7 +20,8 @@ struct SoakCounts {
   std::int64_t stalls = 0;         ///< fade-outs because no plan came
   std::int64_t limited = 0;        ///< samples that the limiter changed
   std::int64_t hot = 0;            ///< times that the hardware said it was too hot
-  std::string problem;             ///< of the device
+  std::int64_t gone = 0;           ///< times that the device was lost
+  std::string problem;             ///< of a device that is lost
 };
 
 /// Something that went wrong.
@@ -90,6 +91,7 @@ class SoakLog {
 
   // evidence since the last look at the machine
   MachineUse use_;
+  std::string problem_;
   double used_at_ = 0.0, counted_at_ = 0.0;                          // [s]
   double longest_gap_ = 0.0, longest_work_ = 0.0, step_time_ = 0.0;  // [s]
 
