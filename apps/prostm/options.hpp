@@ -80,6 +80,10 @@ struct FieldOptionsGiven {
   bool widths = false;  ///< of a focus, instead of the field of a plan
 };
 
+struct LevelsOptionsGiven {
+  CommonOptions common;  ///< settings file, array and JSON
+};
+
 struct DevicesOptionsGiven {
   Files files;
   std::string json;
@@ -104,6 +108,7 @@ int capture_command(const CaptureOptionsGiven& options);
 int bench_command(const BenchOptionsGiven& options);
 int solve_command(const SolveOptionsGiven& options);
 int field_command(const FieldOptionsGiven& options);
+int levels_command(const LevelsOptionsGiven& options);
 int devices_command(const DevicesOptionsGiven& options);
 int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);

@@ -55,7 +55,9 @@ struct RunSummary {
   ContactStats contact_stats;                  ///< of all updates
   DeviceStats device;
   EmitStats emit;
-  std::int64_t limited_samples = 0;  ///< that the limiter before the device had to change
+  /// Samples that the limiter before the device changed because a stage erred.
+  std::int64_t limited_samples = 0;
+  SafetyStats safety;
   double max_path_length = 0, max_skin_length = 0;
   double mean_divergence = 0;  ///< WorldStats::divergence over the steps
   std::int64_t world_resets = 0;
