@@ -14,6 +14,7 @@
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/device/sample_chain.hpp"
 #include "prostm/device/simulated_array.hpp"
 #include "prostm/emit/detail/path_emitter.hpp"
 #include "report.hpp"
@@ -88,6 +89,50 @@ void measure_fill(Method method, const MakePlan& make, Distribution& without, Di
   }
 }
 
+/// Measures what the chain to a device takes for a sample of 4 focal points [ns], from the time of
+/// blocks: the emission alone, with a limiter that knows no array, and with the whole limiter.
+void add_limiter_rows(std::vector<Row>& rows) {
+  const auto levels = std::make_shared<const SafetyLevels>(usx_array(), Medium{}, 0.5);
+  SafetySettings low;
+  low.mean_radiation_pressure = 100.0;
+  const std::pair<const char*, SampleLimits> kinds[] = {
+      {"emission and a limiter without levels", {}},
+      {"emission and the limiter", {.levels = levels}},
+      {"emission and the limiter at a cap", {.caps = low, .levels = levels}}};
+  const auto measure = [](Emitter& emitter, SampleSource& source) {
+    Distribution ns;
+    std::vector<FocusSample> block(kBlock * kFoci);
+    Random random(1);
+    std::vector<Vec3> places = centres();
+    std::int64_t first = 0;
+    for (int plan = 0; plan < 2000; ++plan) {
+      make_plan(random, places, 2e-3, emitter.draft());
+      emitter.submit();
+      for (int k = 0; k < kBlocksPerPlan; ++k) {
+        const StageTimer timer;
+        source.fill(first, block);
+        if (k > 0) ns.add(1e9 * timer.seconds() / static_cast<double>(kBlock));
+        first += static_cast<std::int64_t>(kBlock);
+      }
+    }
+    return ns.summary();
+  };
+  PathEmitter alone(emit_settings(), kRate);
+  rows.push_back({"a sample: emission alone", "ns", measure(alone, alone), "", 0.0});
+  for (const auto& [name, limits] : kinds) {
+    PathEmitter emitter(emit_settings(), kRate);
+    SampleChain chain(emitter, limits);
+    rows.push_back({std::string("a sample: ") + name, "ns", measure(emitter, chain), "", 0.0});
+  }
+  Distribution made;  // [ms]
+  for (int i = 0; i < 20; ++i) {
+    const StageTimer timer;
+    const FocusLevels table(usx_array());
+    made.add(1e3 * timer.seconds());
+  }
+  rows.push_back({"table of levels, usx", "ms", made.summary(), "", 0.0});
+}
+
 /// Streams for ten seconds in real time, 25 plans a second, beside `busy` threads that never sleep.
 DeviceStats stream(unsigned busy) {
   std::atomic<bool> done{false};
@@ -137,6 +182,7 @@ void add_stream_rows(unsigned busy, const std::string& load, std::vector<Row>& r
 std::vector<Row> measure_emission() {
   std::vector<Row> rows;
   add_fill_rows(rows);
+  add_limiter_rows(rows);
   add_stream_rows(0, "idle", rows);
   add_stream_rows(std::thread::hardware_concurrency(), "all cores busy", rows);
   return rows;

@@ -4,11 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -31,12 +29,6 @@
 
 namespace prostm::app {
 namespace {
-
-std::atomic<int> interrupt{0};  // the signal's number; set by the handler alone
-
-void on_signal(int signal) {
-  if (interrupt.exchange(signal) != 0) _exit(128 + signal);
-}
 
 /// Checks the files that the settings name, with those of the command.
 void check_files_of(const PipelineSettings& settings, const CommonOptions& options) {
@@ -195,21 +187,6 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
     progress.show(1e-6 * static_cast<double>(done), 1e-6 * static_cast<double>(all), "MB");
   });
   return make(std::move(recording), settings.track, true, 1.0 / settings.world_rate);
-}
-
-Interrupt::Interrupt() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  std::signal(SIGPIPE, SIG_IGN);
-}
-
-bool Interrupt::requested() const {
-  return interrupt.load() != 0;
-}
-
-int Interrupt::status() const {
-  return requested() ? 128 + interrupt.load() : 0;
 }
 
 namespace {

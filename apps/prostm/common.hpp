@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "interrupt.hpp"
 #include "options.hpp"
 #include "prostm/acoustics/focus_solver.hpp"
 #include "prostm/core/distribution.hpp"
@@ -45,18 +46,6 @@ FocusMethod solver_of(const std::string& name);
 
 /// The hands that `--hand` names. A recording starts again at its end.
 std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings);
-
-/// From construction on, Ctrl-C (SIGINT), SIGTERM and a terminal that goes (SIGHUP, unless it is
-/// ignored, as under nohup) only set a flag; a second one ends the program at once. And a reader of
-/// the output that goes is an error of writing, no signal.
-class Interrupt {
- public:
-  Interrupt();
-  bool requested() const;
-  /// Exit status of a command that was cut short but kept its results: 128 and the signal's number;
-  /// 0 where there was none.
-  int status() const;
-};
 
 /// Says what went wrong.
 std::string sentence_of(const std::exception_ptr& failure);

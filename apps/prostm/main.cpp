@@ -180,6 +180,19 @@ void add_field(CLI::App& app, Work& work) {
   command->callback([o, &work] { work = {&o->common.files, [o] { return field_command(*o); }}; });
 }
 
+void add_levels(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand(
+      "levels",
+      "how loud an array can be, at focal points and at the head, beside caps and limits");
+  auto o = std::make_shared<LevelsOptionsGiven>();
+  add_array(*command, o->common, "usx (default), autd3, or an array file (.json)");
+  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+            "settings, of which [safety] has the caps (docs/safety.md)");
+  add_json(*command, o->common.files, o->common.json);
+  command->footer("Example:\n  prostm levels --array autd3");
+  command->callback([o, &work] { work = {&o->common.files, [o] { return levels_command(*o); }}; });
+}
+
 void add_devices(CLI::App& app, Work& work) {
   auto* command =
       app.add_subcommand("devices", "what can be driven from here, what is found, what is missing");
@@ -301,6 +314,7 @@ int obey(int argc, char** argv) {
   add_bench(app, work);
   add_solve(app, work);
   add_field(app, work);
+  add_levels(app, work);
   add_devices(app, work);
   add_selftest(app, work);
   add_soak(app, work);

@@ -81,6 +81,10 @@ struct FieldOptionsGiven {
   bool widths = false;  ///< of a focus, instead of the field of a plan
 };
 
+struct LevelsOptionsGiven {
+  CommonOptions common;  ///< settings file, array and JSON
+};
+
 struct DevicesOptionsGiven {
   Files files;
   std::vector<std::string> names;  ///< what to look for; empty: all that is on this machine
@@ -122,6 +126,7 @@ int capture_command(const CaptureOptionsGiven& options);
 int bench_command(const BenchOptionsGiven& options);
 int solve_command(const SolveOptionsGiven& options);
 int field_command(const FieldOptionsGiven& options);
+int levels_command(const LevelsOptionsGiven& options);
 int devices_command(const DevicesOptionsGiven& options);
 int selftest_command(const SelftestOptionsGiven& options);
 int soak_command(const SoakOptionsGiven& options);

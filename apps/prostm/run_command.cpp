@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common.hpp"
+#include "mute_watch.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/emit/played.hpp"
@@ -80,15 +81,21 @@ class Observer final : public RunObserver {
                           options_.stay ? "until Ctrl-C"
                                         : fmt::format("for {:.1f} s", options_.seconds - time)));
   }
-  /// Says when a calibration mutes the array, and when it ends.
-  void follow(std::shared_ptr<const Mute> mute) { mute_ = std::move(mute); }
+  /// Says when something mutes the array, and when it ends; in real time keys of the terminal do.
+  void follow(std::shared_ptr<Mute> mute) {
+    mutes_.emplace(std::move(mute), options_.mode == RunMode::RealTime);
+    if (const auto help = mutes_->help()) progress_.say(out_, *help);
+  }
   /// Says what becomes of a live tracker.
   void follow(Pipeline& pipeline) { pipeline_ = &pipeline; }
   /// Sets the function to call when the run's seconds are over and it goes on.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
   bool reported() const { return reported_; }
   /// Nothing more comes.
-  void end() { progress_.clear(); }
+  void end() {
+    mutes_.reset();
+    progress_.clear();
+  }
 
   const Interrupt& interrupt() const { return interrupt_; }
   bool has_instant() const { return std::isfinite(away_); }
@@ -97,11 +104,8 @@ class Observer final : public RunObserver {
 
  private:
   void say_whether_muted() {
-    const bool muted = mute_ && mute_->on(MuteReason::Calibration);
-    if (muted == muted_) return;
-    muted_ = muted;
-    progress_.say(out_, muted ? "The array is muted for the calibration of the tracker."
-                              : "The calibration is over: the array is not muted any more.");
+    if (!mutes_) return;
+    while (const auto news = mutes_->look()) progress_.say(out_, *news);
   }
 
   void say_news_of_tracker() {
@@ -136,8 +140,8 @@ class Observer final : public RunObserver {
   WorldFrame contact_;
   PlanFrame plan_;
   std::function<void(const RunSummary&)> report_;
-  bool reported_ = false, muted_ = false, array_gone_ = false;
-  std::shared_ptr<const Mute> mute_;
+  bool reported_ = false, array_gone_ = false;
+  std::optional<MuteWatch> mutes_;
   Interrupt interrupt_;
   Progress progress_{"running"};
 };

@@ -37,6 +37,20 @@ void print_foci(std::FILE* out, const RunSummary& s, const PipelineSettings& set
                         s.emit.dropped_paths));
 }
 
+/// Prints the largest levels, which are 0 where nothing sounded.
+void print_levels(std::FILE* out, const RunSummary& s) {
+  const SafetyStats& levels = s.safety;
+  if (levels.acoustic_high <= 0.0) return;
+  print_row(out, "levels",
+            fmt::format("at a focal point up to {:.0f} to {:.0f} Pa rms, {:.0f} to {:.0f} Pa of "
+                        "radiation pressure; at the head {:.0f} to {:.0f} dB, taken as {:.0f} dB "
+                        "(docs/safety.md); {:.1f} % weakened by caps, {:.1f} % by ramps",
+                        levels.acoustic_low, levels.acoustic_high, levels.radiation_low,
+                        levels.radiation_high, levels.head_low, levels.head_bound,
+                        levels.head_estimate, percent(capped_samples(levels), s.emit.samples),
+                        percent(levels.ramp, s.emit.samples)));
+}
+
 void print_output(std::FILE* out, const RunSummary& s) {
   const EmitStats& e = s.emit;
   print_row(out, "samples",
@@ -50,6 +64,7 @@ void print_output(std::FILE* out, const RunSummary& s) {
                         "by the queue unless missed); queue of {} blocks at the end",
                         s.played_by.name, s.device.blocks, 1e3 * s.played_by.block_time(),
                         s.device.missed_blocks, s.device.late_blocks, s.device.queue_blocks));
+  print_levels(out, s);
   if (s.limited_samples > 0)
     print_row(out, "array", fmt::format("{} samples outside its limits", s.limited_samples));
 }
@@ -179,6 +194,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
   json.update(quantities_to_json(s));
   json.update(quantities_to_json(s.device));
   json.update(quantities_to_json(s.emit));
+  json.update(quantities_to_json(s.safety));
   json.update(quantities_to_json(s.contact_stats));
   json["latency_ms"] = to_json(s.latency, 1e3);
   json["latency_parts_ms"] = parts_json(s.latency_parts);

@@ -195,6 +195,12 @@ TEST(Verdict, WhatIsUnusualIsToldWithItsRemedy) {
       {[](RunSummary& s) { s.limited_samples = 7; },
        "7 samples were outside the device's limits and were cut down: a stage before it is at "
        "fault."},
+      {[](RunSummary& s) {
+         s.safety.acoustic_pressure = 4;
+         s.safety.head_level = 1'920'000;
+       },
+       "20 % of the samples were weakened to keep the caps of [safety], most of them for "
+       "head_level: hold the hand farther from the array, or use fewer --paths (docs/safety.md)."},
   };
   for (const auto& [change, sentence] : cases) {
     const Verdict verdict = judged(change);

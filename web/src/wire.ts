@@ -25,8 +25,9 @@ export interface Run {
   pageHand: boolean;
   handInSight: boolean;
   fading: boolean;
-  muted: boolean; // by a page
+  muted: boolean; // by a page or in the terminal
   calibrating: boolean; // which mutes it too
+  hot: boolean; // the device, which mutes it too
 }
 
 export interface Hand {
@@ -153,7 +154,7 @@ function readRun(reader: Reader): Run {
   const flag = (bit: number) => (flags & bit) !== 0;
   return {
     ...run, paused: flag(1), pageHand: flag(2), handInSight: flag(4), fading: flag(8), muted: flag(16),
-    calibrating: flag(32),
+    calibrating: flag(32), hot: flag(64),
   };
 }
 

@@ -1,19 +1,11 @@
 #include "prostm/device/sample_chain.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace prostm {
 namespace {
 
 constexpr std::size_t kAtOnce = 64;  // samples of a decimated stream that are made at a time
-constexpr double kRounding = 1e-4;   // rounding of floats, which is no excess
-
-/// Whether all numbers are finite, without comparisons, which trap on NaN.
-bool is_finite(const FocusSample& s) {
-  return std::isfinite(s.p_D.x()) && std::isfinite(s.p_D.y()) && std::isfinite(s.p_D.z()) &&
-         std::isfinite(s.intensity);
-}
 
 }  // namespace
 
@@ -54,39 +46,6 @@ void SampleTap::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
   }
 }
 
-void SampleLimiter::follow(SampleSource& from) {
-  SampleStage::follow(from);
-  last_.assign(static_cast<std::size_t>(from.foci()), FocusSample());
-}
-
-void SampleLimiter::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
-  from().fill(first, out);
-  const auto change = static_cast<float>(limits_.change * (1.0 + kRounding));
-  std::int64_t limited = 0;
-  for (std::size_t at = 0; at < out.size(); at += last_.size()) {
-    double power = 0.0;
-    for (std::size_t f = 0; f < last_.size(); ++f) {
-      FocusSample& now = out[at + f];
-      FocusSample& last = last_[f];
-      const FocusSample given = now;
-      if (!is_finite(now)) now = {last.p_D, 0.0F};
-      now.intensity = std::clamp(std::clamp(now.intensity, 0.0F, 1.0F), last.intensity - change,
-                                 last.intensity + change);
-      power += static_cast<double>(now.intensity) * static_cast<double>(now.intensity);
-      limited += !is_finite(given) || now.intensity != given.intensity ? 1 : 0;
-      last = now;
-    }
-    if (power <= limits_.power * (1.0 + kRounding)) continue;
-    const auto share = static_cast<float>(std::sqrt(limits_.power / power));
-    for (std::size_t f = 0; f < last_.size(); ++f) {
-      out[at + f].intensity *= share;
-      last_[f].intensity = out[at + f].intensity;
-      ++limited;
-    }
-  }
-  if (limited > 0) limited_.fetch_add(limited, std::memory_order_relaxed);
-}
-
 SampleChain::SampleChain(SampleSource& source, const SampleLimits& limits)
     : source_(source), limiter_(limits) {
   static_cast<SampleStage&>(limiter_).follow(source);
@@ -100,9 +59,11 @@ void SampleChain::append(std::unique_ptr<SampleStage> stage) {
 
 std::unique_ptr<SampleChain> make_sample_chain(SampleSource& source, const DeviceInfo& device,
                                                const SampleLimits& limits) {
-  // decimated samples may change more, so that the change in time stays the same
-  auto chain = std::make_unique<SampleChain>(
-      source, SampleLimits{limits.power, limits.change * device.decimation});
+  SampleLimits own = limits;
+  own.change *= device.decimation;
+  own.sample_rate =
+      device.sample_rate > 0.0 ? device.sample_rate : limits.sample_rate / device.decimation;
+  auto chain = std::make_unique<SampleChain>(source, own);
   if (device.decimation > 1) chain->add<Decimation>(device.decimation);
   if (!device.intensity_per_focus) chain->add<SharedIntensity>();
   return chain;

@@ -3,27 +3,15 @@
 
 #include <atomic>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "prostm/core/spsc_ring.hpp"
 #include "prostm/device/device.hpp"
+#include "prostm/device/safety_limiter.hpp"
+#include "prostm/device/sample_stage.hpp"
 
 namespace prostm {
-
-/// Passes on another source's samples, changed or looked at.
-class SampleStage : public SampleSource {
- public:
-  int foci() const final { return from_->foci(); }
-
- protected:
-  SampleSource& from() { return *from_; }
-  /// Sets the source of its samples. @pre nothing pulls.
-  virtual void follow(SampleSource& from) { from_ = &from; }
-
- private:
-  friend class SampleChain;
-  SampleSource* from_ = nullptr;
-};
 
 /// Gives all focal points of a sample the largest intensity, for devices with one shared intensity.
 class SharedIntensity final : public SampleStage {
@@ -60,28 +48,6 @@ class SampleTap final : public SampleStage {
   std::atomic<std::int64_t> lost_{0};
 };
 
-struct SampleLimits {
-  double power = 4.0;     ///< largest Σ intensity² of a sample
-  double change = 0.025;  ///< largest change of an intensity from sample to sample
-};
-
-/// Limits the samples that leave for a device, whatever the stages before it do: finite numbers,
-/// intensities from 0 to 1 that change by at most `change` a sample, and Σ intensity² of at most
-/// `power`. Samples within these limits pass unchanged, to the bit.
-class SampleLimiter final : public SampleStage {
- public:
-  explicit SampleLimiter(const SampleLimits& limits) : limits_(limits) {}
-  void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
-  /// Number of samples of a focal point that were changed. Any thread.
-  std::int64_t limited() const { return limited_.load(std::memory_order_relaxed); }
-
- private:
-  void follow(SampleSource& from) override;
-  const SampleLimits limits_;
-  std::vector<FocusSample> last_;  // sample of each focal point
-  std::atomic<std::int64_t> limited_{0};
-};
-
 /// A source, any stages after it, and a limiter that stays the last.
 class SampleChain final : public SampleSource {
  public:
@@ -101,16 +67,23 @@ class SampleChain final : public SampleSource {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override {
     limiter_.fill(first, out);
   }
-  std::int64_t limited() const { return limiter_.limited(); }
+  /// Falls silent while this is on, whatever the source does. @pre nothing pulls.
+  void obey(std::shared_ptr<const Mute> mute) noexcept { limiter_.obey(std::move(mute)); }
+  /// Work of the limiter. Any thread.
+  SafetyStats safety() const { return limiter_.stats(); }
+  /// Samples of a focal point that it changed because a stage erred. Any thread.
+  std::int64_t limited() const { return erred_samples(safety()); }
 
  private:
   void append(std::unique_ptr<SampleStage> stage);
   SampleSource& source_;
   std::vector<std::unique_ptr<SampleStage>> stages_;
-  SampleLimiter limiter_;
+  SafetyLimiter limiter_;
 };
 
 /// Makes the chain that a device needs: decimated, and with one intensity if it has only one.
+/// @param limits of the emission: the rate is the device's, and with decimation samples may change
+/// more, so that the change in time stays the same.
 std::unique_ptr<SampleChain> make_sample_chain(SampleSource& source, const DeviceInfo& device,
                                                const SampleLimits& limits);
 

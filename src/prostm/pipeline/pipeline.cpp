@@ -42,13 +42,19 @@ bool same_world(const PipelineSettings& a, const PipelineSettings& b) {
 /// Whether the planner's stage is.
 bool same_plans(const PipelineSettings& a, const PipelineSettings& b) {
   return a.plan == b.plan && a.am == b.am && a.emit == b.emit && a.scene == b.scene &&
-         a.method == b.method && a.array_width == b.array_width;
+         a.method == b.method && a.array_width == b.array_width && a.safety == b.safety;
 }
 
 /// The device that the settings name, or one of the caller's own.
 std::unique_ptr<Device> device_of(const PipelineSettings& settings, std::unique_ptr<Device> own) {
   if (own != nullptr) return as_stream(std::move(own));
   return make_device(settings.device, settings.device_setup());
+}
+
+/// The levels that the array of the settings can reach.
+std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings) {
+  return std::make_shared<const SafetyLevels>(settings.transducers, Medium{},
+                                              settings.safety.head_distance);
 }
 
 /// The σ that a planner counts on for a target [m].
@@ -167,12 +173,20 @@ void WorldStage::view_from_side(SideView& out) const {
 }
 
 PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale,
-                     const DeviceInfo& device)
+                     const DeviceInfo& device, std::shared_ptr<const SafetyLevels> levels)
     : planner_(make_planner(settings, max_cells, full_scale, device.emission_rate())),
       emit_settings_(emit_settings(settings, full_scale)),
       emission_rate_(device.emission_rate()),
       emitter_(make_emitter(settings.method, emit_settings_, emission_rate_)),
-      samples_(make_sample_chain(*emitter_, device, {.power = emit_settings_.power_limit})) {}
+      samples_(make_sample_chain(*emitter_, device,
+                                 {.power = emit_settings_.power_limit,
+                                  .caps = settings.safety,
+                                  .levels = std::move(levels)})) {}
+
+void PlanStage::obey(const std::shared_ptr<Mute>& mute) {
+  emitter_->obey(mute);
+  samples_->obey(mute);
+}
 
 void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
   StageTimer timer;
@@ -212,13 +226,14 @@ Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource>
     : settings_(settings),
       mute_(std::move(mute)),
       own_world_(world != nullptr),
+      levels_(levels_of(settings)),
       world_stage_(std::make_unique<WorldStage>(settings, std::move(hands), std::move(world))),
       device_(device_of(settings, std::move(device))),
       plans_(std::make_unique<PlanStage>(settings, world_stage_->max_cells(),
                                          world_stage_->world().full_scale_pressure(),
-                                         device_->info())) {
+                                         device_->info(), levels_)) {
   if (device_->info().keeps_time) world_stage_->tell(mute_);
-  plans_->emitter().obey(mute_);
+  plans_->obey(mute_);
   if (device_->start(plans_->samples()) != DeviceStatus::Running)
     throw std::invalid_argument(device_->problem());
 }
@@ -233,11 +248,14 @@ void Pipeline::reconfigure(const PipelineSettings& settings) {
     stage = std::make_unique<WorldStage>(settings, nullptr);
   const WorldStage& next = stage ? *stage : *world_stage_;
   std::unique_ptr<PlanStage> plans;
+  std::shared_ptr<const SafetyLevels> levels = levels_;
   if (!same_plans(settings, settings_) || next.max_cells() != world_stage_->max_cells()) {
-    plans = std::make_unique<PlanStage>(settings, next.max_cells(),
-                                        next.world().full_scale_pressure(), device_->info());
+    if (settings.safety.head_distance != settings_.safety.head_distance)
+      levels = levels_of(settings);
+    plans = std::make_unique<PlanStage>(
+        settings, next.max_cells(), next.world().full_scale_pressure(), device_->info(), levels);
     plans->continue_from(*plans_);
-    plans->emitter().obey(mute_);
+    plans->obey(mute_);
     const std::string problem = restart(*plans);
     if (!problem.empty()) throw std::invalid_argument(problem);
   }
@@ -247,6 +265,7 @@ void Pipeline::reconfigure(const PipelineSettings& settings) {
     world_stage_ = std::move(stage);
   }
   if (plans) plans_ = std::move(plans);
+  levels_ = std::move(levels);
   world_stage_->set_steps_per_plan(settings.steps_per_plan());
   settings_ = settings;
 }
@@ -256,7 +275,7 @@ std::string Pipeline::restart(PlanStage& plans) {
   device_before_ = device_stats();
   if (device_->start(plans.samples()) == DeviceStatus::Running) {
     merge(plans_->emitter().stats(), emit_before_);
-    limited_before_ += plans_->samples().limited();
+    merge(plans_->samples().safety(), safety_before_);
     return {};
   }
   std::string problem = device_->problem();
@@ -302,13 +321,22 @@ EmitStats Pipeline::emit_stats() const {
   return sum;
 }
 
-std::int64_t Pipeline::limited_samples() const {
-  return limited_before_ + plans_->samples().limited();
+SafetyStats Pipeline::safety_stats() const {
+  SafetyStats sum = safety_before_;
+  merge(plans_->samples().safety(), sum);
+  return sum;
+}
+
+void Pipeline::watch_heat(double time) {
+  constexpr double kCooling = 1.0;  // a flag that comes and goes stays on [s]
+  if (device_->is_hot()) cool_at_ = time + kCooling;
+  mute_->set(MuteReason::Hot, time < cool_at_);
 }
 
 bool Pipeline::step(double dt) {
   ++steps_;
   time_ += dt;
+  watch_heat(time_);
   // what was planned before plays up to the moment that these hands were seen
   play_until(*device_, time_);
   world_stage_->run(steps_, time_, dt, contact_frame_);

@@ -119,10 +119,10 @@ struct PlanFrame {
 class PlanStage {
  public:
   /// @param max_cells of a target raster.  @param full_scale of the scene, where the settings give
-  /// none [Pa].  @param device that plays the emission.
+  /// none [Pa].  @param device that plays the emission.  @param levels of its array.
   /// @throws std::invalid_argument with a sentence.
   PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale,
-            const DeviceInfo& device);
+            const DeviceInfo& device, std::shared_ptr<const SafetyLevels> levels);
 
   /// Plans a target and hands the result to the emitter; without a plan the output fades. Writes
   /// `start` = `taken` of the target.
@@ -130,6 +130,9 @@ class PlanStage {
 
   /// Counts on from the updates of a stage that this one stands in for.
   void continue_from(const PlanStage& other) { updates_ = other.updates_; }
+
+  /// Emitter and limiter fall silent while this is on. @pre nothing plays.
+  void obey(const std::shared_ptr<Mute>& mute);
 
   Emitter& emitter() { return *emitter_; }
   /// The emission as the device takes it.
@@ -187,9 +190,13 @@ class Pipeline {
   WorldStage& world_stage() { return *world_stage_; }
   PlanStage& plans() { return *plans_; }
   Device& device() { return *device_; }
-  DeviceStats device_stats() const;      ///< over all starts of the device
-  EmitStats emit_stats() const;          ///< of all emitters that there were
-  std::int64_t limited_samples() const;  ///< that the last limiters changed; 0 unless a stage erred
+  DeviceStats device_stats() const;  ///< over all starts of the device
+  EmitStats emit_stats() const;      ///< of all emitters that there were
+  SafetyStats safety_stats() const;  ///< of all limiters that there were
+
+  /// Mutes while the device says that it is hot, and until it has not for a second. One thread.
+  /// @param time of the clock, or of the run [s].
+  void watch_heat(double time);
 
  private:
   /// In real time, so that nothing clicks when the device stops, or plays on.
@@ -201,12 +208,14 @@ class Pipeline {
   PipelineSettings settings_;
   std::shared_ptr<Mute> mute_;
   const bool own_world_;  // the caller's
+  std::shared_ptr<const SafetyLevels> levels_;
   std::unique_ptr<WorldStage> world_stage_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<PlanStage> plans_;
   DeviceStats device_before_;
   EmitStats emit_before_;
-  std::int64_t limited_before_ = 0;
+  SafetyStats safety_before_;
+  double cool_at_ = 0.0;  // [s]
   WorldFrame contact_frame_;
   PlanFrame plan_frame_;
   std::int64_t steps_ = 0;

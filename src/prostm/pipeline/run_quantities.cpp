@@ -60,7 +60,7 @@ constexpr std::array kStats{
                          .value = &RunSummary::full_scale_pressure,
                          .merge = Merge::Newest},
     count("limited_samples", &RunSummary::limited_samples,
-          "Samples that the limiter before the device changed.", Better::Less),
+          "Samples that the limiter changed because a stage erred.", Better::Less),
     Quantity<RunSummary>{.name = "mean_relative_divergence",
                          .unit = "",
                          .help = "What the fluid's pressure solve left, on the mean.",

@@ -122,6 +122,7 @@ void Run::segment() {
     while (!shared_.plan_ended.load(std::memory_order_acquire)) {
       drain_updates();
       check_device();
+      pipeline_.watch_heat(steady_now());
       look();
       std::this_thread::sleep_for(kLook);
     }
@@ -159,6 +160,7 @@ void Run::stand() {
       std::this_thread::sleep_for(kPausePoll);
     }
     check_device();
+    pipeline_.watch_heat(steady_now());
     look();
     progress(shared_.run_time.load(std::memory_order_relaxed));
     if (steering_->pending()) steering_->attend();
@@ -202,7 +204,8 @@ RunSummary Run::summary() {
   s.played_by = pipeline_.device().info();
   s.device = pipeline_.device_stats();
   s.emit = pipeline_.emit_stats();
-  s.limited_samples = pipeline_.limited_samples();
+  s.safety = pipeline_.safety_stats();
+  s.limited_samples = erred_samples(s.safety);
   s.stopped = over();
   s.seconds =
       pace_.realtime ? shared_.run_time.load() : static_cast<double>(s.world_steps) * pace_.dt;

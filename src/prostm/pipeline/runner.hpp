@@ -60,7 +60,9 @@ struct RunSummary {
   DeviceInfo played_by;
   DeviceStats device;
   EmitStats emit;
-  std::int64_t limited_samples = 0;  ///< that the limiter before the device had to change
+  /// Samples that the limiter before the device changed because a stage erred.
+  std::int64_t limited_samples = 0;
+  SafetyStats safety;
   double max_path_length = 0, max_skin_length = 0;
   double mean_divergence = 0;  ///< WorldStats::divergence over the steps
   std::int64_t world_resets = 0;

@@ -1,5 +1,7 @@
 #include "prostm/pipeline/settings.hpp"
 
+#include <algorithm>
+
 #include "prostm/acoustics/focus_width.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/emit/drive.hpp"
@@ -88,6 +90,7 @@ EmitSettings emit_settings(const PipelineSettings& settings, double largest) {
   EmitSettings emit = settings.emit;
   if (emit.full_scale_pressure == 0.0)
     emit.full_scale_pressure = own_full_scale(settings.plan.gain, largest);
+  emit.power_limit = std::min(emit.power_limit, settings.safety.power);
   return emit;
 }
 
@@ -103,6 +106,7 @@ std::vector<SettingsGroup> groups_of(Settings& s) {
           group_of("plan", s.plan),
           group_of("am", s.am),
           group_of("emit", s.emit),
+          group_of("safety", s.safety),
           group_of("simulated_array", s.simulated_array),
           group_of("autd3", s.autd3),
           group_of("stream", s.stream)};

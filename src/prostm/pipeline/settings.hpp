@@ -8,6 +8,7 @@
 #include "prostm/contact/skin_contact.hpp"
 #include "prostm/core/settings.hpp"
 #include "prostm/device/device_kinds.hpp"
+#include "prostm/device/safety_settings.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
@@ -44,6 +45,7 @@ struct PipelineSettings {
   PlanSettings plan;
   AmSettings am;
   EmitSettings emit;
+  SafetySettings safety;
   SimulatedArraySettings simulated_array;
   Autd3Settings autd3;
   StreamSettings stream;  ///< of device stream
@@ -79,7 +81,7 @@ PlanSettings playable_plan_settings(const PipelineSettings& settings, double emi
 PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate);
 
 /// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest
-/// pressure that is to be rendered [Pa].
+/// pressure that is to be rendered [Pa]. Its power is within the cap of [safety], too.
 EmitSettings emit_settings(const PipelineSettings& settings, double largest);
 
 /// Every stage's settings under its name in files: "pipeline", "track", "scripted_hand", "fluid", …

@@ -21,9 +21,10 @@ constexpr double kComfortable = 0.6;  // the same for a setting that is recommen
 constexpr int kLeastCells = 32, kCellsStep = 16;
 
 // Shares above which something is told: well above what a cycle of the scripted hand makes in the
-// scenes, at most 16 % of the samples at full scale, none limited, 7 % of the joints outside the
-// box as it comes in, 11 % of its skin steep.
-constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5;
+// scenes, at most 16 % of the samples at full scale, none limited or capped, 7 % of the joints
+// outside the box as it comes in, 11 % of its skin steep.
+constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5,
+                 kMostCapped = 0.01;
 constexpr double kComesIn =
     10.0;  // a hand that comes in is outside; a short run sees little else [s]
 // Share of a tracker's frames.
@@ -201,6 +202,16 @@ void judge_faults(const RunSummary& s, std::vector<std::string>& out) {
   }
 }
 
+/// Reports what the caps of [safety] cost.
+void judge_safety(const RunSummary& s, std::vector<std::string>& out) {
+  const double capped = share(capped_samples(s.safety), s.emit.samples);
+  if (capped <= kMostCapped) return;
+  out.push_back(fmt::format(
+      "{:.0f} % of the samples were weakened to keep the caps of [safety], most of them for {}: "
+      "hold the hand farther from the array, or use fewer --paths (docs/safety.md).",
+      100.0 * capped, main_cap(s.safety)));
+}
+
 }  // namespace
 
 bool HeldRate::held() const {
@@ -238,6 +249,7 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   }
   std::vector<std::string> unusual;
   judge_faults(s, unusual);
+  judge_safety(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
   if (!tracker || tracker->frames > 0)
     judge_contact(s.contact_stats, s.seconds, s.plans > 0, unusual);

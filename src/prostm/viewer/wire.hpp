@@ -63,8 +63,9 @@ enum ViewFlag : std::uint32_t {
   kViewPageHand = 2,  ///< the page's hand is in charge
   kViewHandInSight = 4,
   kViewFading = 8,        ///< output fades for want of plans
-  kViewMuted = 16,        ///< a page has muted the output
+  kViewMuted = 16,        ///< somebody has muted the output, on a page or in the terminal
   kViewCalibrating = 32,  ///< a calibration mutes the output
+  kViewHot = 64,          ///< the device is too hot, which mutes the output
 };
 
 struct ViewRun {

@@ -15,6 +15,7 @@ const kAudible = 0.005; // intensity of the strongest focal point, 0 to 1
 export function outputOf(frame: Frame): Output {
   const { run } = frame;
   if (run.muted) return { state: "muted", why: "by you or another page" };
+  if (run.hot) return { state: "muted", why: "the array is too hot" };
   if (run.calibrating) return { state: "muted", why: "for the calibration" };
   const intensity = numberOf(frame, "intensity");
   // a device that cannot be listened to plays what is planned

@@ -211,7 +211,8 @@ std::uint32_t FrameMaker::flags(const ViewFrame& frame) const {
   return (run.paused ? kViewPaused : 0U) | (run.page_hand ? kViewPageHand : 0U) |
          (frame.hand_count > 0 ? kViewHandInSight : 0U) | (run.fading ? kViewFading : 0U) |
          (mute_.on(MuteReason::Person) ? kViewMuted : 0U) |
-         (mute_.on(MuteReason::Calibration) ? kViewCalibrating : 0U);
+         (mute_.on(MuteReason::Calibration) ? kViewCalibrating : 0U) |
+         (mute_.on(MuteReason::Hot) ? kViewHot : 0U);
 }
 
 /// Where no hand is in sight there is no latency: the last one is of a hand that has gone.

@@ -1,0 +1,99 @@
+"""Keys of the terminal during a run: they mute, and the terminal is as before afterwards, however the run ends."""
+
+import os
+import pty
+import signal
+import subprocess
+import termios
+import time
+
+import pytest
+
+
+class Terminal:
+    """A run of the program in the foreground of a terminal of its own."""
+
+    def __init__(self, program, folder, *arguments):
+        self.master, self.slave = pty.openpty()
+        self.before = termios.tcgetattr(self.slave)
+
+        def take_terminal():
+            os.setsid()
+            import fcntl
+            fcntl.ioctl(self.slave, termios.TIOCSCTTY, 0)
+
+        self.run = subprocess.Popen(
+            [str(program), "run", "--grid", "32", "--seconds", "600", *arguments], cwd=folder, stdin=self.slave,
+            stdout=self.slave, stderr=subprocess.DEVNULL, preexec_fn=take_terminal)
+        self.seen = ""
+
+    def wait_for(self, words, seconds=30):
+        end = time.monotonic() + seconds
+        while words not in self.seen:
+            assert time.monotonic() < end, f"never said {words!r}:\n{self.seen}"
+            os.set_blocking(self.master, False)
+            try:
+                self.seen += os.read(self.master, 4096).decode()
+            except BlockingIOError:
+                time.sleep(0.02)
+
+    def press(self, key):
+        self.seen = ""
+        os.write(self.master, key.encode())
+
+    def echoes(self):
+        return bool(termios.tcgetattr(self.slave)[3] & termios.ECHO)
+
+    def is_as_before(self):
+        return termios.tcgetattr(self.slave) == self.before
+
+    def close(self):
+        if self.run.poll() is None:
+            self.run.kill()
+        self.run.wait(timeout=30)
+        os.close(self.master)
+        os.close(self.slave)
+
+
+@pytest.fixture
+def terminal(program, tmp_path):
+    opened = Terminal(program, tmp_path)
+    yield opened
+    opened.close()
+
+
+@pytest.mark.parametrize("key", ["m", " "])
+def test_a_key_mutes_and_unmutes(terminal, key):
+    terminal.wait_for("Keys: m or space mutes the array")
+    assert not terminal.echoes()
+    terminal.press(key)
+    terminal.wait_for("The array is muted.")
+    terminal.press(key)
+    terminal.wait_for("The array is not muted any more.")
+    terminal.run.send_signal(signal.SIGINT)
+    terminal.wait_for("The run: one-plume")
+    assert terminal.run.wait(timeout=30) == 130
+    assert terminal.is_as_before()
+
+
+def test_ctrl_c_is_still_a_signal(terminal):
+    terminal.wait_for("Keys: ")
+    os.write(terminal.master, b"\x03")
+    terminal.wait_for("The run: one-plume")
+    assert terminal.run.wait(timeout=30) == 130
+    assert terminal.is_as_before()
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGSEGV", "SIGABRT"])
+def test_the_terminal_is_restored_after_a_signal(terminal, name):
+    terminal.wait_for("Keys: ")
+    assert not terminal.is_as_before()
+    terminal.run.send_signal(getattr(signal, name))
+    status = terminal.run.wait(timeout=30)
+    # a fault ends the program as it would have without keys; a sanitizer may answer it in its own way
+    assert status in ({"SIGTERM": [143], "SIGHUP": [129]}.get(name) or [-getattr(signal, name), 1])
+    assert terminal.is_as_before()
+
+
+def test_without_a_terminal_there_are_no_keys(prostm):
+    assert "Keys:" not in prostm("run", "--grid", "32", "--seconds", "0.5").stdout

@@ -1,0 +1,344 @@
+// Silence: how long the array sounds after each of what must end it, by the clock.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "interrupt.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/pipeline/runner.hpp"
+#include "support/eventually.hpp"
+
+namespace prostm {
+namespace {
+
+using test::eventually;
+
+constexpr double kStated = 0.050, kSilent = 0.110;  // [s]
+constexpr double kNever = 1e9;                      // [s]
+
+/// An array that takes a block each millisecond, and notes when it was last handed a sound.
+class NotedArray final : public Device {
+ public:
+  NotedArray() {
+    info_ = {.name = "noted", .sample_rate = 40e3, .block_samples = 40, .max_foci = 4};
+    info_.intensity_per_focus = info_.streams = true;
+  }
+  ~NotedArray() override { stop(); }
+  const DeviceInfo& info() const override { return info_; }
+  DeviceStatus status() const override {
+    return running ? DeviceStatus::Running : DeviceStatus::Idle;
+  }
+  std::string problem() const override { return {}; }
+  DeviceStatus start(SampleSource& source) override {
+    running = true;
+    thread_ = std::jthread([this, &source](const std::stop_token& stop) { play(source, stop); });
+    return DeviceStatus::Running;
+  }
+  void stop() override {
+    thread_ = {};
+    running = false;
+  }
+  DeviceStatus load_segment(std::span<const FocusSample>, int) override {
+    return DeviceStatus::Refused;
+  }
+  DeviceStats stats() const override {
+    DeviceStats stats;
+    stats.blocks = blocks_;
+    return stats;
+  }
+  std::int64_t samples() const override { return blocks_ * info_.block_samples; }
+  double play_time(std::int64_t sample) const override {
+    return started_ + static_cast<double>(sample) / info_.sample_rate;
+  }
+  bool is_hot() const override { return hot; }
+
+  bool sounds() const { return steady_now() - last_sound < 0.005 && loud; }
+  /// Waits until it sounds; false if it never does.
+  bool sounding() const {
+    return eventually([this] { return sounds(); });
+  }
+
+  std::atomic<bool> hot{false}, running{false}, loud{false};
+  std::atomic<double> last_sound{-kNever};  // handed over [s of the clock]
+  std::atomic<float> largest_change{0.0F};  // of an intensity, between two samples
+  std::atomic<bool> finite{true};
+
+ private:
+  void play(SampleSource& source, const std::stop_token& stop) {
+    const auto foci = static_cast<std::size_t>(source.foci());
+    std::vector<FocusSample> block(40 * foci), last(foci);
+    started_ = steady_now();
+    for (auto at = std::chrono::steady_clock::now(); !stop.stop_requested();
+         at += std::chrono::milliseconds(1)) {
+      std::this_thread::sleep_until(at);
+      source.fill(samples(), block);
+      float most = 0.0F;
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        const FocusSample& now = block[i];
+        if (!std::isfinite(now.intensity) || !now.p_D.allFinite()) finite = false;
+        const float change = std::abs(now.intensity - last[i % foci].intensity);
+        largest_change = std::max(largest_change.load(), change);
+        most = std::max(most, now.intensity);
+        last[i % foci] = now;
+      }
+      if (most > 0.0F) last_sound = steady_now();
+      loud = most > 0.1F;
+      ++blocks_;
+    }
+  }
+
+  DeviceInfo info_;
+  std::jthread thread_;
+  std::atomic<std::int64_t> blocks_{0};
+  std::atomic<double> started_{0.0};
+};
+
+/// The scripted hand, held still, until it is told otherwise.
+class Told final : public HandSource {
+ public:
+  explicit Told(const PipelineSettings& s) : hand_(make_scripted_hand(s.scripted_hand, s.track)) {}
+  void sample(double time, HandFrame& out) override {
+    if (blocks) {
+      blocked_at = steady_now();
+      std::this_thread::sleep_for(std::chrono::milliseconds(400));
+      blocks = false;
+    }
+    if (throws) throw std::runtime_error("the hand failed");
+    hand_->sample(time, out);
+    if (not_finite) out.hands.at(0).position[kPalm].x() = std::numeric_limits<double>::quiet_NaN();
+    if (gone) out.hands.clear();
+  }
+  std::atomic<bool> gone{false}, blocks{false}, throws{false}, not_finite{false};
+  std::atomic<double> blocked_at{0.0};  // [s of the clock]
+
+ private:
+  std::unique_ptr<HandSource> hand_;
+};
+
+class Onlooker final : public RunObserver {
+ public:
+  bool on_plan(const WorldFrame&, const PlanFrame& plan) override {
+    if (plan.status == PlanStatus::Planned) planned_at = steady_now();
+    return goes_on();
+  }
+  bool on_progress(double) override { return goes_on(); }
+  std::atomic<bool> stop{false};
+  std::atomic<double> planned_at{0.0};  // [s of the clock]
+
+ private:
+  bool goes_on() const { return !stop && !interrupt_.requested(); }
+  app::Interrupt interrupt_;
+};
+
+PipelineSettings small_and_still() {
+  PipelineSettings settings;
+  settings.fluid.cells = 32;
+  settings.plan.preset = Preset::Fast;
+  settings.scripted_hand.still = true;
+  return settings;
+}
+
+/// A run in real time that sounds.
+struct SoundingRun {
+  SoundingRun() {
+    auto told = std::make_unique<Told>(settings);
+    hands = told.get();
+    auto noted = std::make_unique<NotedArray>();
+    device = noted.get();
+    pipeline = std::make_unique<Pipeline>(settings, std::move(told), mute, std::move(noted));
+    thread = std::jthread([this] {
+      summary = run(*pipeline, settings, {3600.0, RunMode::RealTime}, observer);
+    });
+  }
+  ~SoundingRun() {
+    observer.stop = true;
+    if (thread.joinable()) thread.join();
+  }
+  /// Waits until nothing has sounded for a while. Returns the time of the last sound after `since`.
+  double silence_after(double since) const {
+    EXPECT_TRUE(eventually([this] { return steady_now() - device->last_sound > 0.2; }));
+    return device->last_sound - since;
+  }
+  void expect(double since, double within, const char* what) const {
+    const double after = silence_after(since);
+    std::printf("%-34s last sound handed over %5.1f ms later\n", what, 1e3 * after);
+    EXPECT_LE(after, within) << what;
+    EXPECT_LE(device->largest_change, 0.02505F) << what;
+    EXPECT_TRUE(device->finite);
+  }
+
+  PipelineSettings settings = small_and_still();
+  std::shared_ptr<Mute> mute = std::make_shared<Mute>();
+  Told* hands = nullptr;
+  NotedArray* device = nullptr;
+  Onlooker observer;
+  std::unique_ptr<Pipeline> pipeline;
+  RunSummary summary;
+  std::jthread thread;
+};
+
+TEST(Silence, FollowsWhenTheHandGoesAndWhenSomebodyMutes) {
+  SoundingRun run;
+  ASSERT_TRUE(run.device->sounding());
+  double since = steady_now();
+  run.hands->gone = true;
+  // stated by the next step, 20 ms later at most
+  run.expect(since, kStated + 0.020, "hand gone");
+  run.hands->gone = false;
+  ASSERT_TRUE(run.device->sounding());
+  since = steady_now();
+  run.mute->set(MuteReason::Person, true);
+  run.expect(since, kStated, "muted by a person");
+  run.mute->set(MuteReason::Person, false);
+  EXPECT_TRUE(run.device->sounding());
+}
+
+TEST(Silence, FollowsWhenTheDeviceIsHotUntilItHasCooled) {
+  SoundingRun run;
+  ASSERT_TRUE(run.device->sounding());
+  const double since = steady_now();
+  run.device->hot = true;
+  run.expect(since, kStated, "device hot");
+  EXPECT_TRUE(run.mute->on(MuteReason::Hot));
+  const double cooled = steady_now();
+  run.device->hot = false;
+  ASSERT_TRUE(run.device->sounding());
+  EXPECT_GE(steady_now() - cooled, 0.9) << "a flag that flickers does not pulse the array";
+  EXPECT_FALSE(run.mute->on(MuteReason::Hot));
+}
+
+TEST(Silence, FollowsWhenPlansStall) {
+  SoundingRun run;
+  ASSERT_TRUE(run.device->sounding());
+  run.hands->blocks = true;
+  EXPECT_TRUE(eventually(
+      [&] { return steady_now() - run.device->last_sound > 0.05 && run.hands->blocked_at > 0.0; }));
+  const double last_plan = run.observer.planned_at;
+  const double after = run.device->last_sound - last_plan;
+  std::printf("%-34s last sound handed over %5.1f ms after the last plan\n", "plans stall",
+              1e3 * after);
+  EXPECT_LE(after, kSilent);
+  EXPECT_GT(after, 0.0);
+  EXPECT_LE(run.device->largest_change, 0.02505F);
+}
+
+TEST(Silence, FollowsWhenTheHandIsNotFinite) {
+  SoundingRun run;
+  ASSERT_TRUE(run.device->sounding());
+  const double since = steady_now();
+  run.hands->not_finite = true;
+  EXPECT_TRUE(eventually([&] { return steady_now() - since > 0.3; }));
+  EXPECT_TRUE(run.device->finite) << "whatever the run makes of it";
+  EXPECT_LE(run.device->largest_change, 0.02505F);
+}
+
+TEST(Silence, FollowsWhenAStageFails) {
+  SoundingRun run;
+  ASSERT_TRUE(run.device->sounding());
+  const double since = steady_now();
+  run.hands->throws = true;
+  EXPECT_TRUE(eventually([&] { return !run.device->running; }));
+  run.expect(since, kStated + 0.020, "hands throw");
+}
+
+TEST(Silence, FollowsAPlanThatIsNotFinite) {
+  for (const Method method : {Method::ProStm, Method::Am}) {
+    EmitSettings settings;
+    settings.full_scale_pressure = 1.0;
+    const auto emitter = make_emitter(method, settings, 40e3);
+    SampleChain chain(*emitter,
+                      {.levels = std::make_shared<const SafetyLevels>(usx_array(), Medium{}, 0.5)});
+    NotedArray device;
+    device.start(chain);
+    const auto submit = [&](double x) {
+      LiftedPlan& plan = emitter->draft();
+      plan.paths.clear();
+      plan.foci.clear();
+      if (method == Method::Am) {
+        plan.foci.push_back({Vec3(x, 0.0, 0.2), 1.0});
+      } else {
+        LiftedPath& path = plan.paths.emplace_back();
+        path.speed = 7.0;
+        for (const double y : {0.0, 0.02, 0.04}) {
+          path.p_D.emplace_back(x, y, 0.2);
+          path.pressure.push_back(1.0);
+        }
+      }
+      emitter->submit();
+    };
+    ASSERT_TRUE(eventually([&] {
+      submit(0.0);
+      return device.sounds();
+    }));
+    const double since = steady_now();
+    submit(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_TRUE(eventually([&] { return steady_now() - device.last_sound > 0.1; }));
+    const double after = device.last_sound - since;
+    std::printf("%-34s last sound handed over %5.1f ms later\n",
+                method == Method::Am ? "plan of foci with a NaN" : "plan of paths with a NaN",
+                1e3 * after);
+    EXPECT_LE(after, kStated);
+    EXPECT_LE(device.largest_change, 0.02505F);
+    EXPECT_TRUE(device.finite);
+    device.stop();
+  }
+}
+
+/// Findings of a child process.
+struct Seen {
+  double after = kNever;  // [s]
+  float change = 1.0F;
+  bool sounded = false, ended = false;
+};
+
+/// A run in a process of its own, since a second signal ends a process at once.
+Seen seen_after(int signal) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) return {};
+  const pid_t child = fork();
+  if (child == 0) {
+    Seen seen;
+    {
+      SoundingRun run;
+      seen.sounded = run.device->sounding();
+      const double since = steady_now();
+      kill(getpid(), signal);
+      run.thread.join();
+      seen.ended = run.summary.stopped && !run.device->running;
+      seen.after = run.device->last_sound - since;
+      seen.change = run.device->largest_change;
+    }
+    const auto written = write(ends[1], &seen, sizeof seen);
+    _exit(written == sizeof seen ? 0 : 1);
+  }
+  close(ends[1]);
+  Seen seen;
+  if (read(ends[0], &seen, sizeof seen) != sizeof seen) seen = {};
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  return seen;
+}
+
+TEST(Silence, FollowsEachSignalAsAFade) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const Seen seen = seen_after(signal);
+    std::printf("%-34s last sound handed over %5.1f ms later\n", strsignal(signal),
+                1e3 * seen.after);
+    EXPECT_TRUE(seen.sounded && seen.ended);
+    EXPECT_LE(seen.after, kStated);
+    EXPECT_LE(seen.change, 0.02505F);
+  }
+}
+
+}  // namespace
+}  // namespace prostm
