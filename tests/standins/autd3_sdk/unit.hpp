@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sdk_playback.hpp"
+#include "playback.hpp"
 
 namespace standin {
 

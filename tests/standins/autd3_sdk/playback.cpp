@@ -1,4 +1,4 @@
-#include "sdk_playback.hpp"
+#include "playback.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sdk_unit.hpp"
+#include "unit.hpp"
 
 #include <algorithm>
 

@@ -20,7 +20,7 @@
 #include <random>
 #include <sstream>
 
-#include "sdk_unit.hpp"
+#include "unit.hpp"
 
 namespace {
 
