@@ -208,6 +208,7 @@ RunSummary Run::summary() {
   if (pace_.realtime) s.skipped_updates = world_.published() - s.plans - s.empty_updates;
   s.unobserved = plans_.unobserved();
   s.full_scale_pressure = pipeline_.plans().full_scale_pressure();
+  s.device_rate = pipeline_.device().info().sample_rate;
   return s;
 }
 

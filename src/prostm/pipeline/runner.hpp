@@ -60,6 +60,7 @@ struct RunSummary {
   double mean_divergence = 0;  ///< WorldStats::divergence over the steps
   std::int64_t world_resets = 0;
   double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
+  double device_rate = 0;  ///< samples that the device played a second [Hz]; 0: as its kind says
   Summary latency, redraw;
   std::array<Summary, kLatencyParts> latency_parts;  ///< by LatencyPart; their means add up to the
                                                      ///< mean latency

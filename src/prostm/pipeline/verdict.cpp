@@ -75,7 +75,8 @@ std::string reason(const RunSummary& s, const PipelineSettings& settings) {
       1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
 }
 
-double samples_a_millisecond(const PipelineSettings& settings) {
+double samples_a_millisecond(const RunSummary& s, const PipelineSettings& settings) {
+  if (s.device_rate > 0.0) return 1e-3 * s.device_rate;
   return 1e-3 * device_named(settings.device).kind->info(settings.device_setup()).sample_rate;
 }
 
@@ -89,8 +90,8 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
       fmt::format("{} of {} blocks", s.device.missed_blocks, s.device.blocks);
   if (*out.held) {
     out.sentences.push_back(fmt::format(
-        "The rates were held: {}, {:g} samples a millisecond{}.", rates,
-        samples_a_millisecond(settings),
+        "The rates were held: {}, {:.3g} samples a millisecond{}.", rates,
+        samples_a_millisecond(s, settings),
         s.device.missed_blocks > 0 ? fmt::format(" ({} missed, hardly to be felt)", missed) : ""));
     return;
   }
