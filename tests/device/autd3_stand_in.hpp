@@ -141,7 +141,7 @@ inline void sleep_s(double seconds) {
 template <class Trial>
 double best_of(int trials, double enough, Trial&& trial) {
   double least = trial();
-  for (int i = 1; i < trials && !(least < enough); ++i) least = std::min(least, trial());
+  for (int i = 1; i < trials && !(least < enough); ++i) least = std::min<double>(least, trial());
   return least;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "prostm/core/input_error.hpp"
+
 namespace prostm {
 namespace {
 
@@ -9,6 +11,41 @@ TEST(DeviceNamed, TakesAnAddressOnlyWhereThereIsOne) {
   EXPECT_STREQ(device_named("sim").kind->name, "sim");
   EXPECT_EQ(device_named("sim").address, "");
   EXPECT_THROW(device_named("sim://127.0.0.1"), std::invalid_argument);
+}
+
+TEST(DeviceKind, TellsOfAutd3WithoutLookingForIt) {
+  DeviceSetup setup{SimulatedArraySettings{}, autd3_array(), Medium{}};
+  const DeviceKind& kind = *device_named("autd3://127.0.0.1:9").kind;
+  EXPECT_STREQ(kind.array, "autd3");
+  const DeviceInfo info = kind.info(setup);
+  EXPECT_EQ(info.max_foci, 4);
+  EXPECT_DOUBLE_EQ(info.emission_rate(), 40e3);
+  EXPECT_TRUE(info.comes_back);
+  setup.autd3.weights = false;
+  setup.foci = 8;
+  EXPECT_EQ(kind.info(setup).max_foci, 8);
+  setup.address = "127.0.0.1:99999";
+  EXPECT_THROW(kind.make(setup), InputError);
+  setup.address = "127.0.0.1:1";
+  const DeviceFinding finding = kind.look(setup);
+  EXPECT_FALSE(finding.found);
+  EXPECT_THAT(finding.words, testing::HasSubstr("start AUTD3's simulator"));
+}
+
+TEST(Autd3Units, AreReadFromAFileOrRefused) {
+  const auto refusal = [](const std::string& units) {
+    try {
+      autd3_units_from_json(R"({"format": "prostm-autd3/1", "units": )" + units + "}", "u.json");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(R"([{"position_mm": [0, 0, 0]}])"), "");
+  EXPECT_THAT(refusal("[]"), testing::HasSubstr("it must have 1 to 64"));
+  EXPECT_THAT(refusal(R"([{"position_mm": [0, 0, 3000]}])"), testing::HasSubstr("2000"));
+  EXPECT_THAT(refusal(R"([{"position_mm": [0, 0, 0], "quaternion": [0, 0, 0, 2]}])"),
+              testing::HasSubstr("has the length 2"));
 }
 
 TEST(DeviceNamed, ListsTheDevicesForAnUnknownName) {

@@ -137,6 +137,54 @@ TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
   }
 }
 
+TEST(SlotEncoder, TellsThePhasesOfItsSolver) {
+  // the solver that it uses, without any rounding
+  constexpr int kFoci = 4;
+  const TransducerArray array = autd3_array();
+  LiveFocusSettings settings;
+  settings.iterations = 3;
+  settings.full_scale = full_scale();
+  settings.adds_phasors = true;
+  LiveFocusSolver solver(array, kAir, settings);
+  SlotEncoder encoder(std::array{autd3_middle()}, kAir, {.foci = kFoci});
+  const fields::MovingFoci moving(5, kFoci, 0.03);
+  const double k = wave(array, kAir).number;
+  std::array<SlotWord, 2 * kFoci> words{};
+  std::vector<double> errors;
+  for (std::uint64_t s = 0; s < test::reduced(400); ++s) {
+    std::array<FocusSample, kFoci> sample;
+    std::array<LiveFocus, kFoci> foci;
+    for (int f = 0; f < kFoci; ++f) {
+      const auto i = static_cast<std::size_t>(f);
+      sample[i] = focus_at(moving.position(f, static_cast<double>(s) / 6.7e3), 0.9 - 0.2 * f);
+      foci[i] = {sample[i].p_D, sample[i].intensity};
+    }
+    encoder.encode(sample, words);
+    solver.solve(foci);
+    const auto told = drives_of(words, kAir);
+    std::vector<std::complex<double>> wanted;
+    std::complex<double> turn = 0.0;  // the phase that all have in common is free
+    for (std::size_t n = 0; n < told.size(); ++n) {
+      std::complex<double> sum = 0.0;
+      for (std::size_t f = 0; f < kFoci; ++f) {
+        const double away = (sample[f].p_D.cast<double>() - array.position[n]).norm();
+        sum += std::conj(std::complex<double>(solver.coefficient(f))) * std::polar(2.0, k * away);
+      }
+      wanted.push_back(std::conj(sum));
+      turn += told[n] * sum;
+    }
+    for (std::size_t n = 0; n < told.size(); ++n) {
+      if (std::abs(wanted[n]) < 0.1 * 2 * kFoci) continue;
+      const double error = std::arg(told[n] * std::conj(wanted[n]) * std::conj(turn));
+      errors.push_back(std::abs(error) / kTurn * 256.0);
+    }
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() * 99 / 100], 2.0);
+  std::printf("phases: median %.2f, 99th percentile %.2f, largest %.2f of 1/256 turn\n",
+              errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back());
+}
+
 TEST(SlotEncoder, RoundsPlacesToAtMostHalfAStepInEveryUnit) {
   const Pose beside = Pose(Eigen::Translation3d(0.2, 0.0, 0.01)) *
                       Eigen::AngleAxisd(-0.4, Vec3::UnitY()) * autd3_middle();

@@ -43,7 +43,8 @@ Autd3Budget autd3_budget(int slots, int divider, double block_time, double frame
 Autd3Budget best_autd3_budget(int slots, double frames_per_ms, double slow_frame = 0.0,
                               double block_time = 0.0);
 
-/// A table of budgets: slots × dividers × blocks × frames per ms, in that order.
+/// A table of budgets: slots × dividers × blocks × three numbers of frames per ms. The last index
+/// is the fastest.
 std::vector<Autd3Budget> autd3_budgets();
 
 }  // namespace prostm
