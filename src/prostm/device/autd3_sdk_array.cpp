@@ -24,7 +24,7 @@ constexpr std::int64_t kPeriod = 25'000;  // of 40 kHz [ns]
 constexpr double kRamp = 8e-3;            // of intensity after silence and before it [s]
 constexpr microseconds kMargin{300};      // after a turn, within which the clocks agree
 constexpr microseconds kPoll{500};        // between looks at which bank plays
-constexpr int kMostTurns = 5;             // until a bank must play
+constexpr int kMostTurns = 20;         // until a bank must play
 constexpr milliseconds kRetry{50};
 constexpr int kMeasured = 28;  // frames of a measurement
 constexpr int kRounds = 3;
