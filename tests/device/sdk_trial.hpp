@@ -3,12 +3,14 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "device/sdk_units.hpp"
 #include "fields/moving_foci.hpp"
-#include "prostm/emit/focus_sample.hpp"
+#include "prostm/device/autd3_sdk_array.hpp"
 #include "support/eventually.hpp"
 #include "support/heap_guard.hpp"
 
@@ -54,6 +56,24 @@ class Moving final : public SampleSource {
   std::atomic<int> allocations_{-1};
   std::atomic<std::int64_t> filled_{0};
 };
+
+/// Opens an array, again if the machine was too busy for the stand-in to answer in time.
+inline std::unique_ptr<Autd3SdkArray> opened(const Autd3SdkSetup& setup) {
+  for (int tries = 1;; ++tries) {
+    try {
+      return std::make_unique<Autd3SdkArray>(setup);
+    } catch (const std::invalid_argument&) {
+      if (tries == 10) throw;
+    }
+  }
+}
+
+/// Starts it, likewise.
+inline DeviceStatus started(Device& array, SampleSource& source) {
+  DeviceStatus status = array.start(source);
+  for (int i = 0; i < 10 && status != DeviceStatus::Running; ++i) status = array.start(source);
+  return status;
+}
 
 /// Time of the last sample that sounded, of the steady clock [s].
 inline double sounding(SdkUnits& chain) {

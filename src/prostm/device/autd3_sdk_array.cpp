@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "prostm/device/detail/jump_guard.hpp"
 #include "prostm/device/detail/sdk_session.hpp"
 #include "prostm/device/detail/segment_player.hpp"
 #include "prostm/device/thread_priority.hpp"
@@ -24,10 +25,9 @@ constexpr std::int64_t kPeriod = 25'000;  // of 40 kHz [ns]
 constexpr double kRamp = 8e-3;            // of intensity after silence and before it [s]
 constexpr microseconds kMargin{300};      // after a turn, within which the clocks agree
 constexpr microseconds kPoll{500};        // between looks at which bank plays
-constexpr int kMostTurns = 5;             // until a bank must play
+constexpr double kMostSpeed = 8.0;        // beyond which a step is a jump [m/s]
+constexpr int kMostTurns = 20;            // until a bank must play
 constexpr milliseconds kRetry{50};
-constexpr int kMeasured = 28;  // frames of a measurement
-constexpr int kRounds = 3;
 constexpr double kUnitWidth = 192e-3;  // [m]
 
 std::vector<Pose> side_by_side(std::size_t count) {
@@ -63,8 +63,6 @@ DeviceInfo info_with(const Autd3SdkSetup& setup, const Autd3SdkBudget& budget) {
 struct Autd3SdkArray::Impl {
   explicit Impl(const Autd3SdkSetup& s);
 
-  void open();
-  double measure();
   DeviceStatus refuse(const std::string& why);
   DeviceStatus begin(SampleSource& from);
   void run(const std::stop_token& stop);
@@ -87,6 +85,7 @@ struct Autd3SdkArray::Impl {
   std::string description;
 
   SampleSource* source = nullptr;
+  JumpGuard jumps;
   SegmentPlayer segment;
   bool plays_segment = false;
   std::vector<FocusSample> samples;           // of a block
@@ -116,7 +115,7 @@ Autd3SdkArray::Impl::Impl(const Autd3SdkSetup& s)
   if (!session.open()) throw std::invalid_argument(session.problem());
   const std::vector<Pose> units = s.units.empty() ? side_by_side(session.units()) : s.units;
   encoder = std::make_unique<SlotEncoder>(units, s.medium, slot_settings(s));
-  const double frames_per_ms = measure();
+  const double frames_per_ms = session.measure();
   if (frames_per_ms == 0.0) throw std::invalid_argument(session.problem());
   budget = best_autd3_sdk_budget(encoder->slots(), frames_per_ms);
   description = fmt::format(
@@ -129,23 +128,6 @@ Autd3SdkArray::Impl::Impl(const Autd3SdkSetup& s)
   const auto length = static_cast<std::size_t>(budget.block_samples * encoder->slots());
   words.resize(units.size() * static_cast<std::size_t>(encoder->slots()));
   blocks.assign(units.size(), std::vector<SlotWord>(length));
-}
-
-/// Returns the frames that a unit takes in 1 ms while all are written to, in the best of a few
-/// rounds, since other work may disturb some; 0 if that failed.
-double Autd3SdkArray::Impl::measure() {
-  const std::vector<SlotWord> silent(sdk::kFociPerFrame);
-  double best = 0.0;
-  for (int round = 0; round < kRounds; ++round) {
-    const Clock::time_point start = Clock::now();
-    for (int i = 0; i < kMeasured; ++i)
-      if (!session.post_all([&](sdk::Datagram& d) { sdk::write_foci(d, 1, 0, silent); }))
-        return 0.0;
-    if (!session.finish()) return 0.0;
-    const std::chrono::duration<double, std::milli> time = Clock::now() - start;
-    best = std::max(best, kMeasured / time.count());
-  }
-  return best;
 }
 
 void Autd3SdkArray::Impl::run(const std::stop_token& stop) {
@@ -236,6 +218,7 @@ void Autd3SdkArray::Impl::fill_block() {
   for (std::size_t s = 0; s < samples.size() / width; ++s) {
     gain = std::clamp(gain + (falls ? -step : step), 0.0F, 1.0F);
     const std::span<FocusSample> sample = std::span(samples).subspan(s * width, width);
+    jumps.apply(sample);
     for (FocusSample& focus : sample) focus.intensity *= gain;
     encoder->encode(sample, words);
     for (std::size_t u = 0; u < blocks.size(); ++u)
@@ -336,6 +319,7 @@ DeviceStatus Autd3SdkArray::Impl::begin(SampleSource& from) {
   source = &from;
   samples.resize(static_cast<std::size_t>(budget.block_samples * from.foci()));
   block = 0;
+  jumps.reset(from.foci(), kMostSpeed / info.sample_rate);
   {
     const std::lock_guard lock(mutex);
     stats = {.queue_blocks = 1};

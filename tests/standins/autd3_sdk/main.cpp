@@ -38,6 +38,18 @@ std::int64_t host_now() {
   return clock_now(CLOCK_MONOTONIC);
 }
 
+/// Nanoseconds from the realtime clock, whose time stamps datagrams get, to the monotonic one.
+std::int64_t clock_offset() {
+  std::int64_t best = INT64_MAX, offset = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const std::int64_t before = host_now(), real = clock_now(CLOCK_REALTIME), after = host_now();
+    if (after - before >= best) continue;
+    best = after - before;
+    offset = before + best / 2 - real;
+  }
+  return offset;
+}
+
 struct Port {
   int socket = -1;
   int number = 0;
@@ -102,6 +114,7 @@ class Chain {
   bool dump(const std::string& file) const;
   bool set(const std::string& word, std::istringstream& in);
 
+  const std::int64_t offset_ = clock_offset();
   standin::Findings findings_;
   Port group_;
   std::vector<Port> ports_;
@@ -134,7 +147,7 @@ void Chain::receive(const Port& port, int unit) {
       if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_TIMESTAMPNS) continue;
       timespec t{};
       std::memcpy(&t, CMSG_DATA(c), sizeof(t));
-      came -= clock_now(CLOCK_REALTIME) - (t.tv_sec * 1'000'000'000LL + t.tv_nsec);
+      came = t.tv_sec * 1'000'000'000LL + t.tv_nsec + offset_;
     }
     if (came < cut_until_ || chance(drops_)) {
       ++dropped_;

@@ -29,6 +29,8 @@ void Findings::error(const std::string& what) {
 }
 
 void Unit::set_clock(std::int64_t now, std::int64_t time, bool locks) {
+  sounded_ = last_sounding();
+  playback.last_sounding = -1;
   offset_ = time - now;
   playback.jump(time);
   locked_at_ = locks ? now + (grandmaster_ ? 0 : behaviour_.lock_time) : -1;
@@ -36,7 +38,7 @@ void Unit::set_clock(std::int64_t now, std::int64_t time, bool locks) {
 }
 
 std::int64_t Unit::last_sounding() const {
-  return playback.last_sounding < 0 ? -1 : playback.last_sounding - offset_;
+  return playback.last_sounding < 0 ? sounded_ : playback.last_sounding - offset_;
 }
 
 void Unit::forget() {
@@ -246,6 +248,7 @@ int Unit::dispatch(int command, const Bytes& p) {
       synchronised_ = true;
       return 0;
     case 0x03:
+      if (behaviour_.forgets_to_release) return 0x15;
       ++findings_.clears;
       clear();
       return 0;

@@ -86,6 +86,7 @@ class Unit {
   Behaviour& behaviour_;
   int id_ = -1;
   bool grandmaster_ = false;
+  std::int64_t sounded_ = -1;  // last sounding by an earlier clock, in the host's time
   std::int64_t offset_ = 0, locked_at_ = -1, ready_at_ = -1, forgets_at_ = -1;
   std::int64_t host_at_ = -1;  // when the host was heard last
   std::int64_t failsafe_ = 500;

@@ -172,6 +172,21 @@ bool Session::activate(int bank, Transition transition) noexcept {
   return fail(fmt::format("unit {} {}", refused_unit_, error_words(refusal_)));
 }
 
+double Session::measure() {
+  constexpr int kMeasured = 28, kRounds = 3;  // frames, and how often
+  const std::vector<SlotWord> silent(kFociPerFrame);
+  double best = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const Clock::time_point start = Clock::now();
+    for (int i = 0; i < kMeasured; ++i)
+      if (!post_all([&](Datagram& d) { write_foci(d, 1, 0, silent); })) return 0.0;
+    if (!finish()) return 0.0;
+    const std::chrono::duration<double, std::milli> time = Clock::now() - start;
+    best = std::max(best, kMeasured / time.count());
+  }
+  return best;
+}
+
 bool Session::set_silencer(int steps) noexcept {
   return post_all([&](Datagram& d) { silencer(d, steps); }) && finish();
 }

@@ -71,6 +71,10 @@ class Session {
   /// Makes all units change over to a bank, once they have executed what was posted before, and
   /// waits for that. Finds out which form of the command the firmware takes. Likewise.
   bool activate(int bank, Transition transition) noexcept;
+  /// Returns the frames that a unit takes in 1 ms while all are written to, in the best of a few
+  /// rounds, since other work may disturb some; 0 if the session failed. @pre bank 1 is silent and
+  /// does not play.
+  double measure();
   /// Sets the silencer; before a pattern with this divider.
   bool set_silencer(int steps) noexcept;
   /// Lets units sound that the failsafe muted. @return false also if a unit refused for now.
