@@ -42,7 +42,8 @@ port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0));
 sender=$!
 for over in "" --udp; do
   echo "over ${over:-tcp}:"
-  "$wine" "$work/prostm_receiver.exe" "127.0.0.1:$port" $over --seconds 8 | tr -d '\r' | tee "$work/receiver.txt"
+  "$wine" "$work/prostm_receiver.exe" "127.0.0.1:$port" $over --seconds 8 | tr -d '\r' >"$work/receiver.txt"
+  tail -1 "$work/receiver.txt"
   python3 - "$work/receiver.txt" <<'EOF'
 import json
 import sys
@@ -58,6 +59,10 @@ echo "kill -9 of prostm while it is received:"
 receiver=$!
 sleep 4
 kill -9 "$sender"
-wait "$receiver"
+wait "$sender" 2>/dev/null || true
 sender=
-tr -d '\r' <"$work/killed.txt" | grep '^silent' || { echo "the receiver did not fall silent" >&2; exit 1; }
+wait "$receiver"
+tr -d '\r' <"$work/killed.txt" | grep '^silent [-0-9]' | tail -1 || {
+  echo "the receiver did not fall silent" >&2
+  exit 1
+}

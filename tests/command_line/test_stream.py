@@ -137,6 +137,53 @@ def test_what_is_emitted_arrives(program, tmp_path, language, over):
     print(f"{language} over {over}: {statistics}")
 
 
+def wait_until_it_sounds(listener):
+    """The hand is in the plume for most of the time; waits until it is felt."""
+
+    def sounds():
+        rows = newest_rows(listener.played)
+        return (bool(rows) and rows[-1][1] > time.monotonic_ns() - 50_000_000
+                and all(row[3] == 1.0 and max(row[4][3::4]) > 0.02 for row in rows))
+
+    wait_for(sounds)
+
+
+def silence_after(listener, begin, until):
+    """Time from `begin` to the last sounding sample before `until`, and to its handing over [s]; times in ns."""
+    sounding = [row for row in rows_of(listener.played)
+                if row[2] > 0.0 and max(f[3] for f in row[3]) > 0.0 and row[1] < until]
+    return [(max(row[i] for row in sounding) - begin) / 1e9 for i in (1, 0)]
+
+
+def check_silence(words, silent, handed):
+    print(f"{words} to the last sounding sample {1e3 * silent:.1f} ms, to its handing over {1e3 * handed:.1f} ms")
+    # a message may still have been on its way
+    assert silent <= SILENT_AFTER + 0.005
+    # a receiver that is not run in the middle of its ramp ends it up to 20 ms later
+    assert handed <= SILENT_AFTER + 0.025
+
+
+@pytest.mark.realtime
+@pytest.mark.parametrize("language", ["c++", "python"])
+def test_falls_silent_while_prostm_stands_still(program, tmp_path, language):
+    port = free_port()
+    sender = start_sender(program, tmp_path, port, 600)
+    listener = Listener(program, tmp_path, language, "tcp", port)
+    try:
+        wait_until_it_sounds(listener)
+        begin = time.monotonic_ns()
+        sender.send_signal(signal.SIGSTOP)  # the connection stays open
+        time.sleep(0.5)
+        sender.send_signal(signal.SIGCONT)
+        wait_until_it_sounds(listener)
+        listener.end()
+    finally:
+        sender.kill()
+        listener.process.kill()
+        sender.communicate()
+    check_silence(f"{language}: SIGSTOP", *silence_after(listener, begin, begin + 450_000_000))
+
+
 @pytest.mark.realtime
 @pytest.mark.parametrize("language, over", RECEIVERS)
 def test_falls_silent_after_kill_9_and_comes_back(program, tmp_path, language, over):
@@ -144,26 +191,14 @@ def test_falls_silent_after_kill_9_and_comes_back(program, tmp_path, language, o
     sender = start_sender(program, tmp_path, port, 600)
     listener = Listener(program, tmp_path, language, over, port)
     try:
-        # the hand is in the plume for most of the time; wait until it is felt
-        def sounds():
-            rows = newest_rows(listener.played)
-            return (bool(rows) and rows[-1][1] > time.monotonic_ns() - 50_000_000
-                    and all(row[3] == 1.0 and max(row[4][3::4]) > 0.02 for row in rows))
-
-        wait_for(sounds)
+        wait_until_it_sounds(listener)
         killed = time.monotonic_ns()
         sender.send_signal(signal.SIGKILL)
         sender.wait()
         time.sleep(0.5)
-        started = time.monotonic_ns()
         again = start_sender(program, tmp_path, port, 600)
-
-        def sounds_again():
-            newest = newest_rows(listener.played)[-1]
-            return newest[1] > started and newest[3] == 1.0
-
         try:
-            wait_for(sounds_again)
+            wait_until_it_sounds(listener)
         finally:
             again.kill()
             again.communicate()
@@ -172,16 +207,7 @@ def test_falls_silent_after_kill_9_and_comes_back(program, tmp_path, language, o
         sender.kill()
         listener.process.kill()
         sender.communicate()
-    gap = [row for row in rows_of(listener.played)
-           if row[2] > 0.0 and max(f[3] for f in row[3]) > 0.0 and row[1] < killed + 450_000_000]
-    last_time, last_handed = max(row[1] for row in gap), max(row[0] for row in gap)
-    silent, handed = (last_time - killed) / 1e9, (last_handed - killed) / 1e9
-    print(f"{language} over {over}: kill -9 to the last sounding sample {1e3 * silent:.1f} ms, to its handing over "
-          f"{1e3 * handed:.1f} ms")
-    # a message may still have been on its way when the program died
-    assert silent <= SILENT_AFTER + 0.005
-    # a receiver that is not run in the middle of its ramp ends it up to 20 ms later
-    assert handed <= SILENT_AFTER + 0.025
+    check_silence(f"{language} over {over}: kill -9", *silence_after(listener, killed, killed + 450_000_000))
     assert statistics["subscriptions"] >= 2 and statistics["malformed"] == 0
     assert "silent " in printed
 
