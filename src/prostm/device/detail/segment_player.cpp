@@ -9,7 +9,7 @@ namespace prostm {
 std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci) {
   std::ostringstream text;
   if (foci < 1 || foci > max_foci) {
-    text << "The segment has " << foci << " focal points a sample; the simulated array plays 1 to "
+    text << "The segment has " << foci << " focal points a sample; the array plays 1 to "
          << max_foci << ".";
   } else if (samples.empty() || samples.size() % static_cast<std::size_t>(foci) != 0) {
     text << "The segment holds " << samples.size()
@@ -49,13 +49,24 @@ void SegmentPlayer::load(std::span<const FocusSample> samples) {
   }
 }
 
+/// Takes the segment that was loaded last, if it has not been taken. Never waits: while another is
+/// being loaded, the playing one repeats.
+void SegmentPlayer::take_next() noexcept {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || !has_next_) return;
+  playing_.swap(next_);
+  has_next_ = false;
+}
+
 void SegmentPlayer::fill(std::int64_t /*first*/, std::span<FocusSample> out) noexcept {
-  const std::lock_guard lock(mutex_);
   while (!out.empty()) {
     if (at_ == playing_.size()) {
       at_ = 0;
-      if (has_next_) playing_.swap(next_);
-      has_next_ = false;
+      take_next();
+    }
+    if (playing_.empty()) {
+      std::fill(out.begin(), out.end(), FocusSample());
+      return;
     }
     const std::size_t n = std::min(out.size(), playing_.size() - at_);
     std::copy_n(playing_.begin() + static_cast<std::ptrdiff_t>(at_), n, out.begin());

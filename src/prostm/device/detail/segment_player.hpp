@@ -27,11 +27,14 @@ class SegmentPlayer final : public SampleSource {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 
  private:
+  void take_next() noexcept;
+
   int foci_ = 1;
-  std::mutex mutex_;  // guards the members below
-  std::vector<FocusSample> playing_, next_;
+  std::vector<FocusSample> playing_;  // of the thread that pulls
+  std::size_t at_ = 0;                // in playing_
+  std::mutex mutex_;                  // guards the members below
+  std::vector<FocusSample> next_;
   bool has_next_ = false;
-  std::size_t at_ = 0;  // in playing_
 };
 
 }  // namespace prostm
