@@ -45,8 +45,11 @@ TEST(PoseFile, ReadsAPoseAndWritesItBack) {
 TEST(PoseFile, NamesAreKnownOrRefused) {
   EXPECT_TRUE(tracker_pose_from_name("centre").isApprox(default_tracker_pose()));
   EXPECT_TRUE(tracker_pose_from_name("ultraleap-kit").isApprox(ultraleap_kit_pose()));
+  EXPECT_EQ(tracker_pose_from_name("ultraleap-usi-kit").translation(), Vec3(0.0, -0.089, 0.0));
+  EXPECT_EQ(tracker_pose_from_name("ultraleap-uhdk5-square-kit").translation().y(), 0.1105);
+  EXPECT_EQ(tracker_pose_from_name("ultraleap-uhdk5-rectangular-kit").translation().y(), 0.163);
   EXPECT_THAT(test::input_error([] { tracker_pose_from_name("roof"); }),
-              testing::HasSubstr("must be centre, ultraleap-kit or a pose file"));
+              testing::HasSubstr("must be centre, ultraleap-kit, ultraleap-usi-kit"));
   EXPECT_THROW(tracker_pose_from_name("none.json"), InputError);
 }
 

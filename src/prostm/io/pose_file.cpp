@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
@@ -63,11 +65,16 @@ void write_pose(const std::string& path, const Calibration& calibration) {
 
 Pose tracker_pose_from_name(const std::string& name) {
   if (name == "centre") return default_tracker_pose();
-  if (name == "ultraleap-kit") return ultraleap_kit_pose();
+  std::vector<std::string> names{"centre"};
+  std::string listed = "centre";
+  for (const TrackerKit& kit : kTrackerKits) {
+    if (name == kit.name) return tracker_kit_pose(kit);
+    names.emplace_back(kit.name);
+    listed += std::string(", ") + kit.name;
+  }
   if (name.ends_with(".json")) return read_pose(name).X_DT;
-  throw InputError("tracker " + name +
-                   " is unknown; it must be centre, ultraleap-kit or a pose file (.json)" +
-                   did_you_mean(name, {"centre", "ultraleap-kit"}));
+  throw InputError("tracker " + name + " is unknown; it must be " + listed +
+                   " or a pose file (.json)" + did_you_mean(name, names));
 }
 
 }  // namespace prostm

@@ -21,8 +21,8 @@ Calibration read_pose(const std::string& path);
 /// Writes it whole or not at all. @throws InputError when it cannot be written.
 void write_pose(const std::string& path, const Calibration& calibration);
 
-/// X_DT by name: "centre", "ultraleap-kit", or a file (.json). @throws InputError also for another
-/// name.
+/// X_DT by name: "centre", one of kTrackerKits, or a file (.json). @throws InputError also for
+/// another name.
 Pose tracker_pose_from_name(const std::string& name);
 
 }  // namespace prostm

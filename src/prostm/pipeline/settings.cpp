@@ -18,7 +18,8 @@ void list(Settings& s, Visitor& v) {
            .help = "whether best and fast count on the width of the array's "
                    "focus, not on sigma"},
           s.array_width);
-  v.field({.name = "tracker", .help = "where the tracker is: centre, ultraleap-kit or a file"},
+  v.field({.name = "tracker",
+           .help = "where the tracker is: centre, a kit such as ultraleap-kit, or a file"},
           s.tracker);
   v.field({"world_rate", "Hz", 10, 1000, "steps of the world"}, s.world_rate);
   v.field({"world_steps_per_plan", "", 0, 100,

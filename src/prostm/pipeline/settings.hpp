@@ -26,7 +26,7 @@ struct PipelineSettings {
   std::string array = "usx";   ///< what `transducers` are, by name: usx, autd3 or a file
   /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
   bool array_width = false;
-  std::string tracker = "centre";  ///< what `X_DT` is, by name: centre, ultraleap-kit or a file
+  std::string tracker = "centre";  ///< what `X_DT` is, by name: centre, a kit or a file
   double world_rate = 50.0;        ///< steps of the world a second [Hz]
   int world_steps_per_plan = 0;    ///< a plan every so many of them; 0: as the method asks, 2
                                    ///< (25 Hz) of pro-stm, 1 (50 Hz) of am

@@ -55,8 +55,12 @@ Pose default_tracker_pose() {
 }
 
 Pose ultraleap_kit_pose() {
+  return tracker_kit_pose(kTrackerKits[0]);
+}
+
+Pose tracker_kit_pose(const TrackerKit& kit) {
   Pose X_DT = default_tracker_pose();
-  X_DT.translation() = Vec3(0.0, 0.121, 0.0);
+  X_DT.translation() = Vec3(0.0, kit.y, 0.0);
   return X_DT;
 }
 

@@ -74,4 +74,15 @@ Pose default_tracker_pose();
 /// Pose in the Ultraleap kit: the tracker sits 121 mm along +y of D from the array's centre.
 Pose ultraleap_kit_pose();
 
+/// A kit that holds a tracker beside its array, at (0, y, 0) of D; axes as at the array's centre.
+struct TrackerKit {
+  const char* name;
+  double y;  ///< [m]
+};
+inline constexpr TrackerKit kTrackerKits[] = {{"ultraleap-kit", 0.121},
+                                              {"ultraleap-usi-kit", -0.089},
+                                              {"ultraleap-uhdk5-square-kit", 0.1105},
+                                              {"ultraleap-uhdk5-rectangular-kit", 0.163}};
+Pose tracker_kit_pose(const TrackerKit& kit);
+
 }  // namespace prostm
