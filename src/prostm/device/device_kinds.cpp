@@ -6,6 +6,7 @@
 
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/device/segment_stream.hpp"
+#include "prostm/device/ultraleap.hpp"
 
 namespace prostm {
 namespace {
@@ -22,8 +23,17 @@ constexpr DeviceKind kKinds[] = {
     {"sim", nullptr, nullptr, "needs no hardware; nobody can feel it", simulated_info,
      make_simulated, nullptr},
     {"autd3", "HOST:PORT", "autd3", "never tried on real hardware", nullptr, nullptr, nullptr},
-    {"ultraleap", nullptr, nullptr, "needs the vendor's SDK; never tried on real hardware", nullptr,
-     nullptr, nullptr},
+#if defined(PROSTM_ULTRALEAP)
+    {"ultraleap", "[DEVICE][@CONNECTION]", "usx",
+     "this build has the vendor's SDK; tried with a stand-in of its interface, never on real "
+     "hardware",
+     ultraleap_info, make_ultraleap, look_for_ultraleap},
+#else
+    {"ultraleap", "[DEVICE][@CONNECTION]", "usx",
+     "this build lacks the vendor's Haptics SDK 3: install that and configure prostm with "
+     "-DPROSTM_ULTRALEAP_ROOT=FOLDER (docs/ultraleap.md); never tried on real hardware",
+     nullptr, nullptr, look_for_ultraleap},
+#endif
 };
 
 /// NAME, or NAME://ADDRESS.
@@ -41,7 +51,8 @@ const DeviceKind& kind_named(const std::string& name) {
   for (const DeviceKind& kind : kKinds) {
     if (kind.name != name) continue;
     if (kind.is_built()) return kind;
-    throw std::invalid_argument("device '" + name + "' is not built yet: it must be " + built);
+    throw std::invalid_argument("device '" + name + "' is not in this build: it must be " + built +
+                                "; " + kind.name + ": " + kind.tried);
   }
   throw std::invalid_argument("device '" + name + "' is unknown: it must be " + built +
                               did_you_mean(name, names));
