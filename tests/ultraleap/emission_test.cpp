@@ -114,10 +114,6 @@ void play_a_minute(Method method, float least_separation) {
   // the emission's own bound, and a step of the separation's fade
   EXPECT_LE(watch.change, 3.0 / 40.0 + 1.0 / 16.0 + 1e-3);
   EXPECT_GT(watch.sum / 960'000, 0.3) << "it sounds";
-  std::printf("%s, least separation %.0f mm: step %.3f mm, change %.3f, mean sum %.2f\n",
-              method == Method::ProStm ? "paths" : "foci",
-              1e3 * static_cast<double>(least_separation), 1e3 * watch.step, watch.change,
-              watch.sum / 960'000);
 }
 
 TEST(UltraleapEmission, PlaysPathsForAMinute) {

@@ -15,7 +15,9 @@ namespace ulh = Ultraleap::Haptics;
 constexpr float kCallRate = 1000.0F;                 // callbacks a second
 constexpr double kLeastRate = 1e3, kMostRate = 1e6;  // of samples that an emission can make [Hz]
 constexpr double kRateTolerance = 1e-4;
-constexpr double kCentreTolerance = 2e-3;  // of the middle of the transducers [m]
+// distance of the transducers' middle from the origin [m]: a kit's tracker, the next origin that
+// there could be, is 89 mm away, and not every array is symmetrical.
+constexpr double kCentreTolerance = 0.02;
 
 [[noreturn]] void refuse(const std::string& sentence) {
   throw std::invalid_argument(sentence);
@@ -150,16 +152,15 @@ void UltraleapSession::check_place(const ulh::Device& device) const {
     refuse("The Ultraleap array '" + identifier_ + "' cannot stream.");
   const auto transducers = info.value().getTransducers();
   if (transducers.empty()) return;
-  Eigen::Vector3d least = Eigen::Vector3d::Constant(1e9), most = -least;
+  Eigen::Vector2d least = Eigen::Vector2d::Constant(1e9), most = -least;
   for (const auto& transducer : transducers) {
-    const Eigen::Vector3d at(static_cast<double>(transducer.position.x),
-                             static_cast<double>(transducer.position.y),
-                             static_cast<double>(transducer.position.z));
+    const Eigen::Vector2d at(static_cast<double>(transducer.position.x),
+                             static_cast<double>(transducer.position.y));
     least = least.cwiseMin(at);
     most = most.cwiseMax(at);
   }
-  const Eigen::Vector3d middle = 0.5 * (least + most);
-  if (middle.cwiseAbs().maxCoeff() <= kCentreTolerance) return;
+  const Eigen::Vector2d middle = 0.5 * (least + most);
+  if (middle.norm() <= kCentreTolerance) return;
   refuse("The middle of the transducers of '" + identifier_ + "' is " +
          std::to_string(std::lround(1e3 * middle.norm())) +
          " mm from the origin of its coordinates; prostm needs it there.");
