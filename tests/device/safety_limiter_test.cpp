@@ -75,7 +75,9 @@ class Judge {
     last_.resize(sample.size(), 0.0);
     for (std::size_t f = 0; f < sample.size(); ++f) {
       const double intensity = static_cast<double>(sample[f].intensity);
-      finite = finite && std::isfinite(intensity) && sample[f].p_D.allFinite();
+      finite = finite && std::isfinite(intensity) &&
+               std::all_of(sample[f].p_D.begin(), sample[f].p_D.end(),
+                           [](float x) { return std::isfinite(x); });
       if (!finite) return;
       change = std::max(change, std::abs(intensity - last_[f]));
       last_[f] = intensity;
@@ -186,8 +188,8 @@ class RandomStream {
 };
 
 TEST(SafetyLimiter, CapsHoldFor100000RandomStreams) {
-  constexpr std::size_t kFoci = 4, kLength = 50;
-  constexpr int kCaps = 50, kStreams = 2000;
+  constexpr std::size_t kFoci = 4, kLength = 20;
+  constexpr int kCaps = 20, kStreams = 5000;
   const TransducerArray array = small_array();
   Random random(11);
   int exceeded = 0;
@@ -243,7 +245,7 @@ void random_plan(Random& random, LiftedPlan& plan) {
 }
 
 TEST(SafetyLimiter, CapsHoldFor100000RandomPlans) {
-  constexpr std::size_t kFoci = 4, kBlock = 40;
+  constexpr std::size_t kFoci = 4, kBlock = 10;
   constexpr int kCaps = 20, kPlans = 5000;
   const TransducerArray array = small_array();
   Random random(13);
@@ -264,7 +266,7 @@ TEST(SafetyLimiter, CapsHoldFor100000RandomPlans) {
       chain.fill(std::int64_t{p} * static_cast<std::int64_t>(kBlock), out);
       for (std::size_t i = 0; i < out.size(); i += kFoci) {
         for (FocusSample& s : before) ASSERT_TRUE(tap.next(s));
-        judge.look(std::span(out).subspan(i, kFoci), i == 0);
+        judge.look(std::span(out).subspan(i, kFoci), p % 8 == 0 && i == 0);
         raw.look(before, false);
       }
     }

@@ -85,7 +85,9 @@ class NotedArray final : public Device {
       float most = 0.0F;
       for (std::size_t i = 0; i < block.size(); ++i) {
         const FocusSample& now = block[i];
-        if (!std::isfinite(now.intensity) || !now.p_D.allFinite()) finite = false;
+        const bool known = std::isfinite(now.intensity) && std::isfinite(now.p_D.x()) &&
+                           std::isfinite(now.p_D.y()) && std::isfinite(now.p_D.z());
+        if (!known) finite = false;
         const float change = std::abs(now.intensity - last[i % foci].intensity);
         largest_change = std::max(largest_change.load(), change);
         most = std::max(most, now.intensity);

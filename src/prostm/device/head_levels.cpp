@@ -9,24 +9,27 @@
 namespace prostm {
 namespace {
 
-constexpr double kReference = 20e-6;  // rms acoustic pressure of 0 dB [Pa]
-constexpr double kHandHeight = 0.2;   // above the array [m]
-constexpr double kHandToHead = 0.1;   // at least [m]
+constexpr double kReference = 20e-6;      // rms acoustic pressure of 0 dB [Pa]
+constexpr double kHandHeight = 0.2;       // above the array [m]
+constexpr double kHandAngle = kPi / 4.0;  // off the axes, of the sound that meets a hand
+constexpr double kHandToHead = 0.1;       // at least [m]
 
 double decibels(double squared_pressure) {
   return 10.0 * std::log10(squared_pressure / (kReference * kReference));
 }
 
-/// ∫ D² dΩ over the half-space in front of a transducer [sr].
+/// ∫ D² dΩ over the directions of a transducer in which a hand is [sr].
 double solid_angle(const TransducerArray& array) {
   constexpr int kSteps = 2000;
   const double ka = wave_number(array, Medium{}) * array.radius;
+  const double least = std::cos(kHandAngle);
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) {
-    const double d = directivity(array.directivity, ka, (i + 0.5) / kSteps);
+    const double cosine = least + (1.0 - least) * (i + 0.5) / kSteps;
+    const double d = directivity(array.directivity, ka, cosine);
     sum += d * d;
   }
-  return 2.0 * kPi * sum / kSteps;
+  return 2.0 * kPi * (1.0 - least) * sum / kSteps;
 }
 
 constexpr ExposureLimit kLimits[] = {

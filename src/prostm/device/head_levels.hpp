@@ -17,8 +17,8 @@ struct HeadLevel {
   double distance = 0.0;  ///< of the head from the middle of the array [m]
   /// Smallest amplitude of the sources, transducers that add up incoherently, nothing reflected.
   double low = 0.0;
-  /// Largest amplitude, incoherent, with all power that meets a hand at 200 mm scattered evenly
-  /// over a half-space: this level is capped.
+  /// Largest amplitude, incoherent, with the power that meets a hand at 200 mm, within 45° of the
+  /// transducers' axes, scattered evenly over a half-space: this level is capped.
   double estimate = 0.0;
   /// Largest amplitude, all transducers in phase, with a reflection as strong: no drives make it
   /// louder.
