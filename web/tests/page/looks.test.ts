@@ -102,6 +102,25 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
     expect(await faint(page)).toEqual([]);
     await page.close();
   });
+  it("can be read while it is muted, and in its help", async () => {
+    const page = await open(1024, theme);
+    await page.locator("#mute").click();
+    await until(page, () => document.getElementById("output-word")!.textContent === "Muted", 0, "muted");
+    expect(await faint(page)).toEqual([]);
+    await page.locator("#mute").click();
+    await page.keyboard.press("?");
+    await until(page, () => document.querySelector("dialog[open]") !== null, 0, "help");
+    expect(await faint(page)).toEqual([]);
+    expect(await clipped(page)).toEqual([]);
+    await page.close();
+  });
+  it("leaves room for the planes where there is no picture above them", async () => {
+    const page = await open(1024, theme);
+    await until(page, () => document.getElementById("picture")!.dataset.drawn === "false", 0, "no picture");
+    const plane = (await page.locator('canvas[data-kind="target"]').boundingBox())!;
+    expect(plane.y + plane.height).toBeLessThanOrEqual(768);
+    await page.close();
+  });
 });
 
 describe("large type", () => {
