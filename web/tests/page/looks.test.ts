@@ -114,6 +114,19 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
     expect(await clipped(page)).toEqual([]);
     await page.close();
   });
+  it.each(kWidths)("has room for all that is said in place of the picture, %i pixels wide", async (width) => {
+    const page = await open(width, theme, "&large=1");
+    const cut = await page.evaluate(() => {
+      document.getElementById("no-picture-why")!.textContent = "The picture in three dimensions is off: drawing it here would slow the run down. The planes show the fields.";
+      document.getElementById("no-hand-advice")!.textContent = "No tracker yet: nothing answers at leap://127.0.0.1:6437; start the service of the Leap Motion controller, or Ultraleap's bridge.";
+      const signs = [...document.querySelectorAll<HTMLElement>("#signs .sign")];
+      for (const sign of signs) sign.hidden = false;
+      const room = document.getElementById("picture")!.getBoundingClientRect(), above = document.getElementById("views")!.getBoundingClientRect();
+      return signs.map((sign) => sign.getBoundingClientRect()).filter((box) => box.bottom > room.bottom || box.top < above.bottom).length;
+    });
+    expect(cut).toBe(0);
+    await page.close();
+  });
   it("leaves room for the planes where there is no picture above them", async () => {
     const page = await open(1024, theme);
     await until(page, () => document.getElementById("picture")!.dataset.drawn === "false", 0, "no picture");
