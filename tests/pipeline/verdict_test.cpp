@@ -83,16 +83,16 @@ TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {
   });
   EXPECT_EQ(verdict.held, false);
   EXPECT_THAT(verdict.sentences,
-              ElementsAre("The rates were not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz; "
-                          "half of the smoke's steps took longer than 23.0 ms, and there are 20 ms "
-                          "for each: use --grid 48, or close what else runs."));
+              ElementsAre("The rates were not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz. "
+                          "Half of the smoke's steps took longer than 23.0 ms, and each has 20 ms. "
+                          "Use --grid 48, or close what else runs."));
   // no grid is small enough
   EXPECT_THAT(said([](RunSummary& s) {
                 s.world_steps = 1000;
                 s.skipped_world_steps = 2000;
                 s.world.p50 = 200e-3;
               }).front(),
-              AllOf(HasSubstr("for each: close what else runs"), Not(HasSubstr("--grid"))));
+              AllOf(HasSubstr("each has 20 ms. Close what else runs."), Not(HasSubstr("--grid"))));
 }
 
 TEST(Verdict, OneStepInAHundredMayBeMissing) {
@@ -116,13 +116,13 @@ TEST(Verdict, ASlowPlannerIsNamed) {
   };
   EXPECT_EQ(judged(slow).held, false);
   EXPECT_THAT(said(slow).front(), AllOf(HasSubstr("plans 16.7 of 25 Hz"),
-                                        HasSubstr("half of the plans took longer than 58.0 ms"),
-                                        HasSubstr("there are 40 ms for each: use --preset fast")));
+                                        HasSubstr("Half of the plans took longer than 58.0 ms"),
+                                        HasSubstr("each has 40 ms. Use --preset fast")));
   PipelineSettings fast;
   fast.plan.preset = Preset::Fast;
   RunSummary s = good();
   slow(s);
-  EXPECT_THAT(verdict_of(s, fast).sentences.front(), HasSubstr("use fewer --paths"));
+  EXPECT_THAT(verdict_of(s, fast).sentences.front(), HasSubstr("Use fewer --paths."));
 }
 
 TEST(Verdict, MissedBlocksAreToldAsWhatIsFelt) {

@@ -4,6 +4,12 @@ export function fixed(value: number, digits: number): string {
   return Number.isFinite(value) ? value.toFixed(digits) : "–";
 }
 
+/// A length in whole millimetres.
+export function millimetres(metres: number): string {
+  const mm = Math.round(1000 * metres);
+  return `${mm < 0 ? "−" : ""}${Math.abs(mm)}`;
+}
+
 /// With as many digits as say something.
 export function short(value: number): string {
   if (!Number.isFinite(value)) return "–";

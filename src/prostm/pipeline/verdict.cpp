@@ -48,7 +48,8 @@ int smaller_grid(int cells, double time, double due) {
   return 0;
 }
 
-/// The most likely reason why steps or plans are missing, and what to do. @pre a step was made.
+/// Sentences on the most likely reason why steps or plans are missing, and what to do. @pre a step
+/// was made.
 std::string reason(const RunSummary& s, const PipelineSettings& settings) {
   const double due = 1.0 / settings.world_rate;
   const double steps_per_plan = settings.steps_per_plan();
@@ -57,22 +58,22 @@ std::string reason(const RunSummary& s, const PipelineSettings& settings) {
   if (step > kBusy * due) {
     const int grid = smaller_grid(settings.fluid.cells, step, due);
     return fmt::format(
-        "half of the smoke's steps took longer than {:.1f} ms, and there are {:.0f} ms for each: "
-        "{}close what else runs",
-        1e3 * step, 1e3 * due, grid > 0 ? fmt::format("use --grid {}, or ", grid) : "");
+        "Half of the smoke's steps took longer than {:.1f} ms, and each has {:.0f} ms. {}.",
+        1e3 * step, 1e3 * due,
+        grid > 0 ? fmt::format("Use --grid {}, or close what else runs", grid)
+                 : "Close what else runs");
   }
   const double plan = s.plan.p50 + s.lift.p50, between = due * steps_per_plan;
   if (plan > kBusy * between) {
     const bool is_slow = settings.method == Method::ProStm && settings.plan.preset != Preset::Fast;
     return fmt::format(
-        "half of the plans took longer than {:.1f} ms, and there are {:.0f} ms for each: use {}",
-        1e3 * plan, 1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
+        "Half of the plans took longer than {:.1f} ms, and each has {:.0f} ms. Use {}.", 1e3 * plan,
+        1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
   }
   return fmt::format(
-      "half of the smoke's steps took less than {:.1f} ms of the {:.0f} ms that there are, but "
-      "some "
-      "up to {:.0f} ms: another program takes the processor now and then; close what else runs, or "
-      "try a smaller --grid",
+      "Each of the smoke's steps has {1:.0f} ms; half took less than {0:.1f} ms, but some up to "
+      "{2:.0f} ms: another program takes the processor now and then. Close what else runs, or try "
+      "a smaller --grid.",
       1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
 }
 
@@ -93,7 +94,7 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
   }
   if (!in_time) {
     out.sentences.push_back(
-        fmt::format("The rates were not held: {}; {}.", rates, reason(s, settings)));
+        fmt::format("The rates were not held: {}. {}", rates, reason(s, settings)));
   }
   if (samples_held(s)) return;
   const double silent = s.seconds * share(s.device.missed_blocks, s.device.blocks);

@@ -1,6 +1,6 @@
 /// Says in the picture what pressure is on the skin that somebody points at.
 
-import { cellWords, say } from "../panels/hover";
+import { cellWords, placeWords, say } from "../panels/hover";
 import { onPoint, type Place } from "../pointing";
 import type { View } from "../scene/view";
 
@@ -23,7 +23,6 @@ export class Pointer {
       if (this.at.tapped) this.at = null;
       return say([], 0, 0);
     }
-    const [x, y, z] = hit.point.toArray().map((v) => (1000 * v).toFixed(0));
-    say([...cellWords(hit.patch, hit.cell), `x ${x}, y ${y} mm, ${z} mm over the array`], this.at.x, this.at.y);
+    say([...cellWords(hit.patch, hit.cell), placeWords(...hit.point.toArray())], this.at.x, this.at.y);
   }
 }

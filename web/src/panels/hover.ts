@@ -1,7 +1,7 @@
 /// A note beside the pointer: what is there.
 
 import { find } from "../dom";
-import { short } from "../text";
+import { millimetres, short } from "../text";
 import type { Patch } from "../wire";
 import { pressures } from "./plane_layout";
 
@@ -28,4 +28,9 @@ export function cellWords(patch: Patch, cell: number): string[] {
     `target ${short(target)} Pa`, `reconstruction ${short(rendered)} Pa`,
     `difference ${difference < 0 ? "−" : "+"}${short(Math.abs(difference))} Pa`,
   ];
+}
+
+/// Returns a place over the array [m] in words.
+export function placeWords(x: number, y: number, z: number): string {
+  return `x ${millimetres(x)}, y ${millimetres(y)} mm, ${millimetres(z)} mm over the array`;
 }

@@ -53,6 +53,13 @@ export function under(placed: Placed[], px: number, py: number): Under | null {
   return null;
 }
 
+/// The skin at a place of a plane, in D [m].
+export function overArray({ patch, cell, x, y }: Under): [number, number, number] {
+  const height = patch.height[cell]! * patch.heightScale;
+  const row = (i: number) => patch.pose[4 * i]! * x + patch.pose[4 * i + 1]! * y + patch.pose[4 * i + 2]! * height + patch.pose[4 * i + 3]!;
+  return [row(0), row(1), row(2)];
+}
+
 /// Target and reconstruction at a cell [Pa].
 export function pressures(patch: Patch, cell: number): { target: number; rendered: number } {
   const unit = patch.scale / 65535;

@@ -7,9 +7,9 @@ import { find, make, setText } from "../dom";
 import { onPoint } from "../pointing";
 import { short } from "../text";
 import type { Frame, Patch, Path } from "../wire";
-import { cellWords, say } from "./hover";
+import { cellWords, placeWords, say } from "./hover";
 import { paintBar } from "./legend";
-import { layOut, under, type Placed } from "./plane_layout";
+import { layOut, overArray, under, type Placed } from "./plane_layout";
 import { PressureScale } from "./scale";
 
 type Kind = "target" | "rendered" | "difference";
@@ -117,9 +117,7 @@ export class Planes {
     const placed = layOut(this.frame.field, canvas.width, canvas.height);
     const there = under(placed, (pointer.x - box.left) * scale, (pointer.y - box.top) * scale);
     if (there === null) return say([], 0, 0);
-    const mm = (metres: number) => (1000 * metres).toFixed(0);
-    const place = `x ${mm(there.x)}, y ${mm(there.y)} mm in the plane`;
-    say([...cellWords(there.patch, there.cell), place], pointer.x, pointer.y);
+    say([...cellWords(there.patch, there.cell), placeWords(...overArray(there))], pointer.x, pointer.y);
   }
 
   /// The cells of a patch into this.image, the row of the largest y first.

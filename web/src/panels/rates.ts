@@ -80,8 +80,8 @@ export class RateWatch {
       const sum = parts.reduce((all, [, ms]) => all + ms, 0), room = 1000 / hz;
       if (sum < 0.85 * room) continue;
       const [slowest, ms] = parts.reduce((a, b) => (b[1] > a[1] ? b : a));
-      return `${what} takes ${fixed(sum, 0)} of the ${fixed(room, 0)} ms that it has, ` +
-        `${kNames[slowest]} ${fixed(ms, 0)} ms of them`;
+      const takes = sum > room ? `${fixed(sum, 0)} ms but has only ${fixed(room, 0)} ms` : `${fixed(sum, 0)} of its ${fixed(room, 0)} ms`;
+      return `${what} takes ${takes}; ${kNames[slowest]} alone takes ${fixed(ms, 0)} ms`;
     }
     const sum = step.reduce((all, [, ms]) => all + ms, 0);
     const others = drawing ? "this page's picture and other work have" : "other work has";

@@ -102,6 +102,38 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
     expect(await faint(page)).toEqual([]);
     await page.close();
   });
+  it("can be read while it is muted, and in its help", async () => {
+    const page = await open(1024, theme);
+    await page.locator("#mute").click();
+    await until(page, () => document.getElementById("output-word")!.textContent === "Muted", 0, "muted");
+    expect(await faint(page)).toEqual([]);
+    await page.locator("#mute").click();
+    await page.keyboard.press("?");
+    await until(page, () => document.querySelector("dialog[open]") !== null, 0, "help");
+    expect(await faint(page)).toEqual([]);
+    expect(await clipped(page)).toEqual([]);
+    await page.close();
+  });
+  it.each(kWidths)("has room for all that is said in place of the picture, %i pixels wide", async (width) => {
+    const page = await open(width, theme, "&large=1");
+    const cut = await page.evaluate(() => {
+      document.getElementById("no-picture-why")!.textContent = "The picture in three dimensions is off: drawing it here would slow the run down. The planes show the fields.";
+      document.getElementById("no-hand-advice")!.textContent = "No tracker yet: nothing answers at leap://127.0.0.1:6437; start the service of the Leap Motion controller, or Ultraleap's bridge.";
+      const signs = [...document.querySelectorAll<HTMLElement>("#signs .sign")];
+      for (const sign of signs) sign.hidden = false;
+      const room = document.getElementById("picture")!.getBoundingClientRect(), above = document.getElementById("views")!.getBoundingClientRect();
+      return signs.map((sign) => sign.getBoundingClientRect()).filter((box) => box.bottom > room.bottom || box.top < above.bottom).length;
+    });
+    expect(cut).toBe(0);
+    await page.close();
+  });
+  it("leaves room for the planes where there is no picture above them", async () => {
+    const page = await open(1024, theme);
+    await until(page, () => document.getElementById("picture")!.dataset.drawn === "false", 0, "no picture");
+    const plane = (await page.locator('canvas[data-kind="target"]').boundingBox())!;
+    expect(plane.y + plane.height).toBeLessThanOrEqual(768);
+    await page.close();
+  });
 });
 
 describe("large type", () => {

@@ -71,7 +71,7 @@ describe("a page with a hand", () => {
     const box = (await page.locator('canvas[data-kind="rendered"]').boundingBox())!;
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await says("hover", "Pa");
-    expect(await text("hover")).toMatch(/^target \d+(\.\d+)? Pa\nreconstruction \d+(\.\d+)? Pa\ndifference [−+]\d+(\.\d+)? Pa\nx −?-?\d+, y -?\d+ mm in the plane$/);
+    expect(await text("hover")).toMatch(/^target \d+(\.\d+)? Pa\nreconstruction \d+(\.\d+)? Pa\ndifference [−+]\d+(\.\d+)? Pa\nx −?\d+, y −?\d+ mm, [12]\d\d mm over the array$/);
     // from below, the palm is in the middle
     await page.locator('[data-view="below"]').click();
     await page.waitForTimeout(1500);
@@ -83,7 +83,7 @@ describe("a page with a hand", () => {
       }
       return "";
     };
-    await expect.poll(seen).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx -?\d+, y -?\d+ mm, 1\d\d mm over the array$/);
+    await expect.poll(seen).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx −?\d+, y −?\d+ mm, 1\d\d mm over the array$/);
     await page.mouse.move(view.x + 5, view.y + view.height / 2);
     await expect.poll(() => page.locator("#hover").isHidden()).toBe(true);
     await page.locator('[data-view="home"]').click();
@@ -190,7 +190,7 @@ describe("a page that is touched", () => {
   it("says what pressure is where the hand is tapped, until the next touch", async () => {
     await expect.poll(tapped, { timeout: 20_000 }).not.toBeNull();
     await touched.waitForTimeout(1000);
-    expect(await note().textContent()).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx -?\d+, y -?\d+ mm, 1\d\d mm over the array$/);
+    expect(await note().textContent()).toMatch(/^target .* Pa\nreconstruction .* Pa\ndifference .* Pa\nx −?\d+, y −?\d+ mm, 1\d\d mm over the array$/);
     await touched.locator("#about").tap();
     expect(await note().isHidden()).toBe(true);
   });
@@ -203,7 +203,7 @@ describe("a page that is touched", () => {
   });
   it("says what is under a tap on a plane and on a strip", async () => {
     await touched.locator('canvas[data-kind="target"]').tap();
-    await expect.poll(() => note().textContent()).toMatch(/^target .* mm in the plane$/s);
+    await expect.poll(() => note().textContent()).toMatch(/^target .* mm over the array$/s);
     expect(await note().isVisible()).toBe(true);
     await touched.locator('[data-strip="quality"] .u-over').tap();
     expect(await note().isHidden()).toBe(true);

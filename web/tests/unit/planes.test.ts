@@ -1,6 +1,6 @@
 import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { cellAt, layOut, pressures, under } from "../../src/panels/plane_layout";
+import { cellAt, layOut, overArray, pressures, under } from "../../src/panels/plane_layout";
 import { PressureScale, roundedUp } from "../../src/panels/scale";
 import { pick } from "../../src/scene/pick";
 import { flatPatch, frameWith } from "../support/frames";
@@ -20,6 +20,14 @@ describe("a plane on a canvas", () => {
       });
       expect(under(placed, -1, 10)).toBeNull();
     }
+  });
+  it("knows where the skin is over the array, at its height over the plane", () => {
+    const height = new Int16Array(24).fill(2000); // 20 mm
+    const there = { patch: { ...patch, height }, cell: 9, x: 0.03, y: 0.01 };
+    expect(overArray(there)).toEqual([0.13, -0.19, 0.32].map((v) => expect.closeTo(v)));
+    // a plane that stands upright: its y goes up, and its normal along −y
+    const pose = Float32Array.from([1, 0, 0, 0.1, 0, 0, -1, -0.2, 0, 1, 0, 0.3]);
+    expect(overArray({ ...there, patch: { ...patch, height, pose } })).toEqual([0.13, -0.22, 0.31].map((v) => expect.closeTo(v)));
   });
   it("has nothing where there is no skin", () => {
     expect(cellAt(flatPatch(4, 6, [0, 0, 0], 0), 0.03, 0.01)).toBe(-1);

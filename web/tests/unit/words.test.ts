@@ -60,8 +60,9 @@ describe("rates that are not held", () => {
   const quick = { track_ms: 0.1, hand_ms: 1, world_ms: 7, contact_ms: 2, plan_ms: 3, lift_ms: 0.5 };
   it("are told with the stage that takes too long", () => {
     expect(after(10, { ...quick, world_hz: 43.5, plan_hz: 21.8, world_ms: 21 })).toBe(
-      "Rates not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz, because a step takes 23 of the 20 ms that it has, the smoke 21 ms of them.");
-    expect(after(10, { ...quick, world_hz: 50, plan_hz: 20, plan_ms: 45 })).toContain("a plan takes 46 of the 40 ms that it has, the planner 45 ms of them");
+      "Rates not held: smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz, because a step takes 23 ms but has only 20 ms; the smoke alone takes 21 ms.");
+    expect(after(10, { ...quick, world_hz: 50, plan_hz: 20, plan_ms: 45 })).toContain("a plan takes 46 ms but has only 40 ms; the planner alone takes 45 ms");
+    expect(after(10, { ...quick, world_hz: 40, plan_hz: 20, world_ms: 16.5 })).toContain("a step takes 19 of its 20 ms; the smoke alone takes 17 ms");
     expect(after(10, { ...quick, world_hz: 40, plan_hz: 20 })).toContain("because other work has the processor");
     expect(after(10, { ...quick, world_hz: 40, plan_hz: 20 }, true)).toContain("because this page's picture and other work have");
   });
