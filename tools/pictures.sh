@@ -1,6 +1,7 @@
 #!/bin/bash
 # Draws the pictures of the README and docs with the release build: tools/pictures.sh
 set -euo pipefail
+(($# == 0)) || { sed -n '2s/^# //p' "$0" >&2; exit 2; }
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 prostm=$root/build/release/prostm
 work=$(mktemp -d)
