@@ -26,14 +26,17 @@ TEST(TurnClock, FollowsTurnsThroughLateAnswers) {
       const double turns = std::floor(static_cast<double>(asked) / (20e3 * (1.0 + drift)) + 0.3);
       // the answer is on its way for a while
       const auto seen = asked + static_cast<std::int64_t>(random.uniform(20.0, 300.0));
-      clock.see(begin + microseconds(seen), static_cast<int>(turns) % 2);
+      clock.see(begin + microseconds(asked - 20), begin + microseconds(seen),
+                static_cast<int>(turns) % 2);
       if (turns < 50) continue;
       ASSERT_EQ(clock.turns(), static_cast<std::int64_t>(turns));
       const double turned = (turns - 0.3) * 20e3 * (1.0 + drift);
-      const double told =
-          std::chrono::duration<double, std::micro>(clock.last_turn() - begin).count();
-      ASSERT_GT(told, turned - 25.0);
-      ASSERT_LT(told, turned + 500.0);
+      const auto since = [&](TurnClock::Time time) {
+        return std::chrono::duration<double, std::micro>(time - begin).count();
+      };
+      ASSERT_LE(since(clock.earliest()), turned + 1.0);
+      ASSERT_GE(since(clock.latest()), turned - 1.0);
+      ASSERT_LT(since(clock.latest()) - since(clock.earliest()), 600.0);
     }
   }
 }
@@ -42,11 +45,12 @@ TEST(TurnClock, CountsTurnsThatNoAnswerToldOf) {
   TurnClock clock;
   const TurnClock::Time begin{};
   clock.start(begin, 0, kPeriod);
-  clock.see(begin + milliseconds(7), 1);
-  clock.see(begin + milliseconds(70), 0);  // after those at 27 and 47 ms, that at 67 ms
+  clock.see(begin + milliseconds(7), begin + milliseconds(7), 1);
+  clock.see(begin + milliseconds(70), begin + milliseconds(70),
+            0);  // after those at 27 and 47 ms, that at 67 ms
   EXPECT_EQ(clock.turns(), 4);
   EXPECT_EQ(clock.playing(), 0);
-  clock.see(begin + milliseconds(71), -1);
+  clock.see(begin + milliseconds(71), begin + milliseconds(71), -1);
   EXPECT_EQ(clock.turns(), 4);
 }
 

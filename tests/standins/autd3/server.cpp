@@ -141,16 +141,14 @@ void Server::disconnect() {
 void Server::read_client() {
   if (client_ < 0 || leaves_) return;
   std::array<char, 65'536> buffer;
+  bool left = false;
   for (;;) {
     const ssize_t got = ::recv(client_, buffer.data(), buffer.size(), 0);
     if (got > 0) {
       in_.append(buffer.data(), static_cast<std::size_t>(got));
       continue;
     }
-    if (got == 0 || (errno != EAGAIN && errno != EINTR)) {
-      if (!in_.empty() && out_.empty()) problem("the client left in the middle of a message");
-      return disconnect();
-    }
+    left = got == 0 || (errno != EAGAIN && errno != EINTR);
     break;
   }
   while (client_ >= 0 && !leaves_ && !in_.empty()) {
@@ -158,6 +156,9 @@ void Server::read_client() {
     if (used == 0) break;
     in_.erase(0, used);
   }
+  if (!left || client_ < 0) return;
+  if (!in_.empty() && !leaves_) problem("the client left in the middle of a message");
+  disconnect();
 }
 
 /// Answers the first message. @return its size; 0 if more of it must come first.

@@ -75,7 +75,7 @@ SoundingTime Output::times_of(Clock::time_point now, Clock::time_point next,
   time.next = std::max(0.0, Seconds(next - now).count());
   time.end = std::min(Seconds(end - now).count() - margin, longest());
   // what has begun to fall when this arrives falls silent, and rises again
-  time.sounds = now + to_duration(session_.slow_frame()) < heard_until_;
+  time.sounds = now >= heard_from_ && now + to_duration(session_.slow_frame()) < heard_until_;
   return time;
 }
 
@@ -85,12 +85,23 @@ bool Output::sound_is_in_time(Clock::time_point next, Clock::time_point end) con
 }
 
 bool Output::sound(Clock::time_point next, Clock::time_point end) {
-  const Clock::time_point now = Clock::now();
-  const SoundingTime time = times_of(now, next, end);
-  if (time.end <= time.next + 2.0 * kRamp) return true;
-  if (!send_modulation(time)) return false;
-  heard_until_ = now + to_duration(time.end - kRamp);
-  return true;
+  constexpr int kTrials = 3;
+  const Clock::duration margin = to_duration(early(session_.slow_frame()));
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Clock::time_point now = Clock::now();
+    const SoundingTime time = times_of(now, next, end);
+    if (time.end <= time.next + 2.0 * kRamp) {
+      if (trial == 0) return true;
+      break;
+    }
+    if (!send_modulation(time)) return false;
+    if (!time.sounds) heard_from_ = now + to_duration(time.next);
+    heard_until_ = now + to_duration(time.end - kRamp);
+    if (Clock::now() <= now + margin) return true;
+  }
+  // it may be heard for too long: at once silent
+  heard_until_ = {};
+  return send_modulation({});
 }
 
 bool Output::mute() {

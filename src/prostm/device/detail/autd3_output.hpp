@@ -36,7 +36,8 @@ class Output {
   template <class Prepare>
   bool write(int segment, Transition transition, int samples, Prepare&& prepare);
   /// Lets output be heard from `next` until `end`; returns before that. It begins with a ramp where
-  /// it is not heard yet. If it is too late for that, silence goes on.
+  /// it is not heard yet. If it is too late for that, silence goes on. A modulation begins when it
+  /// arrives: if that is not known well enough, it is told again, so nothing is heard after `end`.
   bool sound(Clock::time_point next, Clock::time_point end);
   /// Whether there is time left for that.
   bool sound_is_in_time(Clock::time_point next, Clock::time_point end) const;
@@ -61,7 +62,7 @@ class Output {
   int modulation_divider_ = kMostModulation;
   int modulation_ = 0;  // segment
   std::vector<std::vector<SlotWord>> words_;
-  Clock::time_point heard_until_{};
+  Clock::time_point heard_from_{}, heard_until_{};
 };
 
 template <class Prepare>

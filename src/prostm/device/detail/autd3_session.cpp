@@ -215,11 +215,12 @@ bool Session::exchange_for_all() noexcept {
 }
 
 bool Session::poll() noexcept {
+  const Clock::time_point asked = Clock::now();
   out_.assign(1, static_cast<std::uint8_t>(Request::Read));
   if (!ask(Request::Read, "a question for the units' state", kPatience)) return false;
   for (std::size_t u = 0; u < answers_.size(); ++u)
     answers_[u] = {in_[1 + kAnswerBytes * u], in_[2 + kAnswerBytes * u]};
-  if (turns_ != nullptr) turns_->see(Clock::now(), playing_segment());
+  if (turns_ != nullptr) turns_->see(asked, Clock::now(), playing_segment());
   return true;
 }
 

@@ -13,7 +13,8 @@ using Clock = Session::Clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr double kBeforeTurn = 0.3e-3;  // from when on the units are asked whether it came [s]
-constexpr double kLongestWait = 4.0;    // for a turn, in blocks
+constexpr double kLongestWait = 0.5;    // for a turn [s], in which the units are
+constexpr int kMostPolls = 40;          // asked so often at least
 
 Clock::duration to_duration(double seconds) {
   return std::chrono::round<Clock::duration>(Seconds(seconds));
@@ -55,7 +56,9 @@ bool Stream::play_block(const std::stop_token& stop) {
   if (!wait_for_turn(stop)) return false;
   if (stop.stop_requested()) return true;
   const std::int64_t turn = turns_.turns();
-  const Clock::time_point next = turns_.next_turn(), end = next + to_duration(budget_.block_time);
+  // not before the block begins, and not after it may end
+  const Clock::time_point next = turns_.next_latest(), due = turns_.next_earliest(),
+                          end = due + to_duration(budget_.block_time);
   {
     const std::lock_guard lock(mutex_);
     anchor_block_ = block_;
@@ -64,7 +67,7 @@ bool Stream::play_block(const std::stop_token& stop) {
   written_ = 1 - turns_.playing();
   if (!write_block(written_)) return false;
   ++block_;
-  const bool late = turns_.turns() != turn;
+  const bool late = turns_.turns() != turn || Clock::now() > due;
   const bool quiet = late || !output_.sound_is_in_time(next, end);
   {
     const std::lock_guard lock(mutex_);
@@ -77,13 +80,15 @@ bool Stream::play_block(const std::stop_token& stop) {
 
 /// Waits until the segment that was written last plays.
 bool Stream::wait_for_turn(const std::stop_token& stop) {
-  const Clock::time_point end = Clock::now() + to_duration(kLongestWait * budget_.block_time);
+  const Clock::time_point end = Clock::now() + to_duration(kLongestWait);
+  int polls = 0;
   while (turns_.playing() != written_ && !stop.stop_requested()) {
     if (turns_.turns() > 0)
-      std::this_thread::sleep_until(turns_.next_turn() - to_duration(kBeforeTurn));
+      std::this_thread::sleep_until(turns_.next_earliest() - to_duration(kBeforeTurn));
     if (!session_.poll()) return false;
     if (turns_.playing() == written_) break;
-    if (Clock::now() > end) return session_.give_up("does not change over from block to block");
+    if (++polls > kMostPolls && Clock::now() > end)
+      return session_.give_up("does not change over from block to block");
     std::this_thread::sleep_for(Session::kPolls);
   }
   return true;

@@ -7,25 +7,39 @@ namespace prostm {
 void TurnClock::start(Time now, int segment, Duration period) {
   *this = {};
   period_ = period;
-  last_ = now;
+  earliest_ = latest_ = asked_ = now;
   playing_ = segment;
 }
 
-void TurnClock::see(Time now, int segment) {
+/// Two turns that no answer told of lead back to the same segment.
+void TurnClock::skip_two() {
+  earliest_ += 2 * (period_ - drift());
+  latest_ += 2 * (period_ + drift());
+  turns_ += 2;
+}
+
+void TurnClock::see(Time asked, Time now, int segment) {
   if (segment < 0) return;
-  // two turns that no answer told of lead back to the same segment
-  const Duration unseen = 2 * period_ + period_ / 4;
-  if (turns_ > 0) {
-    while (now - last_ > unseen) {
-      last_ += 2 * period_;
-      turns_ += 2;
-    }
+  if (segment == playing_) {
+    while (turns_ > 0 && asked > latest_ + 2 * (period_ + drift())) skip_two();
+    asked_ = asked;
+    return;
   }
-  if (segment == playing_) return;
-  const Time expected = next_turn() + period_ / kDrift;
-  // the first turn, or one that does not fit, tells the time by itself
-  const bool fits = turns_ > 0 && now > expected - period_ / 4 && now < expected + period_;
-  last_ = fits ? std::min(now, expected) : now;
+  while (turns_ > 0 && asked > latest_ + 3 * (period_ + drift())) skip_two();
+  const Time after = asked_, before = now;
+  Time earliest = after, latest = before;
+  if (turns_ > 0) {
+    earliest = std::max(after, next_earliest());
+    latest = std::min(before, next_latest());
+  }
+  // what was expected does not fit: this turn tells the time by itself
+  if (earliest > latest) {
+    earliest = after;
+    latest = before;
+  }
+  earliest_ = earliest;
+  latest_ = latest;
+  asked_ = asked;
   playing_ = segment;
   ++turns_;
 }
