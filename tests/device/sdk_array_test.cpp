@@ -127,17 +127,25 @@ TEST(Autd3SdkArray, StreamsEverySampleOnceAndInOrder) {
   }
 }
 
-TEST(Autd3SdkArray, PlaysEightFocalPointsThatShareAnIntensity) {
-  test::SdkUnits chain({"--record"});
-  Moving source(8);
-  const auto array = opened(
-      {.address = chain.address(), .units = {autd3_middle()}, .foci = 8, .own_intensities = false});
+TEST(Autd3SdkArray, TellsEachUnitItsOwnPlaces) {
+  test::SdkUnits chain({"--units", "2", "--record"});
+  const Pose turned =
+      Pose(Eigen::Translation3d(0.25, 0.1, 0.05) * Eigen::AngleAxisd(-0.6, Vec3::UnitY()));
+  Moving source(8);  // which share an intensity
+  const auto array = opened({.address = chain.address(),
+                             .units = {autd3_middle(), turned},
+                             .foci = 8,
+                             .own_intensities = false});
   EXPECT_EQ(array->info().max_foci, 8);
   source.set_rate(array->info().sample_rate);
   ASSERT_EQ(started(*array, source), DeviceStatus::Running) << array->problem();
-  sleep(500);
+  ASSERT_TRUE(test::eventually([&] { return source.filled() > 3'000; })) << array->problem();
   array->stop();
-  EXPECT_EQ(chain.report()["protocol_errors"], 0);
+  const auto report = chain.report();
+  EXPECT_EQ(report["protocol_errors"], 0) << report;
+  if (was_lost(report, 2)) return;
+  expect_stream(played_by(chain, 0), source, autd3_middle(), 2'000);
+  expect_stream(played_by(chain, 1), source, turned, 2'000);
 }
 
 TEST(Autd3SdkArray, SpeaksToFirmwareThatWantsAMargin) {

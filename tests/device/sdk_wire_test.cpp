@@ -59,16 +59,12 @@ TEST(SdkWire, FillsADatagramWithFoci) {
 
 TEST(SdkWire, ConfiguresPatterns) {
   Datagram d;
-  config_pattern(d, {.bank = 1,
-                     .divider = 4,
-                     .samples = 0x10203,
-                     .slots = 8,
-                     .sound_speed = 346.0,
-                     .repeats = true});
+  config_pattern(d,
+                 {.bank = 1, .divider = 4, .samples = 0x10203, .slots = 8, .sound_speed = 346.0});
   d.renumber(2, 3);
   // 346 m/s are 22144 = 0x5680 in units of 1/64 m/s
   EXPECT_THAT(bytes_of(d), ElementsAre(2, 0, 2, 0, 3, 0x11, 1, 0, 4, 0, 0x03, 0x02, 0x01, 0, 8, 0,
-                                       0x80, 0x56, 0xFF, 0xFF));
+                                       0x80, 0x56, 0, 0));
   config_pattern(d, {.bank = 0, .divider = 300, .samples = 2, .slots = 1, .sound_speed = 340.0});
   EXPECT_THAT(bytes_of(d), ElementsAre(2, 0, 0, 0, 0, 0x11, 0, 0, 0x2C, 0x01, 2, 0, 0, 0, 1, 0,
                                        0x00, 0x55, 0, 0));
@@ -76,11 +72,11 @@ TEST(SdkWire, ConfiguresPatterns) {
 
 TEST(SdkWire, ActivatesBanksInBothForms) {
   Datagram d;
-  activate(d, 1, Transition::SyncIdx, false);
+  activate(d, 1, false);
   EXPECT_THAT(bytes_of(d), ElementsAre(2, 0, 0, 0, 0, 0x12, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0));
-  activate(d, 0, Transition::Immediate, true);
+  activate(d, 0, true);
   EXPECT_THAT(bytes_of(d),
-              ElementsAre(2, 0, 0, 0, 0, 0x12, 0, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
+              ElementsAre(2, 0, 0, 0, 0, 0x12, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
 }
 
 TEST(SdkWire, SetsAStrictSilencer) {

@@ -240,7 +240,7 @@ bool Autd3SdkArray::Impl::write_block(int bank) {
       session.post(u);
     }
   }
-  return session.activate(bank, sdk::Transition::SyncIdx);
+  return session.activate(bank);
 }
 
 bool Autd3SdkArray::Impl::all_play(int bank) {

@@ -271,7 +271,9 @@ bool Chain::set(const std::string& word, std::istringstream& in) {
   } else if (word == "latch") {
     for (auto& unit : units_) unit->trip();
   } else if (word == "power-cycle") {
-    for (auto& unit : units_) unit->power_cycle();
+    const bool alone = static_cast<bool>(in >> a);
+    for (std::size_t u = 0; u < units_.size(); ++u)
+      if (!alone || static_cast<int>(u) == a) units_[u]->power_cycle();
   } else {
     return false;
   }

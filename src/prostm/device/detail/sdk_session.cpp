@@ -155,13 +155,13 @@ bool Session::read_state() noexcept {
   return post_all([](Datagram& d) { frame(d, Command::ReadFpgaState); }) && finish();
 }
 
-bool Session::activate(int bank, Transition transition) noexcept {
+bool Session::activate(int bank) noexcept {
   // a unit executes frames in sequence, so the bank is whole by then; but two forms to choose from
   // must not be confused with what came before
   if (!margin_known_ && !finish()) return false;
   for (int form = 0; form < 2; ++form) {
     refusal_ = kNoError;
-    const auto write = [&](Datagram& d) { sdk::activate(d, bank, transition, margin_field_); };
+    const auto write = [&](Datagram& d) { sdk::activate(d, bank, margin_field_); };
     if (!post_all(write) || !finish()) return false;
     if (refusal_ == kNoError) {
       margin_known_ = true;

@@ -70,7 +70,7 @@ class Session {
   std::uint8_t state(std::size_t unit) const { return peers_[unit].state; }
   /// Makes all units change over to a bank, once they have executed what was posted before, and
   /// waits for that. Finds out which form of the command the firmware takes. Likewise.
-  bool activate(int bank, Transition transition) noexcept;
+  bool activate(int bank) noexcept;
   /// Returns the frames that a unit takes in 1 ms while all are written to, in the best of a few
   /// rounds, since other work may disturb some; 0 if the session failed. @pre bank 1 is silent and
   /// does not play.

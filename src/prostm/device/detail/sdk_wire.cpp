@@ -6,7 +6,8 @@ namespace prostm::sdk {
 namespace {
 
 constexpr int kWordsPerFocus = 4, kBytesPerFocus = 8;  // words of 16 bit
-constexpr unsigned kOnce = 0, kEndless = 0xFFFF;       // repetitions of a pattern
+constexpr unsigned kOnce = 0;                          // repetitions of a pattern
+constexpr unsigned kSyncIdx = 0;                       // transition
 constexpr unsigned kStrict = 2;
 constexpr unsigned kRate = 256;  // of the silencer's other mode, its default
 
@@ -60,13 +61,13 @@ void config_pattern(Datagram& d, const Pattern& pattern) {
   d.u8(static_cast<unsigned>(pattern.slots));
   d.u8(0);
   d.u16(static_cast<unsigned>(std::lround(pattern.sound_speed * 64.0)));
-  d.u16(pattern.repeats ? kEndless : kOnce);
+  d.u16(kOnce);
 }
 
-void activate(Datagram& d, int bank, Transition transition, bool margin_field) {
+void activate(Datagram& d, int bank, bool margin_field) {
   frame(d, Command::ActivatePatternBank);
   d.u8(static_cast<unsigned>(bank));
-  d.u8(static_cast<unsigned>(transition));
+  d.u8(kSyncIdx);
   d.u64(0);
   if (margin_field) d.u32(0);
 }

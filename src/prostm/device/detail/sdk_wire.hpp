@@ -13,7 +13,6 @@ namespace prostm::sdk {
 inline constexpr std::uint16_t kPort = 44336;
 inline constexpr std::size_t kMostDatagram = 1452;  ///< [byte], header, sequence and command too
 inline constexpr int kFociPerFrame = 179;
-inline constexpr int kMostFoci = 65536;  ///< of a bank
 
 enum class Command : std::uint8_t {
   Reset = 0x00,
@@ -29,8 +28,6 @@ enum class Command : std::uint8_t {
   ReadFpgaState = 0xE7,
   ReadFirmwareInfo = 0xEB
 };
-
-enum class Transition : std::uint8_t { SyncIdx = 0, Immediate = 0xFF };
 
 /// A datagram under construction. What does not fit is left out.
 class Datagram {
@@ -70,11 +67,12 @@ struct Pattern {
   int samples = 100;
   int slots = 8;               ///< foci of a sample
   double sound_speed = 346.0;  ///< [m/s]
-  bool repeats = false;        ///< without end; false: plays once and holds its last sample
 };
+/// A pattern that plays once and holds its last sample.
 void config_pattern(Datagram& d, const Pattern& pattern);
+/// Lets a bank take over when the common clock makes its index 0.
 /// @param margin_field whether the payload ends with a margin, as older firmware wants it
-void activate(Datagram& d, int bank, Transition transition, bool margin_field);
+void activate(Datagram& d, int bank, bool margin_field);
 /// Completes changes of intensity and phase within `steps` periods of 40 kHz, strictly.
 void silencer(Datagram& d, int steps);
 /// All settings of a unit's processor, at their defaults but for the failsafe.
