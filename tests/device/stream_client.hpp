@@ -64,6 +64,7 @@ class StreamClient {
 
   bool connected = false;
   bool ended = false;  ///< the server has closed the connection
+  bool renews = true;  ///< next() keeps the subscription
   std::uint32_t token = 0;
 
   static std::vector<std::uint8_t> message(int kind, const std::vector<std::uint8_t>& body) {
@@ -101,6 +102,8 @@ class StreamClient {
 
   /// Subscribes; returns HELLO, or what came in its place.
   std::optional<StreamMessage> subscribe(const StreamWish& wish = {}) {
+    wish_ = wish;
+    renewed_ = std::chrono::steady_clock::now();
     send(subscribe_message(wish));
     auto hello = next();
     if (over_ == Over::Tcp || !hello || hello->kind != 16) return hello;
@@ -115,6 +118,7 @@ class StreamClient {
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(wait_ms);
     for (;;) {
       if (auto message = take()) return message;
+      renew();
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
           end - std::chrono::steady_clock::now());
       pollfd polled{fd_, POLLIN, 0};
@@ -139,6 +143,16 @@ class StreamClient {
   }
 
  private:
+  void renew() {
+    const auto now = std::chrono::steady_clock::now();
+    if (!wish_ || !renews || now - renewed_ < std::chrono::milliseconds(200)) return;
+    renewed_ = now;
+    if (over_ == Over::Tcp) {
+      ask_time(0);
+    } else {
+      send(subscribe_message(*wish_));
+    }
+  }
   std::optional<StreamMessage> take() {
     if (in_.size() < 16) return {};
     const std::size_t size = 16U + number_at<std::uint16_t>(in_, 6);
@@ -152,6 +166,8 @@ class StreamClient {
   }
 
   const Over over_;
+  std::optional<StreamWish> wish_;  // once it has subscribed
+  std::chrono::steady_clock::time_point renewed_{};
   int fd_;
   std::vector<std::uint8_t> in_;
 };

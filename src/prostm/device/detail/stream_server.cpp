@@ -157,8 +157,7 @@ void StreamServer::take_datagram(std::span<const std::uint8_t> bytes, const Addr
   if (request.kind == Kind::Subscribe && request.wishes.loops)
     return refuse_datagram(from, Reason::LoopOverUdp, now);
   if (request.kind == Kind::Subscribe && request.token != token) {
-    const std::size_t n =
-        put_hello(scratch_, {session_, 0}, hello(false, token, request.wishes, now));
+    const std::size_t n = put_hello(scratch_, {session_, 0}, hello(false, token, request.wishes));
     send_to(sockets_.udp, std::span(scratch_).first(n), from);
     return;
   }
@@ -223,7 +222,7 @@ bool StreamServer::take_request(Peer& peer, const Request& request, Clock::time_
     return false;
   }
   if (peer.is_tcp()) peer.hear(now);  // UDP is renewed by SUBSCRIBE, which has the token
-  const std::int64_t received = to_ns(now);
+  const std::int64_t received = to_ns(Clock::now());  // `now` is of the whole round
   peer.send(session_, now, [&](auto out, const Envelope& e) {
     return put_time(out, e, request.time_ns, received, to_ns(Clock::now()));
   });
@@ -235,13 +234,12 @@ void StreamServer::subscribe(Peer& peer, const Request& request, Clock::time_poi
   peer.subscribe(request.wishes, now);
   const std::uint32_t token = peer.is_tcp() ? 0 : request.token;
   peer.send(session_, now, [&](auto out, const Envelope& e) {
-    return put_hello(out, e, hello(true, token, request.wishes, now));
+    return put_hello(out, e, hello(true, token, request.wishes));
   });
   if (is_new) tell_state(peer, now);
 }
 
-Hello StreamServer::hello(bool subscribed, std::uint32_t token, const Wishes& wishes,
-                          Clock::time_point now) const {
+Hello StreamServer::hello(bool subscribed, std::uint32_t token, const Wishes& wishes) const {
   Hello hello;
   hello.subscribed = subscribed;
   hello.token = token;
@@ -249,7 +247,7 @@ Hello StreamServer::hello(bool subscribed, std::uint32_t token, const Wishes& wi
   hello.sample_rate = StreamSettings::kSampleRate;
   hello.block_samples = settings_.block_samples;
   hello.max_foci = settings_.max_foci;
-  hello.now_ns = to_ns(now);
+  hello.now_ns = to_ns(Clock::now());
   hello.next_sample = next_sample_;
   hello.next_play_ns = next_play_ns_;
   const double lead =

@@ -77,8 +77,7 @@ class StreamServer {
   void care(Clock::time_point now);
   void finish();
 
-  Hello hello(bool subscribed, std::uint32_t token, const Wishes& wishes,
-              Clock::time_point now) const;
+  Hello hello(bool subscribed, std::uint32_t token, const Wishes& wishes) const;
   Peer* free_peer();
   Peer* peer_of(const Address& address);
   int subscribers() const;
