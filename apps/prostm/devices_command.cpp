@@ -56,9 +56,10 @@ DeviceSetup setup_of(const DeviceKind& kind, const std::string& address) {
 
 /// A kind of device, without a look.
 Row row_of(const DeviceKind& kind, const DeviceSetup& setup) {
-  if (!kind.is_built())
-    return {"array", kind.name, false,
-            fmt::format("not built yet in this version; {}", kind.tried)};
+  if (!kind.is_built()) {
+    const char* missing = kind.look == nullptr ? "not built yet in this version; " : "";
+    return {"array", kind.name, false, std::string(missing) + kind.tried};
+  }
   const DeviceInfo info = kind.info(setup);
   return {"array", kind.name, true,
           fmt::format("--device {}: {}, {:.0f} Hz, blocks of {} samples, {} focal points, {}; {}",
