@@ -35,6 +35,8 @@ class Numbered final : public SampleSource {
     next_ = first + static_cast<std::int64_t>(out.size() / width);
   }
   bool in_order() const { return in_order_; }
+  /// Samples that were taken.
+  std::int64_t taken() const { return next_; }
 
  private:
   const int foci_;

@@ -93,6 +93,8 @@ TEST_F(UltraleapArray, SetsEverySampleOnceAndInOrder) {
     const auto heard = listener.heard();
     ASSERT_NEAR(static_cast<double>(heard.size()), rate, 1.0) << "a second";
     const auto fade = static_cast<std::size_t>(std::ceil(1e-3 * rate));
+    EXPECT_LE(source.taken(), static_cast<std::int64_t>(heard.size() + fade) + 1)
+        << "no more than are needed";
     for (std::size_t i = 0; i < heard.size(); ++i) {
       for (int f = 0; f < foci; ++f) {
         const FocusSample given = Numbered::sample(static_cast<std::int64_t>(i), f);
@@ -237,6 +239,19 @@ TEST_F(UltraleapArray, StopsSafelyWhileCallbacksGoOn) {
   source.reset();
   device.reset();  // calls back once more
   EXPECT_EQ(stand_in::callbacks(), 21);
+
+  // likewise with a source that would tell, and that is loud
+  Listener listener(4'000);
+  device = make_ultraleap(setup_of(2));
+  Numbered alive(2);
+  ASSERT_EQ(device->start(alive), DeviceStatus::Running);
+  stand_in::step(20);
+  device->stop();
+  const std::int64_t taken = alive.taken();
+  device.reset();
+  EXPECT_EQ(alive.taken(), taken);
+  EXPECT_EQ(listener.heard().size(), 21U * 20U);
+  EXPECT_EQ(listener.heard().back().point[0].intensity, 0.0F);
 }
 
 TEST_F(UltraleapArray, FallsSilentIfTheRateChangesWhileItPlays) {
