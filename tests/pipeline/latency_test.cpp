@@ -63,7 +63,7 @@ TEST(LatencyLog, PartsOfAClockedPlanAddUp) {
   PipelineSettings settings;
   settings.simulated_array.queue_blocks = 3;
   SimulatedArray device(settings.simulated_array, usx_array(), Medium{});
-  PlanStage plans(settings, 1, 1.0, device.info());  // a silent source for the device
+  PlanStage plans(settings, 1, 1.0, device.info(), nullptr);  // a silent source for the device
   ASSERT_EQ(device.start(plans.emitter()), DeviceStatus::Running);
   device.stop();  // its schedule stays, and stops shifting
   // the run began half a second before the device; its hands were taken 2 ms late, and a frame of

@@ -181,7 +181,7 @@ PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, do
       samples_(make_sample_chain(*emitter_, device,
                                  {.power = emit_settings_.power_limit,
                                   .caps = settings.safety,
-                                  .levels = std::move(levels)})) {}
+                                  .levels = levels ? std::move(levels) : levels_of(settings)})) {}
 
 void PlanStage::obey(const std::shared_ptr<Mute>& mute) {
   emitter_->obey(mute);

@@ -119,7 +119,8 @@ struct PlanFrame {
 class PlanStage {
  public:
   /// @param max_cells of a target raster.  @param full_scale of the scene, where the settings give
-  /// none [Pa].  @param device that plays the emission.  @param levels of its array.
+  /// none [Pa].  @param device that plays the emission.  @param levels of its array; null:
+  /// made from the settings.
   /// @throws std::invalid_argument with a sentence.
   PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale,
             const DeviceInfo& device, std::shared_ptr<const SafetyLevels> levels);
