@@ -136,7 +136,8 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
     [
         (["run", "--scene", "five-plumes"], ["five-plumes", "one-plume", "four-plumes", "still-air"]),
         (["run", "--device", "toaster"], ["toaster"]),
-        (["run", "--device", "autd3"], ["not in this build"]),
+        (["run", "--device", "ultraleap"], ["not in this build"]),
+        (["run", "--device", "autd3://127.0.0.1:1"], ["nothing listens there", "RemoteServer"]),
         (["run", "--method", "fm"], ["fm", "pro-stm", "am"]),
         (["run", "--method", "am", "--preset", "best"], ["--preset", "pro-stm"]),
         (["run", "--method", "am", "--budget-ms", "3"], ["--budget-ms", "pro-stm"]),

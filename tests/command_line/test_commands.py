@@ -266,10 +266,21 @@ def test_capture_then_bench_then_plan_a_frame(prostm, tmp_path):
     assert plan["paths"]
 
 
+def test_devices_says_what_a_link_carries(prostm):
+    rows = json.loads(prostm("devices", "--budget", "--json", "-").stdout)
+    frames = {(row["slots"], row["divider"], round(row["block_ms"])): row["block_frames"] for row in rows}
+    assert [frames[8, 5, ms] for ms in (10, 20, 40)] == [9, 18, 36]
+    assert [frames[8, 6, ms] for ms in (10, 20, 40)] == [8, 15, 30]
+    assert [frames[4, 2, ms] for ms in (10, 20, 40)] == [11, 22, 43]
+    table = prostm("devices", "--budget").stdout
+    assert "slots" in table and len(table.splitlines()) > 90
+
+
 def test_devices_says_what_was_not_tried(prostm):
     done = prostm("devices", "--json", "-")
     kinds = {row["kind"]: row for row in json.loads(done.stdout)}
-    assert kinds["sim"]["available"] and not kinds["autd3"]["available"] and not kinds["ultraleap"]["available"]
+    assert kinds["sim"]["available"] and not kinds["ultraleap"]["available"]
+    assert "never with real units" in kinds["autd3"]["detail"]
     assert "never tried" in kinds["ultraleap"]["detail"]
     assert {"scripted", "recording", "page", "leap", "openxr"} <= set(kinds)
     for kind in ("leap", "openxr"):
