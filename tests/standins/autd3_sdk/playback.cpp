@@ -48,7 +48,7 @@ void Playback::clear() {
   }
   bank_ = 0;
   pending_ = -1;
-  stopped_ = finite_ = alternates_ = false;
+  stopped_ = finite_ = alternates_ = sounds_ = false;
   last_.clear();
 }
 
@@ -73,10 +73,20 @@ void Playback::advance(std::int64_t time) {
   // longer ago than anything lasts
   tick_ = std::max(tick_, last - 400'000);
   while (tick_ < last) {
-    ++tick_;
+    // between the begins of samples nothing changes
+    const std::int64_t next = std::min(last, next_begin());
+    if (sounds_ && !muted && next > tick_ + 1) last_sounding = (next - 1) * kTick;
+    tick_ = next;
     change_over(tick_);
     play(tick_);
   }
+}
+
+/// The next tick at which a sample begins, of a bank that plays or may play.
+std::int64_t Playback::next_begin() const {
+  std::int64_t next = INT64_MAX;
+  for (const Bank& bank : banks) next = std::min(next, (tick_ / bank.divider + 1) * bank.divider);
+  return next;
 }
 
 /// Follows the logic's states: waiting, a finite loop, an infinite one.
@@ -104,7 +114,10 @@ void Playback::change_over(std::int64_t tick) {
 /// Looks at the sample that sounds.
 void Playback::play(std::int64_t tick) {
   const Bank& b = banks[static_cast<std::size_t>(bank_)];
-  if (b.raw) return last_.clear();
+  if (b.raw) {
+    sounds_ = false;
+    return last_.clear();
+  }
   const std::int64_t i = stopped_ ? b.samples - 1 : index(bank_, tick);
   const std::uint64_t* words = b.words.data() + i * b.slots;
   const bool is_new = i != last_index_ || bank_ != last_bank_;
@@ -128,7 +141,8 @@ void Playback::play(std::int64_t tick) {
     }
   }
   const auto sounds = [](const Focus& focus) { return focus.amplitude > kAudible; };
-  if (!muted && std::any_of(last_.begin(), last_.end(), sounds)) last_sounding = tick * kTick;
+  sounds_ = std::any_of(last_.begin(), last_.end(), sounds);
+  if (!muted && sounds_) last_sounding = tick * kTick;
 }
 
 }  // namespace standin

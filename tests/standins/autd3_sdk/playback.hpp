@@ -59,11 +59,13 @@ class Playback {
 
  private:
   std::int64_t index(int bank, std::int64_t tick) const;
+  std::int64_t next_begin() const;
   void change_over(std::int64_t tick);
   void play(std::int64_t tick);
 
   std::int64_t tick_ = 0;
   int bank_ = 0, pending_ = -1;
+  bool sounds_ = false;  // the sample that plays, were it not muted
   bool stopped_ = false, finite_ = false, alternates_ = false;
   std::uint32_t loops_ = 0;
   std::int64_t last_index_ = -1;

@@ -18,7 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int kTries = 3;
-constexpr milliseconds kAnswer{200}, kLinger{10}, kPoll{10};
+constexpr milliseconds kAnswer{200}, kStale{60}, kLinger{10}, kPoll{10};
 // units forget their numbers 20 ms after they are told to
 constexpr milliseconds kSettle{120};
 constexpr std::chrono::seconds kNumberTime{10}, kClockTime{10};
@@ -171,7 +171,7 @@ std::string Discovery::give_number(const UdpAddress& to, Unit& unit) {
 /// Takes back numbers that units have kept from before. @return whether there were such units.
 bool Discovery::release_stale(const std::vector<Unit>& units) {
   bool any = false;
-  for (const Unit& found : who_is_there(kAnswer)) {
+  for (const Unit& found : who_is_there(kStale)) {
     const auto is_it = [&](const Unit& unit) { return unit.address.same_end(found.address); };
     if ((found.info.flags & kAssigned) == 0 || std::any_of(units.begin(), units.end(), is_it))
       continue;

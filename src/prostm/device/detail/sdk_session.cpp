@@ -25,6 +25,11 @@ std::int64_t count_of(UdpSocket::Clock::time_point time) {
   return std::chrono::duration_cast<nanoseconds>(time.time_since_epoch()).count();
 }
 
+/// Time for an acknowledgement, longer after each try, so that a slow link is not crowded.
+milliseconds patience(int tries) {
+  return Session::kAckTime * (1 << std::min(tries, 2));
+}
+
 std::string version_text(std::span<const std::uint8_t> v) {
   return fmt::format("{}.{}.{}", v[0], v[1], v[2]);
 }
@@ -224,7 +229,7 @@ Session::Clock::time_point Session::next_due() const {
     due = std::min({due, peer.beat_at + kHeartbeat, peer.heard + kLost});
     if (peer.reset != 0) due = std::min(due, peer.reset_at + kAckTime);
     if (peer.reset == 0 && peer.count > 0)
-      due = std::min(due, peer.ring[peer.oldest].at + kAckTime);
+      due = std::min(due, peer.ring[peer.oldest].at + patience(peer.tries));
   }
   return due;
 }
@@ -255,7 +260,7 @@ void Session::do_what_is_due(Clock::time_point now) noexcept {
     }
     if (peer.reset != 0) {
       if (now - peer.reset_at >= kAckTime) reset(peer, now);
-    } else if (peer.count > 0 && now - peer.ring[peer.oldest].at >= kAckTime) {
+    } else if (peer.count > 0 && now - peer.ring[peer.oldest].at >= patience(peer.tries)) {
       if (++peer.tries > kMostTries) {
         reset(peer, now);
       } else {
