@@ -45,7 +45,7 @@ struct PipelineSettings {
   AmSettings am;
   EmitSettings emit;
   SimulatedArraySettings simulated_array;
-  StreamSettings stream;  ///< of device stream
+  StreamSettings stream;                      ///< of device stream
   TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
   Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
