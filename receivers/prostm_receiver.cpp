@@ -226,8 +226,8 @@ float Receiver::at(Ns time, Sample& out) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Ns step = last_at_ == 0 ? 0 : std::max<Ns>(0, time - last_at_);
   last_at_ = time;
-  // the clocks' difference is followed slowly, so that no sample is jumped over
-  const double change = 1e-3 * static_cast<double>(step);
+  // while it sounds, the clocks' difference is followed slowly, so that no sample is jumped over
+  const double change = gain_ == 0.0F ? 1e18 : 1e-3 * static_cast<double>(step);
   offset_ += std::min(change, std::max(-change, wanted_offset_ - offset_));
   const Ns at = time + static_cast<Ns>(offset_);
 
