@@ -2,7 +2,8 @@
 // and on Windows.
 //
 //   c++ -std=c++17 -O2 -pthread prostm_receiver.cpp -o prostm_receiver
-//   x86_64-w64-mingw32-g++ -std=c++17 -O2 -static prostm_receiver.cpp -o prostm_receiver.exe -lws2_32
+//   x86_64-w64-mingw32-g++ -std=c++17 -O2 -static prostm_receiver.cpp -o prostm_receiver.exe
+//   -lws2_32
 //
 // The class Receiver keeps the connection on a thread of its own and answers one question: what do
 // the focal points do at this time? It falls silent by itself when the stream stops. To drive an
@@ -45,7 +46,9 @@ namespace prostm_receiver {
 #ifdef _WIN32
 using Socket = SOCKET;
 const Socket kNoSocket = INVALID_SOCKET;
-void close_socket(Socket s) { closesocket(s); }
+void close_socket(Socket s) {
+  closesocket(s);
+}
 bool would_block() {
   const int e = WSAGetLastError();
   return e == WSAEWOULDBLOCK || e == WSAECONNRESET || e == WSAEMSGSIZE;
@@ -58,12 +61,16 @@ const int kSendFlags = 0;
 #else
 using Socket = int;
 const Socket kNoSocket = -1;
-void close_socket(Socket s) { close(s); }
+void close_socket(Socket s) {
+  close(s);
+}
 bool would_block() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == EINPROGRESS ||
          errno == ECONNREFUSED;
 }
-void do_not_wait(Socket s) { fcntl(s, F_SETFL, O_NONBLOCK); }
+void do_not_wait(Socket s) {
+  fcntl(s, F_SETFL, O_NONBLOCK);
+}
 const int kSendFlags = MSG_NOSIGNAL;
 #endif
 
@@ -98,8 +105,16 @@ void put(std::uint8_t* to, std::uint64_t value, std::size_t bytes) {
 }
 
 enum Kind : std::uint8_t {
-  kSubscribe = 1, kTimeRequest = 2, kBye = 3, kHello = 16, kBlock = 17, kState = 18,
-  kHeartbeat = 19, kTime = 20, kEnd = 23, kError = 24
+  kSubscribe = 1,
+  kTimeRequest = 2,
+  kBye = 3,
+  kHello = 16,
+  kBlock = 17,
+  kState = 18,
+  kHeartbeat = 19,
+  kTime = 20,
+  kEnd = 23,
+  kError = 24
 };
 constexpr std::size_t kHeader = 16;
 constexpr int kMostFoci = 8;
@@ -119,20 +134,20 @@ struct Sample {
 struct Settings {
   std::string host = "127.0.0.1", port = "7140";
   bool udp = false;
-  int foci = 0;    ///< the first so many focal points; 0: all
-  int every = 1;   ///< every so many samples
-  bool shared = false;  ///< one intensity for all focal points of a sample
+  int foci = 0;                 ///< the first so many focal points; 0: all
+  int every = 1;                ///< every so many samples
+  bool shared = false;          ///< one intensity for all focal points of a sample
   Ns silence_after = 20 * kMs;  ///< without a message, the output falls silent
   Ns ramp = 5 * kMs;            ///< in this time
 };
 
 struct Statistics {
-  std::int64_t samples = 0;     ///< received
-  std::int64_t lost = 0;        ///< not there at their play time
-  std::int64_t late = 0;        ///< came after their play time
-  std::int64_t skipped = 0;     ///< left out by prostm, because this side read too slowly
-  std::int64_t silences = 0;    ///< times when sound was ramped down because the stream stopped
-  std::int64_t malformed = 0;   ///< messages or samples that broke the protocol
+  std::int64_t samples = 0;    ///< received
+  std::int64_t lost = 0;       ///< not there at their play time
+  std::int64_t late = 0;       ///< came after their play time
+  std::int64_t skipped = 0;    ///< left out by prostm, because this side read too slowly
+  std::int64_t silences = 0;   ///< times when sound was ramped down because the stream stopped
+  std::int64_t malformed = 0;  ///< messages or samples that broke the protocol
   std::int64_t subscriptions = 0;
   double round_trip_ms = 0, offset_ms = 0, buffered_ms = 0;
   std::int64_t last_heard = 0;  ///< [ns]
@@ -211,8 +226,8 @@ float Receiver::at(Ns time, Sample& out) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Ns step = last_at_ == 0 ? 0 : std::max<Ns>(0, time - last_at_);
   last_at_ = time;
-  // the clocks' difference is followed slowly, so that no sample is jumped over
-  const double change = 1e-3 * static_cast<double>(step);
+  // while it sounds, the clocks' difference is followed slowly, so that no sample is jumped over
+  const double change = gain_ == 0.0F ? 1e18 : 1e-3 * static_cast<double>(step);
   offset_ += std::min(change, std::max(-change, wanted_offset_ - offset_));
   const Ns at = time + static_cast<Ns>(offset_);
 
@@ -281,7 +296,8 @@ bool Receiver::connect() {
   hints.ai_socktype = settings_.udp ? SOCK_DGRAM : SOCK_STREAM;
   addrinfo* list = nullptr;
   if (getaddrinfo(settings_.host.c_str(), settings_.port.c_str(), &hints, &list) != 0) return false;
-  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(list, [](addrinfo* a) { freeaddrinfo(a); });
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(list,
+                                                             [](addrinfo* a) { freeaddrinfo(a); });
   socket_ = socket(list->ai_family, list->ai_socktype, 0);
   if (socket_ == kNoSocket) return false;
   const int yes = 1, room = 1 << 20;
@@ -591,15 +607,24 @@ Options options_of(int argc, char** argv) {
       return argv[i];
     };
     const std::size_t colon = name.rfind(':');
-    if (name == "--udp") o.settings.udp = true;
-    else if (name == "--shared") o.settings.shared = true;
-    else if (name == "--foci") o.settings.foci = std::atoi(value());
-    else if (name == "--every") o.settings.every = std::atoi(value());
-    else if (name == "--silence-ms") o.settings.silence_after = static_cast<Ns>(std::atof(value()) * 1e6);
-    else if (name == "--seconds") o.seconds = std::atof(value());
-    else if (name == "--received") o.received = value();
-    else if (name == "--played") o.played = value();
-    else if (name[0] == '-' || colon == name.npos) usage((name + " is unknown.").c_str());
+    if (name == "--udp")
+      o.settings.udp = true;
+    else if (name == "--shared")
+      o.settings.shared = true;
+    else if (name == "--foci")
+      o.settings.foci = std::atoi(value());
+    else if (name == "--every")
+      o.settings.every = std::atoi(value());
+    else if (name == "--silence-ms")
+      o.settings.silence_after = static_cast<Ns>(std::atof(value()) * 1e6);
+    else if (name == "--seconds")
+      o.seconds = std::atof(value());
+    else if (name == "--received")
+      o.received = value();
+    else if (name == "--played")
+      o.played = value();
+    else if (name[0] == '-' || colon == name.npos)
+      usage((name + " is unknown.").c_str());
     else {
       o.settings.host = name.substr(0, colon);
       o.settings.port = name.substr(colon + 1);

@@ -266,7 +266,8 @@ class Receiver:
 
     def play_due(self, now):
         """Plays up to a time of this machine's clock, with the silence rule applied."""
-        change = 1e-3 * (now - self.last) if self.last else 0.0
+        # while it sounds, the clocks' difference is followed slowly, so that no sample is jumped over
+        change = 1e-3 * (now - self.last) if self.gain > 0.0 else math.inf
         self.offset += min(change, max(-change, self.wanted_offset - self.offset))
         until = now + self.offset
         if now - self.last > STALL and self.held is not None:  # this program was away: the past is not played

@@ -48,7 +48,7 @@ struct PipelineSettings {
   SafetySettings safety;
   SimulatedArraySettings simulated_array;
   Autd3Settings autd3;
-  StreamSettings stream;  ///< of device stream
+  StreamSettings stream;                      ///< of device stream
   TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
   Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
