@@ -122,6 +122,8 @@ TEST(MakeUltraleap, ChoosesAmongSeveralArrays) {
   EXPECT_EQ(second->info().name, "Ultraleap USX:2");
   EXPECT_EQ(second->info().sample_rate, 5e3);
   EXPECT_EQ(second->info().decimation, 8);
+  EXPECT_EQ(ultraleap_info(setup_of(2, "USX:2")).sample_rate, 5e3);
+  EXPECT_EQ(ultraleap_info(setup_of(2)).sample_rate, 5e3) << "opened last";
 }
 
 TEST(DeviceKinds, HasTheArrayWhereTheSdkIs) {

@@ -84,6 +84,7 @@ void remember_ultraleap(const DeviceSetup& setup, const DeviceInfo& info) {
   Opened& all = opened();
   const std::lock_guard lock(all.mutex);
   all.infos[{setup.address, setup.foci}] = info;
+  all.infos[{std::string(), setup.foci}] = info;  // for who asks without an address
 }
 
 #if !defined(PROSTM_ULTRALEAP)

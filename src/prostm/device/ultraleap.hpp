@@ -35,8 +35,9 @@ const UltraleapKit* ultraleap_kit(std::string_view model, std::string_view layou
 /// @param rate of the device [Hz].
 int ultraleap_decimation(double rate);
 
-/// The capabilities of the array that this program opened last at that address and with as many
-/// focal points; before that, 40 kHz stands for the rate that only the array itself can say.
+/// The capabilities of the array that this program opened last at that address, or at any if it is
+/// empty, and with as many focal points; before that, 40 kHz stands for the rate that only the
+/// array itself can say.
 DeviceInfo ultraleap_info(const DeviceSetup& setup);
 void remember_ultraleap(const DeviceSetup& setup, const DeviceInfo& info);
 
