@@ -32,7 +32,7 @@ function(prostm_stage name)
 endfunction()
 
 # One test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry. The target prostm_tests
-# builds them all.
+# builds them all. Cases that match prostm_alone_NAME, a filter of GoogleTest, keep real time and run beside no other.
 function(prostm_test name)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
   if(PROSTM_SANITIZE STREQUAL "thread" AND DEFINED prostm_threaded_${name})
@@ -43,7 +43,12 @@ function(prostm_test name)
     target_link_libraries(test_${name} PRIVATE ${ARGN} prostm_test_support GTest::gmock)
     prostm_precompile(test_${name} test_core ${prostm_slow_headers} <gmock/gmock.h> <gtest/gtest.h>)
     add_dependencies(prostm_tests test_${name})
-    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
-                         PROPERTIES TIMEOUT 900 LABELS "${name}")
+    if(DEFINED prostm_alone_${name})
+      gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${prostm_alone_${name}}"
+                           TEST_LIST ${name}_alone DISCOVERY_TIMEOUT 60
+                           PROPERTIES TIMEOUT 900 LABELS "${name}" RUN_SERIAL ON)
+    endif()
+    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "-${prostm_alone_${name}}"
+                         DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 LABELS "${name}")
   endif()
 endfunction()

@@ -15,7 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 ALWAYS = {"pipeline", "viewer", "app"}
 # files that no sanitizer or fuzzer covers
-ELSEWHERE = ("docs", "web", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md", "LICENSE", ".ci", ".gitignore")
+ELSEWHERE = ("docs", "web", "receivers", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md", "LICENSE",
+             ".ci", ".gitignore")
 
 
 def git(*arguments):
@@ -36,6 +37,8 @@ def stage_of(path):
         return folder[0]
     if parts[:2] in (("tests", "python"), ("tests", "lab"), ("tests", "library")):
         return ""
+    if parts[:2] in (("tests", "standins"), ("tests", "ultraleap"), ("tests", "ultraleap_sdk")):
+        return "device"
     return None
 
 
@@ -45,7 +48,11 @@ def changed_stages(since):
     files = git("diff", "--name-only", since).stdout.splitlines()
     files += git("ls-files", "--others", "--exclude-standard").stdout.splitlines()
     stages = {stage_of(path) for path in files}
-    return set() if None in stages else stages - {""} | ALWAYS
+    if None in stages:
+        return set()
+    if "device" in stages:
+        stages.add("ultraleap")  # an adapter of the device's stage has a test program of its own
+    return stages - {""} | ALWAYS
 
 
 def main():

@@ -1,4 +1,5 @@
 # test_ultraleap: the adapter to Ultraleap's SDK, compiled against a stand-in of the SDK's interface that is written here.
+set(prostm_alone_ultraleap "UltraleapArray*")
 prostm_test(ultraleap prostm_device prostm_fields)
 target_sources(test_ultraleap PRIVATE ${prostm_ultraleap_sources} ultraleap_sdk/library.cpp ultraleap_sdk/streaming.cpp)
 target_include_directories(test_ultraleap BEFORE PRIVATE ultraleap_sdk/include)
