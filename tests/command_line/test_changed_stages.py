@@ -52,7 +52,7 @@ def test_a_change_asks_for_its_stage(checkout):
     assert checkout.stages(checkout.first) == sorted(ALWAYS + ["plan"])
     checkout.write("src/prostm/device/device.cpp")  # not committed
     checkout.write("tests/core/new_test.cpp")  # not known to git
-    assert checkout.stages(checkout.first) == sorted(ALWAYS + ["plan", "device", "core"])
+    assert checkout.stages(checkout.first) == sorted(ALWAYS + ["plan", "device", "ultraleap", "core"])
 
 
 def test_what_no_sanitizer_looks_at_asks_for_the_few_that_always_run(checkout):
