@@ -27,6 +27,10 @@ TEST(Autd3Frames, AreWrittenByteByByte) {
   EXPECT_THAT(bytes(frame, 4, 3), ElementsAre(0x03, 4, 0));
   read_state(frame);
   EXPECT_THAT(bytes(frame, 4, 3), ElementsAre(0x61, 1, 0));
+  frame.fill(0xAA);
+  alternate(frame, 1);
+  EXPECT_THAT(bytes(frame, 4, 17),
+              ElementsAre(0x44, 1, 0xF0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
   gpio(frame, 1);
   EXPECT_THAT(bytes(frame, 4, 3), ElementsAre(0xF1, 1, 0));
   modulation(frame, std::vector<std::uint8_t>{255, 7, 0}, 1, 40);

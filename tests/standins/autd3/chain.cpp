@@ -12,13 +12,15 @@ bool Chain::refuses(int current, int segment, int rep, int mode) {
 }
 
 void Chain::set(int segment, const Shape& shape, int mode, std::uint64_t value, std::int64_t tick) {
+  // counted by the length and rate that the segment had before, as the firmware does
+  const std::int64_t lap_before = lap(segment, tick);
   shape_[static_cast<std::size_t>(segment)] = shape;
   mode_ = mode;
   value_ = value;
   if (segment == segment_ || shape.rep == kEndless) {
     segment_ = segment;
     alternates_ = mode == kExt;
-    alternated_lap_ = lap(segment, tick);
+    alternated_lap_ = lap_before;
     begin_ = 0;
     state_ = State::Endless;
   } else {

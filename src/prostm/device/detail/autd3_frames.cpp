@@ -19,6 +19,7 @@ enum Tag : std::uint8_t {
   kModulation = 0x10,
   kSilencer = 0x21,
   kFoci = 0x42,
+  kSwapFoci = 0x44,
   kReadState = 0x61,
   kGpio = 0xF1
 };
@@ -123,6 +124,11 @@ void foci(Frame& frame, const FociSegment& segment, std::span<const SlotWord> wo
   const auto begin = static_cast<std::size_t>(first * segment.slots);
   for (const SlotWord word : words.subspan(begin, static_cast<std::size_t>(count * segment.slots)))
     out.u64(word);
+}
+
+void alternate(Frame& frame, int segment) {
+  Writer out(frame);
+  out.u8(kSwapFoci).u8(segment).u8(static_cast<int>(Transition::Alternate)).zeros(5).u64(0);
 }
 
 std::string error_sentence(int error) {

@@ -69,6 +69,10 @@ int samples_in_frames(int slots, int samples, int frames);
 /// @param words of one unit for the whole segment, sample-major.
 void foci(Frame& frame, const FociSegment& segment, std::span<const SlotWord> words, int index);
 
+/// Lets a segment play, and then both in turn. @pre both are written, alike in length and rate, and
+/// have played: only then does the firmware count their laps alike.
+void alternate(Frame& frame, int segment);
+
 /// Says in one sentence what an error of the firmware, 1..8, means for who uses the array.
 std::string error_sentence(int error);
 

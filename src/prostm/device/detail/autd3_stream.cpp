@@ -43,9 +43,10 @@ bool Stream::begin() {
   }
   const auto as_it_is = [](int) {};
   const int samples = budget_.block_samples;
+  if (!output_.write(1, Transition::Immediate, samples, as_it_is)) return false;
   if (!output_.write(0, Transition::Immediate, samples, as_it_is)) return false;
-  if (!output_.write(1, Transition::Alternate, samples, as_it_is)) return false;
-  if (!session_.poll()) return false;
+  alternate(session_.frame(0), 1);
+  if (!session_.exchange_for_all() || !session_.poll()) return false;
   turns_.start(Clock::now(), std::max(0, session_.playing_segment()),
                to_duration(budget_.block_time));
   written_ = 1 - turns_.playing();
