@@ -71,7 +71,8 @@ class Receiver:
         self.play = play or (lambda *_: None)
         self.on_block = on_block or (lambda _: None)
         self.on_event = on_event or (lambda _: None)
-        self.counts = {name: 0 for name in ("samples", "lost", "late", "skipped", "silences", "malformed", "subscriptions")}
+        self.counts = dict.fromkeys(
+            ("samples", "lost", "late", "skipped", "silences", "malformed", "subscriptions"), 0)
         self.round_trip = 0
         self.socket, self.session, self.sequence, self.heard = None, 0, 0, 0
         self.tried = -GONE_AFTER
@@ -379,7 +380,8 @@ def arguments():
     parser.add_argument("--foci", type=int, default=0, choices=range(9), help="the first so many focal points; 0: all")
     parser.add_argument("--every", type=int, default=1, help="every so many samples, 1 to 1000")
     parser.add_argument("--shared", action="store_true", help="one intensity for all focal points of a sample")
-    parser.add_argument("--silence-ms", type=float, default=20.0, help="without a message for so long, the output falls silent")
+    parser.add_argument("--silence-ms", type=float, default=20.0,
+                        help="without a message for so long, the output falls silent")
     parser.add_argument("--seconds", type=float, default=math.inf)
     parser.add_argument("--received", metavar="FILE", help="writes what came in (.csv, or binary)")
     parser.add_argument("--played", metavar="FILE", help="writes what went out, with the silence rule applied")

@@ -46,8 +46,9 @@ class Sender:
             request += self.link.recv(88 - len(request))
         assert request[:8] == b"PSTM\1\1\x48\0" and request[20] == 1
         now = time.monotonic_ns()
-        self.link.sendall(self.message(HELLO, struct.pack("<IBBBBHBBBBHdqqqqIIHxxxxxx", 0, 1, 1, 8, 0, 1, 0, 1, 1, 0, BLOCK,
-                                                          RATE, now, self.index, now + LEAD, LEAD, 20_000, 5_000, 1000)))
+        hello = struct.pack("<IBBBBHBBBBHdqqqqIIHxxxxxx", 0, 1, 1, 8, 0, 1, 0, 1, 1, 0, BLOCK, RATE, now, self.index,
+                            now + LEAD, LEAD, 20_000, 5_000, 1000)
+        self.link.sendall(self.message(HELLO, hello))
         threading.Thread(target=self.answer, args=(self.link,), daemon=True).start()
         self.begin = now - self.index * 25_000
 
@@ -93,7 +94,7 @@ def too_loud(sender):
 
 def stopped(sender):
     sender.link.sendall(sender.message(STATE, struct.pack("<HBB4xq", 1, 0, 0, sender.index)))
-    time.sleep(0.01)
+    time.sleep(0.08)
     sender.link.sendall(sender.message(STATE, struct.pack("<HBB4xq", 0, 2, 0, sender.index)))
 
 
@@ -150,9 +151,10 @@ def stream_until_it_sounds(sender, listener):
 
 @pytest.mark.realtime
 @pytest.mark.parametrize("language", ["c++", "python"])
-@pytest.mark.parametrize("fault, silences", [(unknown, 0), (gap, 1), (not_a_number, 1), (too_loud, 1), (stopped, 1), (quiet, 1),
-                                             (times_jump, 1), (ended, 1), (refused, 1), (garbage, 1)])
-def test_any_interruption_is_silence_and_then_sound_again(program, tmp_path, language, fault, silences):
+@pytest.mark.parametrize("fault", [unknown, gap, not_a_number, too_loud, stopped, quiet, times_jump, ended, refused,
+                                   garbage])
+def test_any_interruption_is_silence_and_then_sound_again(program, tmp_path, language, fault):
+    silences = 0 if fault is unknown else 1
     sender = Sender()
     listener = Listener(program, tmp_path, language, "tcp", sender.port, "--silence-ms", "100")
     try:
