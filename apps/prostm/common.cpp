@@ -36,8 +36,7 @@ void check_files_of(const PipelineSettings& settings, const CommonOptions& optio
   const std::string where = " (in " + options.settings_file + ")";
   if (names_json(settings.array)) files.reads("--array" + where, settings.array);
   if (names_json(settings.tracker)) files.reads("--tracker" + where, settings.tracker);
-  if (!settings.autd3.units.empty())
-    files.reads("[autd3] units" + where, settings.autd3.units);
+  if (!settings.autd3.units.empty()) files.reads("[autd3] units" + where, settings.autd3.units);
   files.check();
 }
 

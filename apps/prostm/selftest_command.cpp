@@ -43,6 +43,11 @@ void check(const SelftestOptionsGiven& given, std::FILE* out) {
       "play without being asked, or --silent to play nothing");
 }
 
+/// Limits for a single focal point on the array of the settings.
+SampleLimits limits(const PipelineSettings& settings) {
+  return {.power = 1.0, .caps = settings.safety, .levels = levels_of(settings)};
+}
+
 /// A device that plays test figures, silent until it is told to.
 class Tested {
  public:
@@ -51,7 +56,7 @@ class Tested {
         figures_(test_figures(settings.transducers, device_->info().emission_rate(),
                               1e-3 * given.height_mm, given.seconds)),
         pattern_(figures_, device_->info().emission_rate(), given.level),
-        chain_(make_sample_chain(pattern_, device_->info(), {.power = 1.0})) {
+        chain_(make_sample_chain(pattern_, device_->info(), limits(settings))) {
     if (device_->start(*chain_) != DeviceStatus::Running)
       throw std::invalid_argument(device_->problem());
   }

@@ -17,6 +17,7 @@ TEST(DeviceKind, TellsOfAutd3WithoutLookingForIt) {
   DeviceSetup setup{SimulatedArraySettings{}, autd3_array(), Medium{}};
   const DeviceKind& kind = *device_named("autd3://127.0.0.1:9").kind;
   EXPECT_STREQ(kind.array, "autd3");
+  EXPECT_EQ(kind.transducers(setup).position.size(), 249U);
   const DeviceInfo info = kind.info(setup);
   EXPECT_EQ(info.max_foci, 4);
   EXPECT_DOUBLE_EQ(info.emission_rate(), 40e3);

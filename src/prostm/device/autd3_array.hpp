@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "prostm/acoustics/array.hpp"
 #include "prostm/core/geometry.hpp"
 #include "prostm/core/host_port.hpp"
 #include "prostm/core/medium.hpp"
@@ -21,6 +22,10 @@ struct Autd3Settings {
   /// An intensity for each of up to four focal points, by two slots each; false: up to eight focal
   /// points, which share the largest.
   bool weights = true;
+
+  /// X_DU of the units' own frames; none where no file is named.
+  /// @throws InputError about the file.
+  std::vector<Pose> poses() const;
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
@@ -81,6 +86,9 @@ class Autd3Array final : public Device {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The transducers of all units. @throws InputError about their file.
+TransducerArray autd3_transducers(const DeviceSetup& setup);
 
 /// Its setup from what a registry is given. @throws InputError about the address or the file.
 Autd3Setup autd3_setup(const DeviceSetup& setup);

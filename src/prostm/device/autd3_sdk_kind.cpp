@@ -19,12 +19,21 @@ constexpr int kMostDivider = 20;  // 2 kHz, below which fingers feel the steps
 constexpr int kTurnFrames = 2;    // that change over to a block and read the state
 constexpr std::chrono::milliseconds kLook{500};
 
+/// The setup without a look at the address; [autd3] is of units with either firmware.
+Autd3SdkSetup shared_setup_of(const DeviceSetup& setup) {
+  return {.address = setup.address,
+          .units = setup.autd3.poses(),
+          .medium = setup.medium,
+          .foci = setup.foci,
+          .own_intensities = setup.autd3.weights};
+}
+
 Autd3SdkSetup setup_of(const DeviceSetup& setup) {
   if (setup.address.empty())
     throw std::invalid_argument(
         "autd3-sdk needs the network interface of its units, as autd3-sdk://%eth0, or a "
         "simulator's address, as autd3-sdk://[::1]:44336");
-  return {.address = setup.address, .medium = setup.medium, .foci = setup.foci};
+  return shared_setup_of(setup);
 }
 
 std::string unit_words(const sdk::Unit& unit) {
@@ -62,8 +71,7 @@ Autd3SdkBudget best_autd3_sdk_budget(int slots, double frames_per_ms) {
 }
 
 DeviceInfo autd3_sdk_info(const DeviceSetup& setup) {
-  return Autd3SdkArray::info_of(
-      {.address = setup.address, .medium = setup.medium, .foci = setup.foci});
+  return Autd3SdkArray::info_of(shared_setup_of(setup));
 }
 
 std::unique_ptr<Device> make_autd3_sdk(const DeviceSetup& setup) {

@@ -72,6 +72,11 @@ std::vector<Pose> autd3_units_from_json(std::string_view text, const std::string
   return poses;
 }
 
+TransducerArray autd3_transducers(const DeviceSetup& setup) {
+  const std::vector<Pose> units = setup.autd3.poses();
+  return units.empty() ? autd3_array() : autd3_units(units);
+}
+
 DeviceFinding look_for_autd3(const Autd3Setup& setup) {
   const std::vector<Pose> units =
       setup.units.empty() ? std::vector<Pose>{autd3_middle()} : setup.units;
@@ -84,13 +89,16 @@ DeviceFinding look_for_autd3(const Autd3Setup& setup) {
   return finding;
 }
 
+std::vector<Pose> Autd3Settings::poses() const {
+  if (units.empty()) return {};
+  return autd3_units_from_json(read_file(units, kMaxJsonBytes), units);
+}
+
 Autd3Setup autd3_setup(const DeviceSetup& setup) {
   Autd3Setup made;
   made.address = setup.address.empty() ? HostPort{"127.0.0.1", kUsualPort}
                                        : host_port("autd3://" + setup.address, "autd3", kUsualPort);
-  if (!setup.autd3.units.empty())
-    made.units =
-        autd3_units_from_json(read_file(setup.autd3.units, kMaxJsonBytes), setup.autd3.units);
+  made.units = setup.autd3.poses();
   made.medium = setup.medium;
   made.foci = setup.foci;
   made.own_intensities = setup.autd3.weights;

@@ -37,9 +37,9 @@ constexpr DeviceKind kKinds[] = {
     {"sim", nullptr, nullptr, "needs no hardware; nobody can feel it", simulated_info,
      make_simulated, nullptr},
     {"autd3", "HOST:PORT", "autd3", "tried with a stand-in for AUTD3 v38, never with real units",
-     autd3_info, make_autd3, look_for_autd3_units},
+     autd3_info, make_autd3, look_for_autd3_units, autd3_transducers},
     {"autd3-sdk", "%INTERFACE", "autd3", "tried with a stand-in, never on real hardware",
-     autd3_sdk_info, make_autd3_sdk, look_for_autd3_sdk},
+     autd3_sdk_info, make_autd3_sdk, look_for_autd3_sdk, autd3_transducers},
 #if defined(PROSTM_ULTRALEAP)
     {"ultraleap", "[DEVICE][@CONNECTION]", "usx",
      "this build has the vendor's SDK; tried with a stand-in of its interface, never on real "

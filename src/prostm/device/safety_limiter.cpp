@@ -113,8 +113,7 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
     const float share = scale(now, reason);
     bool reachable = true;
     for (std::size_t f = 0; f < now.size() && share < 1.0F; ++f)
-      reachable =
-          reachable && share * now[f].intensity >= focus_[f].last.intensity - change_;
+      reachable = reachable && share * now[f].intensity >= focus_[f].last.intensity - change_;
     if (!reachable) {
       hold(now);
     } else if (share < 1.0F) {

@@ -11,7 +11,7 @@ namespace prostm {
 struct SafetySettings {
   double intensity = 1.0;                  ///< of a focal point
   double power = 4.0;                      ///< Σ intensity² of a sample
-  double acoustic_pressure = 14.6e3;         ///< rms, at a focal point [Pa]
+  double acoustic_pressure = 14.6e3;       ///< rms, at a focal point [Pa]
   double radiation_pressure = 3e3;         ///< of a sample, at a focal point, on facing skin [Pa]
   double mean_radiation_pressure = 2.5e3;  ///< the same on the mean over any second [Pa]
   double head_level = 145.0;   ///< sound level at the head, mean over any second [dB re 20 µPa]

@@ -51,12 +51,6 @@ std::unique_ptr<Device> device_of(const PipelineSettings& settings, std::unique_
   return make_device(settings.device, settings.device_setup());
 }
 
-/// The levels that the array of the settings can reach.
-std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings) {
-  return std::make_shared<const SafetyLevels>(settings.transducers, Medium{},
-                                              settings.safety.head_distance);
-}
-
 /// The σ that a planner counts on for a target [m].
 double sigma_on(const TargetField& target, const std::variant<Planner, AmPlanner>& planner) {
   if (const auto* of_foci = std::get_if<AmPlanner>(&planner)) return of_foci->settings().sigma;

@@ -86,6 +86,11 @@ PlanSettings plan_settings(const PipelineSettings& settings, double emission_rat
   return plan;
 }
 
+std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings) {
+  return std::make_shared<const SafetyLevels>(settings.transducers, Medium{},
+                                              settings.safety.head_distance);
+}
+
 EmitSettings emit_settings(const PipelineSettings& settings, double largest) {
   EmitSettings emit = settings.emit;
   if (emit.full_scale_pressure == 0.0)

@@ -1,6 +1,7 @@
 #pragma once
 /// The settings of every stage, in one place.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,7 @@
 #include "prostm/contact/skin_contact.hpp"
 #include "prostm/core/settings.hpp"
 #include "prostm/device/device_kinds.hpp"
-#include "prostm/device/safety_settings.hpp"
+#include "prostm/device/safety_limiter.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
@@ -79,6 +80,9 @@ PlanSettings playable_plan_settings(const PipelineSettings& settings, double emi
 /// The same with the widths that `array_width` asks for: those of `plan`, or else (A22) of
 /// `transducers`.
 PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate);
+
+/// The levels that the array of the settings can reach, for its limiter.
+std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings);
 
 /// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest
 /// pressure that is to be rendered [Pa]. Its power is within the cap of [safety], too.
