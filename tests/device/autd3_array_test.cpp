@@ -65,6 +65,7 @@ TEST(Autd3Array, PlaysEverySampleWhereItBelongs) {
   EXPECT_LE(array.budget().frames_per_ms, 2.1);
   EXPECT_LE(array.budget().block_time, 0.0205);
   Circles source(4, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   sleep_s(1.5);
   const DeviceStats stats = array.stats();
@@ -104,6 +105,7 @@ TEST(Autd3Array, TellsEachUnitWhereItIs) {
   EXPECT_NEAR(places[8], 66.04, 1e-3);
   EXPECT_NEAR(places[9], 5.0, 1e-3);
   Circles source(2, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   EXPECT_GT(server.wait_until_it(true), 0.0);
   array.stop();
@@ -124,6 +126,7 @@ TEST(Autd3Array, GoesOnAfterACut) {
   StandIn server;
   Autd3Array array(server.setup());
   Circles source(4, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   const double again = test::best_of(3, 1.0, [&] {
     EXPECT_GT(server.wait_until_it(true), 0.0);
@@ -146,6 +149,7 @@ TEST(Autd3Array, GoesOnAfterAHalfOpenLink) {
   StandIn server;
   Autd3Array array(server.setup());
   Circles source(4, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   double silent = 0.0;
   const double again = test::best_of(3, 0.4 + 1.0, [&] {
@@ -166,6 +170,7 @@ TEST(Autd3Array, CountsBlocksOfASlowLinkAndNeverJumps) {
   StandIn server({"--frames-per-ms", "4"});
   Autd3Array array(server.setup());
   Circles source(4, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   ASSERT_GT(server.wait_until_it(true), 0.0);
   const std::int64_t before = array.stats().missed_blocks;
@@ -186,6 +191,7 @@ TEST(Autd3Array, ExplainsEachRefusalAndGoesOn) {
   StandIn server({"--frames-per-ms", "8"});
   Autd3Array array(server.setup(1));
   Circles source(1, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   for (int error = 1; error <= 8; ++error) {
     ASSERT_GT(server.wait_until_it(true), 0.0) << error;
@@ -210,6 +216,7 @@ TEST(Autd3Array, SaysThatAUnitIsHot) {
   StandIn server;
   Autd3Array array(server.setup(1));
   Circles source(1, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   EXPECT_FALSE(array.is_hot());
   server.say("hot 1");

@@ -110,6 +110,7 @@ TEST(Autd3Loops, AreRefusedInOneSentence) {
   EXPECT_THAT(array.problem(), HasSubstr("Sample 3 of the loop"));
   EXPECT_EQ(array.load_segment({}, 2), DeviceStatus::Refused);
   test::Circles source(2, array.info().sample_rate);
+  const test::StopAtEnd stop(array);
   ASSERT_EQ(array.start(source), DeviceStatus::Running);
   EXPECT_EQ(array.load_segment(circle(10, 2, 0.019), 2), DeviceStatus::Refused);
   EXPECT_THAT(array.problem(), HasSubstr("plays a stream"));

@@ -145,6 +145,18 @@ double best_of(int trials, double enough, Trial&& trial) {
   return least;
 }
 
+/// Stops an array before what it plays goes.
+class StopAtEnd {
+ public:
+  explicit StopAtEnd(Autd3Array& array) : array_(array) {}
+  ~StopAtEnd() { array_.stop(); }
+  StopAtEnd(const StopAtEnd&) = delete;
+  StopAtEnd& operator=(const StopAtEnd&) = delete;
+
+ private:
+  Autd3Array& array_;
+};
+
 /// Focal points on circles of 20 mm at 7 m/s, at the device's own rate, each with an intensity of
 /// its own.
 class Circles final : public SampleSource {
