@@ -118,7 +118,7 @@ void Streamer::call_back() {
   }
   const LocalTimePoint now = LocalTimeClock::now();
   const LocalTimePoint deadline =
-      world().late ? now - period() : now + (world().manual ? 1000 : kAhead - 1) * period();
+      world().late ? now - period() : now + (world().manual ? 1'000'000 : kAhead - 1) * period();
   in_callback() = true;
   callback(emitter_, interval, deadline, user);
   in_callback() = false;

@@ -18,6 +18,7 @@ constexpr std::size_t kAtOnce = 256;     // samples that are taken from the sour
 constexpr double kRateTolerance = 0.01;  // of the interval between samples
 constexpr double kLongestFade = 0.1;     // time that fade_out() waits for [s]
 constexpr double kStalled = 1.0;         // time without a call after which it has failed [s]
+constexpr double kDoubt = 0.1;           // time for which that is doubted [s]
 constexpr double kNoCalls = 0.02;        // time without a call after which nobody calls [s]
 
 double seconds_now() {
@@ -58,7 +59,14 @@ void UltraleapEmission::fail(Fault fault) {
 }
 
 void UltraleapEmission::watch() {
-  if (open_ && seconds_now() - last_call_ > kStalled) fail(Fault::Stalled);
+  const double now = seconds_now();
+  if (!open_ || now - last_call_ <= kStalled) return;
+  // a process that did not run for a second must be given time to be called back
+  if (suspected_ <= last_call_) {
+    suspected_ = now;
+  } else if (now - suspected_ > kDoubt) {
+    fail(Fault::Stalled);
+  }
 }
 
 void UltraleapEmission::fade_out() {

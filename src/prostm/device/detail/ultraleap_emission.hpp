@@ -81,6 +81,7 @@ class UltraleapEmission {
   std::atomic<bool> open_{false}, inside_{false};  // samples may be given; a callback is at work
   std::atomic<std::size_t> points_{0};             // control points that the SDK was asked for
   std::atomic<double> last_call_{0.0};             // time, or that of start()
+  std::atomic<double> suspected_{0.0};             // time when calls were missed first
   std::atomic<std::int64_t> late_{0};
   std::atomic<Fault> fault_{Fault::None};
   std::atomic<double> found_interval_{0.0};
