@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
@@ -67,10 +68,37 @@ TEST(SampleChain, DecimatesForAnyBlocks) {
   const auto chain = make_sample_chain(source, device, {});
   const std::vector<FocusSample> out = filled(*chain, 500, 130);
   for (std::int64_t i = 0; i < 500; ++i) {
-    for (int f = 0; f < 3; ++f)
-      ASSERT_TRUE(same(out[static_cast<std::size_t>(3 * i + f)], smooth(7 * i, f))) << i;
+    for (int f = 0; f < 3; ++f) {
+      FocusSample expected = smooth(7 * i, f);
+      for (std::int64_t k = 1; k < 7; ++k)
+        if (smooth(7 * i + k, f).intensity <= 0.01F) expected.intensity = 0.0F;
+      ASSERT_TRUE(same(out[static_cast<std::size_t>(3 * i + f)], expected)) << i;
+    }
   }
   EXPECT_EQ(chain->limited(), 0) << "a device of fewer samples takes larger changes of each";
+}
+
+/// Like foci of AM: the intensity comes and goes, and the focal point jumps where it is 0.
+FocusSample jumping(std::int64_t sample, int focus) {
+  const std::int64_t period = 200 + focus;
+  const double phase = static_cast<double>(sample % period) / static_cast<double>(period);
+  return {Eigen::Vector3f(0.02F * static_cast<float>(sample / period % 5), 0.0F, 0.2F),
+          static_cast<float>(std::sin(std::numbers::pi * phase))};
+}
+
+TEST(SampleChain, LetsNoJumpSoundThatWasSilentBetweenTheSamples) {
+  for (const int factor : {2, 3, 4, 6, 7, 13}) {
+    Made source(2, jumping);
+    DeviceInfo device;
+    device.decimation = factor;
+    device.intensity_per_focus = true;
+    const auto chain = make_sample_chain(source, device, {});
+    const std::vector<FocusSample> out = filled(*chain, 20'000 / factor, 130);
+    for (std::size_t i = 2; i < out.size(); ++i) {
+      if (out[i].p_D == out[i - 2].p_D) continue;
+      ASSERT_TRUE(out[i].intensity <= 0.01F || out[i - 2].intensity <= 0.01F) << factor << " " << i;
+    }
+  }
 }
 
 TEST(SampleChain, SharesTheLargestIntensity) {

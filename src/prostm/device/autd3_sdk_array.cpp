@@ -55,7 +55,8 @@ DeviceInfo info_with(const Autd3SdkSetup& setup, const Autd3SdkBudget& budget) {
           .intensity_per_focus = setup.own_intensities,
           .streams = true,
           .loads_segments = true,
-          .decimation = budget.divider};
+          .decimation = budget.divider,
+          .comes_back = true};
 }
 
 }  // namespace

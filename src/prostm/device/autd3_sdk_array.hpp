@@ -72,7 +72,7 @@ class Autd3SdkArray final : public Device {
 
   const Autd3SdkBudget& budget() const;
   /// Number of units, versions of their firmware, and the frames per ms that were measured.
-  std::string description() const;
+  std::string description() const override;
   /// How often the units' failsafe had muted them. Any thread.
   std::int64_t muted() const;
 

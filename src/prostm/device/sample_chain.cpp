@@ -5,6 +5,7 @@
 namespace prostm {
 namespace {
 
+constexpr float kSilent = 0.01F;     // intensity up to which an emission may jump
 constexpr std::size_t kAtOnce = 64;  // samples of a decimated stream that are made at a time
 
 }  // namespace
@@ -33,10 +34,19 @@ void Decimation::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
     from().fill((first + static_cast<std::int64_t>(begin)) * factor_,
                 std::span(scratch_).first(count * factor * width));
     for (std::size_t i = 0; i < count; ++i) {
-      std::copy_n(scratch_.begin() + static_cast<std::ptrdiff_t>(i * factor * width), width,
-                  out.begin() + static_cast<std::ptrdiff_t>((begin + i) * width));
+      for (std::size_t f = 0; f < width; ++f)
+        out[(begin + i) * width + f] = passed(&scratch_[i * factor * width + f]);
     }
   }
+}
+
+/// The sample that stands for `factor` samples of a focal point.
+FocusSample Decimation::passed(const FocusSample* samples) const noexcept {
+  FocusSample first = *samples;
+  const auto width = static_cast<std::ptrdiff_t>(foci());
+  for (int i = 1; i < factor_; ++i)
+    if (std::islessequal(samples[i * width].intensity, kSilent)) first.intensity = 0.0F;
+  return first;
 }
 
 void SampleTap::fill(std::int64_t first, std::span<FocusSample> out) noexcept {

@@ -19,7 +19,8 @@ class SharedIntensity final : public SampleStage {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 };
 
-/// Passes on the first of every `factor` samples.
+/// Passes on the first of every `factor` samples. It is silent for a focal point that is silent in
+/// any of them: an emission jumps only there, and a jump must not be heard.
 class Decimation final : public SampleStage {
  public:
   explicit Decimation(int factor) : factor_(factor) {}
@@ -27,6 +28,8 @@ class Decimation final : public SampleStage {
 
  private:
   void follow(SampleSource& from) override;
+  FocusSample passed(const FocusSample* samples) const noexcept;
+
   int factor_;
   std::vector<FocusSample> scratch_;
 };
