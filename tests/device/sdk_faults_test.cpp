@@ -147,11 +147,16 @@ TEST(Autd3SdkFaults, UnitsFallSilentByThemselvesWhenItsProcessIsKilled) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      Moving source(4);
-      const auto array = opened({.address = chain.address()});
-      source.set_rate(array->info().sample_rate);
-      started(*array, source);
-      for (;;) pause();
+      // the child ends here, whatever happens
+      try {
+        Moving source(4);
+        const auto array = opened({.address = chain.address()});
+        source.set_rate(array->info().sample_rate);
+        started(*array, source);
+        for (;;) pause();
+      } catch (...) {
+        _exit(1);
+      }
     }
     ASSERT_TRUE(sounds_again(chain, before));
     sleep(200 + 3 * i);

@@ -63,7 +63,7 @@ inline std::unique_ptr<Autd3SdkArray> opened(const Autd3SdkSetup& setup) {
     try {
       return std::make_unique<Autd3SdkArray>(setup);
     } catch (const std::invalid_argument&) {
-      if (tries == 10) throw;
+      if (tries == 40) throw;
     }
   }
 }
