@@ -49,7 +49,9 @@ int main() {
   lift(plan, frame, emitter->draft());
   emitter->submit();
 
-  const auto chain = make_sample_chain(*emitter, device->info(), {});
+  // caps on the levels of the array, for a head half a metre away
+  const auto levels = std::make_shared<const SafetyLevels>(usx_array(), Medium{}, 0.5);
+  const auto chain = make_sample_chain(*emitter, device->info(), {.levels = levels});
   device->start(*chain);  // loads the first 20 ms
   device->pull(5);        // plays them and four more; then 100 ms have passed without a new plan
   device->stop();
