@@ -9,8 +9,9 @@ compiler=(clang++)
 command -v ccache >/dev/null && compiler=(ccache clang++)
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+# a stand-in takes the place of Ultraleap's SDK, which nobody may pass on
 # a file that a source includes once for each vector target (*-inl.hpp) does not stand alone
 find "${@:-.}" -name '*.hpp' ! -name '*-inl.hpp' -print0 |
   xargs -0 -P "$(nproc)" -I{} sh -c 'o=$1/$(echo "$2" | tr / _).o; shift 2; exec "$@" -o "$o"' \
     sh "$out" {} "${compiler[@]}" -xc++ -std=c++20 -c {} -Wall -Wextra -Wshadow -Werror \
-    -Wno-pragma-once-outside-header -I.. "${libraries[@]/#-I/-isystem}"
+    -Wno-pragma-once-outside-header -I.. "${libraries[@]/#-I/-isystem}" -isystem ../../tests/ultraleap_sdk/include
