@@ -20,7 +20,8 @@ class SharedIntensity final : public SampleStage {
 };
 
 /// Passes on the first of every `factor` samples. It is silent for a focal point that is silent in
-/// any of them: an emission jumps only there, and a jump must not be heard.
+/// any of them, since an emission jumps only there. The limiter after it lets an intensity fall by
+/// factor/40 at once, so up to 0.04 of AM's full intensity may be left at a jump where factor is 6.
 class Decimation final : public SampleStage {
  public:
   explicit Decimation(int factor) : factor_(factor) {}
