@@ -12,8 +12,7 @@ namespace {
 
 constexpr int kFade = 16;         // samples
 constexpr double kLeast = 10e-3;  // [m]
-constexpr PointGate::Bounds kBounds = {
-    .least_separation = kLeast, .largest_step = 0.5e-3, .fade = kFade};
+constexpr PointGate::Bounds kBounds = {.least_separation = kLeast, .fade = kFade};
 
 FocusSample focus(double x, double intensity) {
   return {Eigen::Vector3f(static_cast<float>(x), 0.0F, 0.2F), static_cast<float>(intensity)};
@@ -34,26 +33,22 @@ TEST(PointGate, LetsPointsThatAreFarEnoughPassLater) {
   EXPECT_EQ(gate.weakened(), 0);
 }
 
-TEST(PointGate, SilencesAPointAroundItsJump) {
+TEST(PointGate, SilencesAPointAroundASampleThatIsNotFinite) {
   PointGate gate;
   gate.configure(1, kBounds);
   std::vector<FocusSample> out(1);
   for (int i = 0; i < 200; ++i) {
-    gate.step(std::vector{focus(i < 100 ? 0.0 : 0.02, 0.5)}, out);
+    gate.step(std::vector{focus(0.01, i == 100 ? std::nan("") : 0.5)}, out);
     if (i < kFade) continue;
-    const int from_jump = std::abs(i - kFade - 100);
-    ASSERT_NEAR(static_cast<double>(out[0].intensity), 0.5 * std::min(1.0, from_jump / 16.0), 1e-6);
-    ASSERT_EQ(out[0].p_D.x(), i - kFade < 100 ? 0.0F : 0.02F);
+    const int from_it = std::abs(i - kFade - 100);
+    ASSERT_NEAR(static_cast<double>(out[0].intensity), 0.5 * std::min(1.0, from_it / 16.0), 1e-6);
+    ASSERT_EQ(out[0].p_D.x(), 0.01F);
   }
-  // below 1 % it may jump
-  gate.configure(1, kBounds);
-  for (int i = 0; i < 200; ++i) gate.step(std::vector{focus(0.02 * (i % 2), 0.009)}, out);
-  EXPECT_EQ(gate.weakened(), 0);
 }
 
 TEST(PointGate, LetsPointsMeetWhereTheDeviceHasNoBound) {
   PointGate gate;
-  gate.configure(2, {.least_separation = 0.0, .largest_step = 1.0, .fade = kFade});
+  gate.configure(2, {.least_separation = 0.0, .fade = kFade});
   std::vector<FocusSample> out(2);
   for (int i = 0; i < 100; ++i) gate.step(std::vector{focus(0.01, 0.5), focus(0.01, 0.5)}, out);
   EXPECT_EQ(out[1].intensity, 0.5F);
@@ -121,7 +116,6 @@ class RandomPoints {
       const double change = change_ * unit_(random_);
       point.intensity = std::clamp(point.intensity + static_cast<float>(change), 0.0F, 1.0F);
       if (unit_(random_) > 0.998) point.intensity = std::nanf("");
-      if (unit_(random_) > 0.998) point.p_D = -point.p_D;
     }
     given_ = points_;
     // goes on from what was meant
@@ -156,9 +150,6 @@ TEST(PointGate, KeepsRandomPointsApartWithoutClicks) {
         largest = std::max(largest, std::abs(static_cast<double>(out[a].intensity) -
                                              static_cast<double>(last[a].intensity)));
         sum += static_cast<double>(out[a].intensity);
-        const bool heard = out[a].intensity > 0.01F && last[a].intensity > 0.01F;
-        const double moved = static_cast<double>((out[a].p_D - last[a].p_D).norm());
-        ASSERT_LE(heard ? moved : 0.0, 0.501e-3) << i;
         for (std::size_t b = 0; b < a; ++b) {
           if (out[a].intensity == 0.0F || out[b].intensity == 0.0F) continue;
           ASSERT_GE(static_cast<double>((out[a].p_D - out[b].p_D).norm()), kLeast * 0.9999) << i;

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <thread>
 
-#include "prostm/device/detail/jump_guard.hpp"
 #include "prostm/device/detail/sdk_session.hpp"
 #include "prostm/device/detail/segment_player.hpp"
 #include "prostm/device/thread_priority.hpp"
@@ -25,7 +24,6 @@ constexpr std::int64_t kPeriod = 25'000;  // of 40 kHz [ns]
 constexpr double kRamp = 8e-3;            // of intensity after silence and before it [s]
 constexpr microseconds kMargin{300};      // after a turn, within which the clocks agree
 constexpr microseconds kPoll{500};        // between looks at which bank plays
-constexpr double kMostSpeed = 8.0;        // beyond which a step is a jump [m/s]
 constexpr int kMostTurns = 20;            // until a bank must play
 constexpr milliseconds kRetry{50};
 constexpr double kUnitWidth = 192e-3;  // [m]
@@ -86,7 +84,6 @@ struct Autd3SdkArray::Impl {
   std::string description;
 
   SampleSource* source = nullptr;
-  JumpGuard jumps;
   SegmentPlayer segment;
   bool plays_segment = false;
   std::vector<FocusSample> samples;           // of a block
@@ -219,7 +216,6 @@ void Autd3SdkArray::Impl::fill_block() {
   for (std::size_t s = 0; s < samples.size() / width; ++s) {
     gain = std::clamp(gain + (falls ? -step : step), 0.0F, 1.0F);
     const std::span<FocusSample> sample = std::span(samples).subspan(s * width, width);
-    jumps.apply(sample);
     for (FocusSample& focus : sample) focus.intensity *= gain;
     encoder->encode(sample, words);
     for (std::size_t u = 0; u < blocks.size(); ++u)
@@ -320,7 +316,6 @@ DeviceStatus Autd3SdkArray::Impl::begin(SampleSource& from) {
   source = &from;
   samples.resize(static_cast<std::size_t>(budget.block_samples * from.foci()));
   block = 0;
-  jumps.reset(from.foci(), kMostSpeed / info.sample_rate);
   {
     const std::lock_guard lock(mutex);
     stats = {.queue_blocks = 1};

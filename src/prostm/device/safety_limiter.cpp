@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prostm/emit/emitter.hpp"
+
 namespace prostm {
 namespace {
 
 constexpr float kRounding = 1e-4F;  // rounding of floats, which is no excess
 constexpr float kSilence = 0.01F;   // intensity
+constexpr float kFarthest = 100.0F;  // [m], beyond which there are no focal points
+constexpr double kStepMargin = 1e-3;  // of a step, for places in floats
 constexpr double kRampTime = 0.050, kSilenceTime = 0.100, kMuteTime = 0.010;  // [s]
 
 // The mean over time has this time constant, so that over a second it is at most
@@ -23,10 +27,11 @@ constexpr float kKnee = 1.25F, kMostDrive = 8.0F;
 // here, as for SimulatedArray
 constexpr double kFullScaleHeight = 0.2;  // [m]
 
-/// Whether all numbers are finite, without comparisons, which trap on NaN.
+/// Whether all numbers are finite and the place is near enough. Tested so that NaN is not compared.
 bool is_finite(const FocusSample& s) {
-  return std::isfinite(s.p_D.x()) && std::isfinite(s.p_D.y()) && std::isfinite(s.p_D.z()) &&
-         std::isfinite(s.intensity);
+  for (const float x : s.p_D)
+    if (!std::isfinite(x) || std::abs(x) > kFarthest) return false;
+  return std::isfinite(s.intensity);
 }
 
 /// Largest Σ of drives where a full drive of `allowed` keeps all caps, (G4).
@@ -66,6 +71,7 @@ SafetyLimiter::SafetyLimiter(const SampleLimits& limits)
     : limits_(limits),
       change_(static_cast<float>(limits.change) * (1.0F + kRounding)),
       power_(static_cast<float>(std::min(limits.power, limits.caps.power)) * (1.0F + kRounding)),
+      step_(static_cast<float>(kMaxFocusSpeed / limits.sample_rate * (1.0 + kStepMargin))),
       ramp_(static_cast<float>(1.0 / (kRampTime * limits.sample_rate))),
       mute_fall_(static_cast<float>(1.0 / (kMuteTime * limits.sample_rate))),
       weight_(static_cast<float>(1.0 / (kMeanTime * limits.sample_rate))),
@@ -95,6 +101,7 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
   for (std::size_t f = 0; f < now.size(); ++f) clean(f, now[f]);
   advance_ramps(now, muted);
   const float ceiling = std::min(ceiling_, unmuted_);
+  bool one_jumps = false;
   for (std::size_t f = 0; f < now.size(); ++f) {
     float& intensity = now[f].intensity;
     if (intensity > ceiling) {
@@ -103,25 +110,28 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
     }
     const float last = focus_[f].last.intensity;
     intensity = std::clamp(intensity, last - change_, last + change_);
+    if (holding_ || !jumps(f, now[f])) continue;
+    one_jumps = true;
+    hold(f, now[f]);
+    count(SafetyLimit::Jump);
   }
 
   // all of them together
   if (holding_) {
-    hold(now);
+    hold_all(now, held_for_);
+  } else if (one_jumps && limits_.one_intensity) {
+    hold_all(now, SafetyLimit::Jump);
   } else {
-    SafetyLimit reason{};
-    const float share = scale(now, reason);
-    bool reachable = true;
-    for (std::size_t f = 0; f < now.size() && share < 1.0F; ++f)
-      reachable = reachable && share * now[f].intensity >= focus_[f].last.intensity - change_;
-    if (!reachable) {
-      hold(now);
-    } else if (share < 1.0F) {
-      for (FocusSample& sample : now) sample.intensity *= share;
-      count(reason, static_cast<std::int64_t>(now.size()));
-    }
+    keep_caps(now);
   }
   account(now);
+}
+
+/// Whether a focal point sounds before and after a step that is too long.
+bool SafetyLimiter::jumps(std::size_t f, const FocusSample& now) const noexcept {
+  const FocusSample& last = focus_[f].last;
+  return now.intensity > kSilence && last.intensity > kSilence &&
+         (now.p_D - last.p_D).squaredNorm() > step_ * step_;
 }
 
 /// Makes a sample finite, in a place where levels are known, and not above the cap.
@@ -229,17 +239,32 @@ float SafetyLimiter::scale(std::span<const FocusSample> now, SafetyLimit& reason
   return most;
 }
 
-/// Fades where the focal points were: what was within all caps stays so while it falls.
-void SafetyLimiter::hold(std::span<FocusSample> now) noexcept {
-  bool silent = true;
+/// Lowers all intensities as far as the caps need.
+void SafetyLimiter::keep_caps(std::span<FocusSample> now) noexcept {
+  SafetyLimit reason{};
+  const float share = scale(now, reason);
+  if (share >= 1.0F) return;
   for (std::size_t f = 0; f < now.size(); ++f) {
-    Focus& focus = focus_[f];
-    now[f] = {focus.last.p_D, std::max(0.0F, focus.last.intensity - change_)};
-    focus.wanted_pressure = focus.full_pressure;
-    silent = silent && now[f].intensity == 0.0F;
+    if (share * now[f].intensity < focus_[f].last.intensity - change_)
+      return hold_all(now, reason);
   }
-  holding_ = !silent;
-  count(SafetyLimit::Jump, static_cast<std::int64_t>(now.size()));
+  for (FocusSample& sample : now) sample.intensity *= share;
+  count(reason, static_cast<std::int64_t>(now.size()));
+}
+
+/// Fades a focal point where it was.
+void SafetyLimiter::hold(std::size_t f, FocusSample& now) noexcept {
+  Focus& focus = focus_[f];
+  now = {focus.last.p_D, std::max(0.0F, focus.last.intensity - change_)};
+  focus.wanted_pressure = focus.full_pressure;
+}
+
+/// Fades all where they were: what was within all caps stays so while it falls.
+void SafetyLimiter::hold_all(std::span<FocusSample> now, SafetyLimit reason) noexcept {
+  for (std::size_t f = 0; f < now.size(); ++f) hold(f, now[f]);
+  holding_ = std::ranges::any_of(now, [](const FocusSample& s) { return s.intensity > 0.0F; });
+  held_for_ = reason;
+  count(reason, static_cast<std::int64_t>(now.size()));
 }
 
 /// Remembers what leaves.

@@ -36,7 +36,8 @@ struct SampleLimits {
   SafetySettings caps = {};
   /// Null: the array is not known, and the caps on levels at focal points and head do nothing.
   std::shared_ptr<const SafetyLevels> levels = nullptr;
-  double sample_rate = 40e3;  ///< [Hz]
+  double sample_rate = 40e3;        ///< [Hz]
+  bool one_intensity = false;       ///< the device has one for all focal points of a sample
 };
 
 /// Reason for changing a sample.
@@ -51,7 +52,7 @@ enum class SafetyLimit : std::uint8_t {
   RadiationPressure,
   MeanRadiationPressure,
   HeadLevel,
-  Jump,  ///< a jump to a louder place waited for silence
+  Jump,  ///< a jump waited for silence
   Ramp   ///< after the start, and after silence
 };
 inline constexpr std::size_t kSafetyLimits = 12;
@@ -80,7 +81,8 @@ const char* main_cap(const SafetyStats& stats);
 
 /// Limits the samples that leave for a device, whatever the stages before it do.
 ///
-/// Guarantees, for any samples whatsoever: finite numbers; places where levels are known;
+/// Guarantees, for any samples whatsoever: finite numbers; places where levels are known; focal
+/// points that move by at most kMaxFocusSpeed (8 m/s) from sample to sample while they sound;
 /// intensities from 0 to the cap, that change by at most `change` a sample; Σ intensity² within
 /// both limits; acoustic and radiation pressure of every sample within their caps; the means of
 /// radiation pressure and of the head's level within theirs over any second, and over longer times.
@@ -91,8 +93,8 @@ const char* main_cap(const SafetyStats& stats);
 ///
 /// Samples that keep all this pass unchanged, to the bit, unless a level is within 25 % (in
 /// pressure) of its cap: there intensities are lowered which add nothing any more to a full drive,
-/// so that a cap bites without a step. Where no fall by `change` keeps the caps, because a focal
-/// point jumped, all stay where they were until they are silent.
+/// so that a cap bites without a step. A focal point that jumps stays where it was until it is
+/// silent; all do, if the device has one intensity for all, or if no fall by `change` keeps a cap.
 class SafetyLimiter final : public SampleStage {
  public:
   explicit SafetyLimiter(const SampleLimits& limits);
@@ -127,11 +129,14 @@ class SafetyLimiter final : public SampleStage {
   void follow(SampleSource& from) override;
   void limit(std::span<FocusSample> now) noexcept;
   void clean(std::size_t focus, FocusSample& now) noexcept;
+  bool jumps(std::size_t focus, const FocusSample& now) const noexcept;
   void advance_ramps(std::span<const FocusSample> wanted, bool muted) noexcept;
   Level level(std::span<const FocusSample> samples) const noexcept;
   float cap_drive(float pressure, SafetyLimit& reason) const noexcept;
   float scale(std::span<const FocusSample> now, SafetyLimit& reason) const noexcept;
-  void hold(std::span<FocusSample> now) noexcept;
+  void keep_caps(std::span<FocusSample> now) noexcept;
+  void hold(std::size_t focus, FocusSample& now) noexcept;
+  void hold_all(std::span<FocusSample> now, SafetyLimit reason) noexcept;
   void account(std::span<const FocusSample> now) noexcept;
   void count(SafetyLimit reason, std::int64_t n = 1) noexcept {
     counts_[static_cast<std::size_t>(reason)] += n;
@@ -139,13 +144,14 @@ class SafetyLimiter final : public SampleStage {
   void publish() noexcept;
 
   const SampleLimits limits_;
-  const float change_, power_, ramp_, mute_fall_, weight_;
+  const float change_, power_, step_, ramp_, mute_fall_, weight_;
   const std::int64_t silence_;  // samples after which a ramp begins
   float head_cap_ = 0.0F;       // of the mean of drive²
   std::shared_ptr<const Mute> mute_;
 
   std::vector<Focus> focus_;
-  bool holding_ = false;
+  bool holding_ = false;  // all focal points, until they are silent
+  SafetyLimit held_for_{};
   float ceiling_, unmuted_ = 1.0F;
   std::int64_t silent_ = 0;  // samples
   Mean radiation_, head_;

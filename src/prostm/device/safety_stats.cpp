@@ -47,7 +47,7 @@ constexpr std::array kStats{
     count("mean_radiation_pressure", &S::mean_radiation_pressure,
           "Samples above that on its mean over a second."),
     count("head_level", &S::head_level, "Samples above that on the level at the head."),
-    count("jump", &S::jump, "Samples in which a jump to a louder place waited for silence."),
+    count("jump", &S::jump, "Samples in which a jump waited for silence."),
     count("ramp", &S::ramp, "Samples in a ramp after the start, silence or a mute."),
     level("acoustic_low_pa", "Pa", &S::acoustic_low, "Largest acoustic pressure, rms, at least."),
     level("acoustic_high_pa", "Pa", &S::acoustic_high, "The same at most."),
@@ -79,7 +79,7 @@ std::int64_t erred_samples(const SafetyStats& s) {
 
 std::int64_t capped_samples(const SafetyStats& s) {
   return s.place + s.intensity + s.acoustic_pressure + s.radiation_pressure +
-         s.mean_radiation_pressure + s.head_level + s.jump;
+         s.mean_radiation_pressure + s.head_level;
 }
 
 const char* main_cap(const SafetyStats& s) {
@@ -89,8 +89,7 @@ const char* main_cap(const SafetyStats& s) {
       {s.acoustic_pressure, "acoustic_pressure"},
       {s.radiation_pressure, "radiation_pressure"},
       {s.mean_radiation_pressure, "mean_radiation_pressure"},
-      {s.head_level, "head_level"},
-      {s.jump, "jump"}};
+      {s.head_level, "head_level"}};
   return std::max_element(std::begin(caps), std::end(caps),
                           [](const auto& a, const auto& b) { return a.first < b.first; })
       ->second;

@@ -5,7 +5,6 @@
 namespace prostm {
 namespace {
 
-constexpr float kSilent = 0.01F;     // intensity up to which an emission may jump
 constexpr std::size_t kAtOnce = 64;  // samples of a decimated stream that are made at a time
 
 }  // namespace
@@ -33,20 +32,9 @@ void Decimation::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
     const std::size_t count = std::min(kAtOnce, samples - begin);
     from().fill((first + static_cast<std::int64_t>(begin)) * factor_,
                 std::span(scratch_).first(count * factor * width));
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t f = 0; f < width; ++f)
-        out[(begin + i) * width + f] = passed(&scratch_[i * factor * width + f]);
-    }
+    for (std::size_t i = 0; i < count; ++i)
+      std::copy_n(&scratch_[i * factor * width], width, &out[(begin + i) * width]);
   }
-}
-
-/// The sample that stands for `factor` samples of a focal point.
-FocusSample Decimation::passed(const FocusSample* samples) const noexcept {
-  FocusSample first = *samples;
-  const auto width = static_cast<std::ptrdiff_t>(foci());
-  for (int i = 1; i < factor_; ++i)
-    if (std::islessequal(samples[i * width].intensity, kSilent)) first.intensity = 0.0F;
-  return first;
 }
 
 void SampleTap::fill(std::int64_t first, std::span<FocusSample> out) noexcept {
@@ -73,6 +61,7 @@ std::unique_ptr<SampleChain> make_sample_chain(SampleSource& source, const Devic
   own.change *= device.decimation;
   own.sample_rate =
       device.sample_rate > 0.0 ? device.sample_rate : limits.sample_rate / device.decimation;
+  own.one_intensity = !device.intensity_per_focus;
   auto chain = std::make_unique<SampleChain>(source, own);
   if (device.decimation > 1) chain->add<Decimation>(device.decimation);
   if (!device.intensity_per_focus) chain->add<SharedIntensity>();

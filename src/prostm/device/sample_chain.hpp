@@ -19,9 +19,8 @@ class SharedIntensity final : public SampleStage {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 };
 
-/// Passes on the first of every `factor` samples. It is silent for a focal point that is silent in
-/// any of them, since an emission jumps only there. The limiter after it lets an intensity fall by
-/// factor/40 at once, so up to 0.04 of AM's full intensity may be left at a jump where factor is 6.
+/// Passes on the first of every `factor` samples. A sample in which an emission falls silent to jump
+/// may be dropped; the limiter silences the jump again.
 class Decimation final : public SampleStage {
  public:
   explicit Decimation(int factor) : factor_(factor) {}
@@ -29,7 +28,6 @@ class Decimation final : public SampleStage {
 
  private:
   void follow(SampleSource& from) override;
-  FocusSample passed(const FocusSample* samples) const noexcept;
 
   int factor_;
   std::vector<FocusSample> scratch_;

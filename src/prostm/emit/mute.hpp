@@ -11,7 +11,8 @@ enum class MuteReason : std::uint32_t {
   Calibration = 1U,  ///< a finger is going to touch the transducers
   NoHand = 2U,       ///< the last step of a run in real time found no hand
   Person = 4U,       ///< somebody who looks at the run asked for silence
-  Hot = 8U           ///< the device says that it is too hot
+  Hot = 8U,          ///< the device says that it is too hot
+  Ended = 16U        ///< the run was stopped, or something in it failed
 };
 
 /// Set by any thread, obeyed by an emitter at its next block. Nobody waits.

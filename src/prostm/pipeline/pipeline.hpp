@@ -185,6 +185,8 @@ class Pipeline {
   /// @throws std::invalid_argument with a sentence; then everything is as it was.
   void reconfigure(const PipelineSettings& settings);
 
+  /// Begins to fade the output out, and lets no plan sound after it. Any thread.
+  void mute_for_good() noexcept { mute_->set(MuteReason::Ended, true); }
   /// Fades the output out and stops the device. @pre no other thread uses the pipeline.
   void silence();
 

@@ -76,6 +76,10 @@ class Run {
   void keep_the_pause(bool watched);
 
   bool over() const { return shared_.end.over(); }
+  /// The output need not wait for the threads to end.
+  void mute_if_over() {
+    if (pace_.realtime && over()) pipeline_.mute_for_good();
+  }
 
   void drain_updates() {
     while (Update* update = shared_.updates.front()) {
@@ -124,9 +128,11 @@ void Run::segment() {
       check_device();
       pipeline_.watch_heat(steady_now());
       look();
+      mute_if_over();
       std::this_thread::sleep_for(kLook);
     }
   });
+  mute_if_over();
   if (world.joinable()) world.join();
   if (plans.joinable()) plans.join();
   if (!shared_.end.failed()) drain_updates();

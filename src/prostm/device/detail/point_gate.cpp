@@ -8,8 +8,6 @@ namespace {
 
 // A point that sounds counts as this much stronger, so that equals do not take turns.
 constexpr float kStays = 1.5F;
-constexpr float kAudible = 0.01F;   // intensity below which a point may jump
-constexpr double kRounding = 1e-3;  // of steps, for floats
 
 bool is_finite(const FocusSample& s) {
   return std::isfinite(s.p_D.x()) && std::isfinite(s.p_D.y()) && std::isfinite(s.p_D.z()) &&
@@ -27,7 +25,6 @@ void PointGate::configure(int foci, const Bounds& bounds) {
   delay_ = std::max(1, bounds.fade);
   fade_step_ = 1.0F / static_cast<float>(delay_);
   least_squared_ = squared(std::max(0.0, bounds.least_separation));
-  step_squared_ = squared(bounds.largest_step * (1.0 + kRounding));
   line_.assign((static_cast<std::size_t>(delay_) + 1) * foci_, Waiting{});
   sounds_.assign(foci_, 0);
   refused_.assign(foci_, 0);
@@ -52,9 +49,7 @@ void PointGate::take(std::size_t focus, const FocusSample& given) {
     return;
   }
   now = {given.p_D, std::clamp(given.intensity, 0.0F, 1.0F)};
-  const bool jumps = now.intensity > kAudible && before.intensity > kAudible &&
-                     (now.p_D - before.p_D).squaredNorm() > step_squared_;
-  refused_[focus] = jumps ? 1 : 0;
+  refused_[focus] = 0;
 }
 
 /// Refuses the points of the newest sample that are too close to a stronger one.

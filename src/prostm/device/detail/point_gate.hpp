@@ -1,5 +1,5 @@
 #pragma once
-/// Silences focal points where they come too close or jump.
+/// Silences focal points where they come too close.
 
 #include <cstdint>
 #include <span>
@@ -10,16 +10,14 @@
 namespace prostm {
 
 /// Where sounding focal points come closer than a least separation, only the strongest of them goes
-/// on sounding. A point that jumps, as one of AM does at a zero that decimation has left out, is
-/// silent in the sample after the jump; so is a sample that is not finite. Around such samples the
-/// point fades out and in again: the gate looks ahead by the time of a fade, and samples leave that
-/// much later. Positions never change. An intensity changes by at most its own change and a step of
-/// the fade. Points of intensity 0 may lie anywhere.
+/// on sounding; a sample that is not finite is silent. Around such samples the point fades out and in
+/// again: the gate looks ahead by the time of a fade, and samples leave that much later. Positions
+/// never change. An intensity changes by at most its own change and a step of the fade. Points of
+/// intensity 0 may lie anywhere.
 class PointGate {
  public:
   struct Bounds {
     double least_separation = 0.0;  ///< of two sounding points [m]; 0 or less: any
-    double largest_step = 1.0;      ///< from sample to sample, above 1 % of intensity [m]
     int fade = 1;                   ///< samples of a fade over the full range, >= 1
   };
 
@@ -45,7 +43,7 @@ class PointGate {
 
   std::size_t foci_ = 0, newest_ = 0;
   int delay_ = 1;
-  float least_squared_ = 0.0F, step_squared_ = 1.0F, fade_step_ = 1.0F;
+  float least_squared_ = 0.0F, fade_step_ = 1.0F;
   std::vector<Waiting> line_;           // delay_ + 1 samples, a ring
   std::vector<char> sounds_, refused_;  // of each focal point, for the newest sample
   std::vector<std::size_t> order_;      // focal points, the strongest first

@@ -9,7 +9,7 @@ namespace prostm {
 std::string segment_problem(std::span<const FocusSample> samples, int foci, int max_foci) {
   std::ostringstream text;
   if (foci < 1 || foci > max_foci) {
-    text << "The segment has " << foci << " focal points a sample; the simulated array plays 1 to "
+    text << "The segment has " << foci << " focal points a sample; the array plays 1 to "
          << max_foci << ".";
   } else if (samples.empty() || samples.size() % static_cast<std::size_t>(foci) != 0) {
     text << "The segment holds " << samples.size()

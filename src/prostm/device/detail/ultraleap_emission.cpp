@@ -32,9 +32,7 @@ void UltraleapEmission::start(SampleSource& source, const Setup& setup) {
   setup_ = setup;
   const int fade = std::max(1, static_cast<int>(std::ceil(setup.fade_time * setup.rate)));
   fade_step_ = 1.0F / static_cast<float>(fade);
-  gate_.configure(setup.foci, {.least_separation = setup.least_separation,
-                               .largest_step = kMaxFocusSpeed / setup.rate,
-                               .fade = fade});
+  gate_.configure(setup.foci, {.least_separation = setup.least_separation, .fade = fade});
   const auto foci = static_cast<std::size_t>(setup.foci);
   block_.assign(kAtOnce * foci, FocusSample());
   now_.assign(foci, FocusSample());
