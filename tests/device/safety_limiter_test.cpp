@@ -369,7 +369,8 @@ TEST(SafetyLimiter, AMeanCapBitesWithoutAStepAndStays) {
   EXPECT_EQ(erred_samples(stats), 0) << "a cap is nobody's fault";
   EXPECT_NEAR(stats.mean_high, 100.0 / 1.1, 0.5) << "the mean of 0.1 s that keeps it in any second";
   // steady in the end, at the level that the cap allows
-  for (std::size_t i = 4 * 2500; i < out.size(); ++i) ASSERT_GT(out[i].intensity, 0.05F) << "no dip";
+  for (std::size_t i = 4 * 2500; i < out.size(); ++i)
+    ASSERT_GT(out[i].intensity, 0.05F) << "no dip";
   for (std::size_t i = out.size() - 4 * 40'000; i < out.size(); ++i)
     ASSERT_NEAR(out[i].intensity, out.back().intensity, 1e-3F);
 }

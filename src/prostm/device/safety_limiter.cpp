@@ -8,9 +8,9 @@
 namespace prostm {
 namespace {
 
-constexpr float kRounding = 1e-4F;  // rounding of floats, which is no excess
-constexpr float kSilence = 0.01F;   // intensity
-constexpr float kFarthest = 100.0F;  // [m], beyond which there are no focal points
+constexpr float kRounding = 1e-4F;    // rounding of floats, which is no excess
+constexpr float kSilence = 0.01F;     // intensity
+constexpr float kFarthest = 100.0F;   // [m], beyond which there are no focal points
 constexpr double kStepMargin = 1e-3;  // of a step, for places in floats
 constexpr double kRampTime = 0.050, kSilenceTime = 0.100, kMuteTime = 0.010;  // [s]
 
@@ -245,8 +245,7 @@ void SafetyLimiter::keep_caps(std::span<FocusSample> now) noexcept {
   const float share = scale(now, reason);
   if (share >= 1.0F) return;
   for (std::size_t f = 0; f < now.size(); ++f) {
-    if (share * now[f].intensity < focus_[f].last.intensity - change_)
-      return hold_all(now, reason);
+    if (share * now[f].intensity < focus_[f].last.intensity - change_) return hold_all(now, reason);
   }
   for (FocusSample& sample : now) sample.intensity *= share;
   count(reason, static_cast<std::int64_t>(now.size()));

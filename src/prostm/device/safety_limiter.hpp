@@ -36,8 +36,8 @@ struct SampleLimits {
   SafetySettings caps = {};
   /// Null: the array is not known, and the caps on levels at focal points and head do nothing.
   std::shared_ptr<const SafetyLevels> levels = nullptr;
-  double sample_rate = 40e3;        ///< [Hz]
-  bool one_intensity = false;       ///< the device has one for all focal points of a sample
+  double sample_rate = 40e3;   ///< [Hz]
+  bool one_intensity = false;  ///< the device has one for all focal points of a sample
 };
 
 /// Reason for changing a sample.

@@ -19,8 +19,8 @@ class SharedIntensity final : public SampleStage {
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
 };
 
-/// Passes on the first of every `factor` samples. A sample in which an emission falls silent to jump
-/// may be dropped; the limiter silences the jump again.
+/// Passes on the first of every `factor` samples. A sample in which an emission falls silent to
+/// jump may be dropped; the limiter silences the jump again.
 class Decimation final : public SampleStage {
  public:
   explicit Decimation(int factor) : factor_(factor) {}

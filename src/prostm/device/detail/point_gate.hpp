@@ -10,10 +10,10 @@
 namespace prostm {
 
 /// Where sounding focal points come closer than a least separation, only the strongest of them goes
-/// on sounding; a sample that is not finite is silent. Around such samples the point fades out and in
-/// again: the gate looks ahead by the time of a fade, and samples leave that much later. Positions
-/// never change. An intensity changes by at most its own change and a step of the fade. Points of
-/// intensity 0 may lie anywhere.
+/// on sounding; a sample that is not finite is silent. Around such samples the point fades out and
+/// in again: the gate looks ahead by the time of a fade, and samples leave that much later.
+/// Positions never change. An intensity changes by at most its own change and a step of the fade.
+/// Points of intensity 0 may lie anywhere.
 class PointGate {
  public:
   struct Bounds {
