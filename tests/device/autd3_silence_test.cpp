@@ -2,6 +2,7 @@
 #include <fcntl.h>
 
 #include "autd3_stand_in.hpp"
+#include "prostm/device/detail/autd3_session.hpp"
 #include "support/eventually.hpp"
 
 namespace prostm {
@@ -148,6 +149,22 @@ TEST(Autd3Silence, ComesWhenTheLinkIsKilledAndSoundComesBack) {
     std::printf("link %s: silent %.1f ms later, sounds %.0f ms later\n",
                 signal == SIGKILL ? "killed" : "stopped", 1e3 * silent, 1e3 * again);
   }
+}
+
+TEST(Autd3Silence, ComesInsteadOfAFrameThatIsTooLate) {
+  StandIn server;
+  autd3::Session session(server.setup().address, {Pose::Identity()});
+  const auto now = [] { return autd3::Session::Clock::now(); };
+  ASSERT_TRUE(session.open(std::chrono::seconds(2)) && session.prepare(nullptr));
+  autd3::nop(session.frame(0));
+  ASSERT_TRUE(session.exchange_for_all(now() + std::chrono::seconds(1)));
+  // as if the link's process had been held up
+  const std::int64_t frames = server.report()["frames"];
+  EXPECT_FALSE(session.exchange_for_all(now() - std::chrono::microseconds(1)));
+  EXPECT_NE(session.problem().find("is lost"), std::string::npos) << session.problem();
+  const nlohmann::json report = server.report();
+  EXPECT_EQ(report["frames"], frames + 1) << "the one that clears";
+  EXPECT_EQ(report["goodbyes"], 1);
 }
 
 TEST(Autd3Silence, DoesNotComeFromSignalsToTheLink) {

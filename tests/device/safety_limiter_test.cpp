@@ -81,7 +81,7 @@ class Judge {
                            [](float x) { return std::isfinite(x); });
       if (!finite) return;
       change = std::max(change, std::abs(intensity - last_[f]));
-      if (std::min(intensity, last_[f]) > 0.01)
+      if (std::min(intensity, last_[f]) > 0.0)
         step = std::max(step, static_cast<double>((sample[f].p_D - place_[f]).norm()));
       last_[f] = intensity;
       place_[f] = sample[f].p_D;
@@ -432,7 +432,7 @@ TEST(SafetyLimiter, AJumpWaitsForTheSilenceOfThatFocalPoint) {
     ASSERT_LE(std::abs(out[i].intensity - out[i - 2].intensity), 0.0251F);
     if (i > 2 * 4000 && i % 2 == 1) ASSERT_EQ(out[i].intensity, 1.0F) << "the other goes on";
     if (out[i].p_D == out[i - 2].p_D) continue;
-    ASSERT_LE(out[i - 2].intensity, 0.01F);
+    ASSERT_EQ(out[i - 2].intensity, 0.0F);
     ASSERT_NEAR(static_cast<double>(i) / 2.0, 4040.0, 2.0);
   }
   EXPECT_EQ(out.back().intensity, 1.0F);
@@ -454,7 +454,7 @@ TEST(SafetyLimiter, AJumpSilencesAllOfADeviceWithOneIntensity) {
   for (std::size_t i = 0; i < out.size(); i += 2) ASSERT_EQ(out[i].intensity, out[i + 1].intensity);
   for (std::size_t i = 2; i < out.size(); i += 2) {
     if (out[i].p_D == out[i - 2].p_D) continue;
-    ASSERT_LE(out[i - 2].intensity, 0.01F);
+    ASSERT_EQ(out[i - 2].intensity, 0.0F);
     ASSERT_NEAR(static_cast<double>(i) / 2.0, 4040.0, 2.0);
   }
   EXPECT_EQ(out[out.size() - 2].p_D.x(), -0.02F);

@@ -127,10 +127,11 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
   account(now);
 }
 
-/// Whether a focal point sounds before and after a step that is too long.
+/// Whether a focal point sounds before and after a step that is too long, however faintly: a device
+/// that adds phasors gives a faint one more than its share of slots.
 bool SafetyLimiter::jumps(std::size_t f, const FocusSample& now) const noexcept {
   const FocusSample& last = focus_[f].last;
-  return now.intensity > kSilence && last.intensity > kSilence &&
+  return now.intensity > 0.0F && last.intensity > 0.0F &&
          (now.p_D - last.p_D).squaredNorm() > step_ * step_;
 }
 

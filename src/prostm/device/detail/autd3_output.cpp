@@ -58,13 +58,13 @@ bool Output::begin(TurnClock* turns) {
   return send_modulation({});
 }
 
-bool Output::send_modulation(const SoundingTime& time) {
+bool Output::send_modulation(const SoundingTime& time, Clock::time_point latest) {
   std::array<std::uint8_t, kMostModulation> levels;
   const int count = write_dead_man(time, kRamp, modulation_sample(), levels);
   modulation_ = 1 - modulation_;
   modulation(session_.frame(0), std::span(levels).first(static_cast<std::size_t>(count)),
              modulation_, modulation_divider_);
-  return session_.exchange_for_all();
+  return session_.exchange_for_all(latest);
 }
 
 /// Times of a modulation that begins now, for what is to be heard from `next` to `end`.
@@ -86,7 +86,9 @@ bool Output::sound_is_in_time(Clock::time_point next, Clock::time_point end) con
 
 bool Output::sound(Clock::time_point next, Clock::time_point end) {
   constexpr int kTrials = 3;
+  constexpr int kFramesToSilence = 3;
   const Clock::duration margin = to_duration(early(session_.slow_frame()));
+  const Clock::time_point latest = end - kFramesToSilence * margin;
   for (int trial = 0; trial < kTrials; ++trial) {
     const Clock::time_point now = Clock::now();
     const SoundingTime time = times_of(now, next, end);
@@ -94,7 +96,7 @@ bool Output::sound(Clock::time_point next, Clock::time_point end) {
       if (trial == 0) return true;
       break;
     }
-    if (!send_modulation(time)) return false;
+    if (!send_modulation(time, latest)) return false;
     if (!time.sounds) heard_from_ = now + to_duration(time.next);
     heard_until_ = now + to_duration(time.end - kRamp);
     if (Clock::now() <= now + margin) return true;

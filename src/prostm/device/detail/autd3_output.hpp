@@ -38,6 +38,7 @@ class Output {
   /// Lets output be heard from `next` until `end`; returns before that. It begins with a ramp where
   /// it is not heard yet. If it is too late for that, silence goes on. A modulation begins when it
   /// arrives: if that is not known well enough, it is told again, so nothing is heard after `end`.
+  /// If it is too late for that too, the session fails.
   bool sound(Clock::time_point next, Clock::time_point end);
   /// Whether there is time left for that.
   bool sound_is_in_time(Clock::time_point next, Clock::time_point end) const;
@@ -54,7 +55,8 @@ class Output {
 
  private:
   SoundingTime times_of(Clock::time_point now, Clock::time_point next, Clock::time_point end) const;
-  bool send_modulation(const SoundingTime& time);
+  bool send_modulation(const SoundingTime& time,
+                       Clock::time_point latest = Clock::time_point::max());
   double modulation_sample() const;  // [s]
 
   Session& session_;

@@ -96,8 +96,9 @@ bool Session::prepare(TurnClock* turns) {
 
 /// Sends the request that was written and reads its reply. If the server does not accept it, says
 /// so with its words.
-bool Session::ask(Request request, const char* what, Clock::duration patience) {
-  if (!link_.send(out_, kPatience)) return lost();
+bool Session::ask(Request request, const char* what, Clock::duration patience,
+                  Clock::time_point latest) {
+  if (!link_.send(out_, latest, kPatience)) return lost();
   std::size_t have = 0;
   for (;;) {
     const Reply reply = read_reply({in_.data(), have}, request, units_.size());
@@ -182,14 +183,14 @@ void Session::same_for_all() {
   std::fill(frames_.begin() + 1, frames_.end(), frames_.front());
 }
 
-bool Session::send() noexcept {
+bool Session::send(Clock::time_point latest) noexcept {
   message_ = (message_ + 1) % kMessages;
   out_.assign(1, static_cast<std::uint8_t>(Request::Send));
   for (Frame& frame : frames_) {
     frame[0] = static_cast<std::uint8_t>(message_);
     append(out_, frame.data(), frame.size());
   }
-  return ask(Request::Send, "a frame", kPatience);
+  return ask(Request::Send, "a frame", kPatience, latest);
 }
 
 bool Session::confirm() noexcept {
@@ -209,9 +210,9 @@ bool Session::confirm() noexcept {
   return true;
 }
 
-bool Session::exchange_for_all() noexcept {
+bool Session::exchange_for_all(Clock::time_point latest) noexcept {
   same_for_all();
-  return exchange();
+  return send(latest) && confirm();
 }
 
 bool Session::poll() noexcept {
@@ -245,7 +246,8 @@ void Session::close() noexcept {
   turns_ = nullptr;
   if (!link_.is_open()) return;
   out_.assign(1, static_cast<std::uint8_t>(Request::Close));
-  if (link_.send(out_, kPatience)) link_.receive({in_.data(), 1}, kPatience);
+  if (link_.send(out_, Clock::time_point::max(), kPatience))
+    link_.receive({in_.data(), 1}, kPatience);
   link_.close();
 }
 

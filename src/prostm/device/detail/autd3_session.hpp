@@ -41,12 +41,13 @@ class Session {
   /// Copies the first unit's frame to the others.
   void same_for_all();
   /// Sends the frames. @return false if the server did not take them in time.
-  bool send() noexcept;
+  /// @param latest after which they would do harm; the connection is cut instead.
+  bool send(Clock::time_point latest = Clock::time_point::max()) noexcept;
   /// Waits until all units have answered. @return false if one refused or did not in time.
   bool confirm() noexcept;
   bool exchange() noexcept { return send() && confirm(); }
   /// The same with the first unit's frame for all.
-  bool exchange_for_all() noexcept;
+  bool exchange_for_all(Clock::time_point latest = Clock::time_point::max()) noexcept;
   /// Asks for the units' answers without a new frame. @return false if they do not come.
   bool poll() noexcept;
 
@@ -70,7 +71,8 @@ class Session {
   bool greet(Clock::duration patience);
   bool tell_geometry(Clock::duration patience);
   bool read_firmware();
-  bool ask(Request request, const char* what, Clock::duration patience);
+  bool ask(Request request, const char* what, Clock::duration patience,
+           Clock::time_point latest = Clock::time_point::max());
   bool fail(const std::string& sentence);
   bool lost();
 

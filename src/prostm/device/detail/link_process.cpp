@@ -30,15 +30,20 @@ constexpr int kReplyTime = 30, kSilenceTime = 50;  // [ms], after the owner has 
 constexpr std::uint8_t kClear = 0x01;
 constexpr int kMessages = 16;
 constexpr std::size_t kMostRequest = 5 + kMostUnits * kFrameBytes;
+constexpr std::size_t kTimeBytes = sizeof(std::int64_t);  // before each request
 
 // only used in the forked process, which has a copy of its own
 std::array<std::uint8_t, kMostRequest> request_buffer;
 std::array<std::uint8_t, kMostReply> reply_buffer;
 
-std::int64_t now_ms() {
+std::int64_t now_ns() {
   timespec time{};
-  ::clock_gettime(CLOCK_MONOTONIC, &time);
-  return std::int64_t{1'000} * time.tv_sec + time.tv_nsec / 1'000'000;
+  ::clock_gettime(CLOCK_MONOTONIC, &time);  // that of std::chrono::steady_clock
+  return std::int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
+}
+
+std::int64_t now_ms() {
+  return now_ns() / 1'000'000;
 }
 
 bool should_try_again() {
@@ -52,7 +57,7 @@ class Relay {
   void run() {
     for (;;) {
       const std::size_t size = read_request();
-      if (size == 0) break;
+      if (size == 0 || now_ns() > latest_) break;
       if (!ask(size)) return;
       if (!owner_left() && !write_all(pipe_, reply_buffer.data(), reply_size_)) leave();
       if (is_closed_) return;
@@ -115,6 +120,7 @@ class Relay {
 
   /// Reads a whole request from the owner. @return its size; 0 if the owner has gone.
   std::size_t read_request() {
+    if (!read_some(pipe_, reinterpret_cast<std::uint8_t*>(&latest_), kTimeBytes)) return 0;
     std::size_t have = 0;
     for (;;) {
       const std::size_t known = request_bytes({request_buffer.data(), have}, units_);
@@ -178,6 +184,7 @@ class Relay {
   const int pipe_, server_;
   const std::size_t units_;
   std::size_t reply_size_ = 0;
+  std::int64_t latest_ = 0;    // for the request in the buffer [ns]
   std::int64_t deadline_ = 0;  // [ms]; 0: the owner is there
   int message_ = 0;            // id of the last frame
   bool has_units_ = false, is_closed_ = false;
@@ -243,8 +250,18 @@ std::string LinkProcess::open(const HostPort& address, std::size_t units, Durati
   if (process == 0) hold_link(ends[1], server.socket(), units);
   if (process < 0) return std::strerror(errno);
   process_ = process;
+  message_.reserve(kTimeBytes + kMostRequest);
   pipe_ = std::move(own);
   return {};
+}
+
+bool LinkProcess::send(std::span<const std::uint8_t> bytes, Clock::time_point latest,
+                       Duration patience) noexcept {
+  const std::int64_t time = std::chrono::nanoseconds(latest.time_since_epoch()).count();
+  const auto* first = reinterpret_cast<const std::uint8_t*>(&time);
+  message_.assign(first, first + kTimeBytes);
+  message_.insert(message_.end(), bytes.begin(), bytes.end());
+  return pipe_.send(message_, patience);
 }
 
 void LinkProcess::close() noexcept {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "prostm/device/detail/tcp_connection.hpp"
 
@@ -16,10 +17,12 @@ namespace prostm::autd3 {
 /// at a time. It is forked from the calling process, ignores the signals that end programs, and
 /// keeps no other file open. When the owner closes its end, or ends in any way, it lets the reply
 /// that is under way come in, makes all units forget what they play, says goodbye to the server,
-/// and ends; if the server answers nothing, within kPatience. When the server goes, it ends, and
-/// the owner's end is closed. Not for several threads.
+/// and ends; if the server answers nothing, within kPatience. It does the same when a request comes
+/// later than its owner allowed. When the server goes, it ends, and the owner's end is closed. Not
+/// for several threads.
 class LinkProcess {
  public:
+  using Clock = std::chrono::steady_clock;
   using Duration = TcpConnection::Duration;
   static constexpr std::chrono::milliseconds kPatience{150};
 
@@ -37,15 +40,16 @@ class LinkProcess {
   pid_t process() const { return process_; }  ///< 0: none
 
   /// Sends a whole request; false if that failed, as of TcpConnection.
-  bool send(std::span<const std::uint8_t> bytes, Duration patience) noexcept {
-    return pipe_.send(bytes, patience);
-  }
+  /// @param latest after which it must not reach the server.
+  bool send(std::span<const std::uint8_t> bytes, Clock::time_point latest,
+            Duration patience) noexcept;
   bool receive(std::span<std::uint8_t> bytes, Duration patience) noexcept {
     return pipe_.receive(bytes, patience);
   }
 
  private:
   TcpConnection pipe_;
+  std::vector<std::uint8_t> message_;  // a time, and the request
   pid_t process_ = 0;
 };
 
