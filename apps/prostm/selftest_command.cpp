@@ -67,7 +67,7 @@ class Tested {
   Device& device() { return *device_; }
   const std::vector<TestFigure>& figures() const { return figures_; }
   TestPattern& pattern() { return pattern_; }
-  std::int64_t limited() const { return chain_->limited(); }
+  SafetyStats safety() const { return chain_->safety(); }
   bool runs() const { return device_->status() == DeviceStatus::Running; }
 
   /// Silences the device, and waits until it has played its queue.
@@ -291,8 +291,9 @@ int selftest_command(const SelftestOptionsGiven& given) {
                                  {"array", settings.array},
                                  {"units", units_json(settings.transducers)},
                                  {"figures", outcomes_json(outcomes)},
-                                 {"limited_samples", tested.limited()}};
+                                 {"limited_samples", erred_samples(tested.safety())}};
   json.update(quantities_to_json(device.stats()));
+  json.update(quantities_to_json(tested.safety()));
   write_json(given.common.json, json);
   say_written(out, given.common.json);
   say_written(out, given.common.figure);

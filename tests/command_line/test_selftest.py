@@ -75,6 +75,14 @@ def test_yes_plays_every_figure_within_the_limits(prostm, tmp_path):
     assert result["limited_samples"] == 0 and result["passed"] and not result["stopped"]
 
 
+def test_caps_hold(prostm, tmp_path):
+    (tmp_path / "low.toml").write_text("[safety]\nacoustic_pressure = 1000\n")
+    prostm("selftest", "--yes", "--seconds", "0.3", "--settings", "low.toml", "--json", "test.json")
+    safety = result_of(tmp_path)["safety"]
+    assert safety["acoustic_pressure"] > 0, "some samples were lowered"
+    assert 900 < safety["acoustic_high_pa"] <= 1001
+
+
 def test_each_unit_of_several_is_played_alone(prostm, tmp_path):
     pitch, cols, rows = 10.16, 18, 14
     places = [(pitch * (x - (cols - 1) / 2), pitch * (y - (rows - 1) / 2))

@@ -180,9 +180,14 @@ TEST(SlotEncoder, TellsThePhasesOfItsSolver) {
     }
   }
   std::sort(errors.begin(), errors.end());
-  EXPECT_LT(errors[errors.size() * 99 / 100], 2.0);
-  std::printf("phases: median %.2f, 99th percentile %.2f, largest %.2f of 1/256 turn\n",
-              errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back());
+  // where the sum is a tenth of the slots' number, rounding places to 0.025 mm and phases to
+  // 1/256 turn alone is an error of 1.05 (standard deviation); elsewhere it is less
+  const auto above = errors.end() - std::upper_bound(errors.begin(), errors.end(), 2.0);
+  EXPECT_LT(static_cast<double>(above), 1e-3 * static_cast<double>(errors.size()));
+  std::printf(
+      "phases: median %.2f, 99th percentile %.2f, largest %.2f of 1/256 turn, %td of %zu above 2\n",
+      errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back(), above,
+      errors.size());
 }
 
 TEST(SlotEncoder, RoundsPlacesToAtMostHalfAStepInEveryUnit) {
