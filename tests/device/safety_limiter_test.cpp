@@ -430,7 +430,9 @@ TEST(SafetyLimiter, AJumpWaitsForTheSilenceOfThatFocalPoint) {
   const Samples out = play(chain, given, 8000, jumping);
   for (std::size_t i = 2; i < out.size(); ++i) {
     ASSERT_LE(std::abs(out[i].intensity - out[i - 2].intensity), 0.0251F);
-    if (i > 2 * 4000 && i % 2 == 1) ASSERT_EQ(out[i].intensity, 1.0F) << "the other goes on";
+    if (i > 2 * 4000 && i % 2 == 1) {
+      ASSERT_EQ(out[i].intensity, 1.0F) << "the other goes on";
+    }
     if (out[i].p_D == out[i - 2].p_D) continue;
     ASSERT_EQ(out[i - 2].intensity, 0.0F);
     ASSERT_NEAR(static_cast<double>(i) / 2.0, 4040.0, 2.0);
