@@ -101,7 +101,6 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
   for (std::size_t f = 0; f < now.size(); ++f) clean(f, now[f]);
   advance_ramps(now, muted);
   const float ceiling = std::min(ceiling_, unmuted_);
-  bool one_jumps = false;
   for (std::size_t f = 0; f < now.size(); ++f) {
     float& intensity = now[f].intensity;
     if (intensity > ceiling) {
@@ -110,18 +109,12 @@ void SafetyLimiter::limit(std::span<FocusSample> now) noexcept {
     }
     const float last = focus_[f].last.intensity;
     intensity = std::clamp(intensity, last - change_, last + change_);
-    if (holding_ || !jumps(f, now[f])) continue;
-    one_jumps = true;
-    hold(f, now[f]);
-    count(SafetyLimit::Jump);
   }
 
   // all of them together
   if (holding_) {
     hold_all(now, held_for_);
-  } else if (one_jumps && limits_.one_intensity) {
-    hold_all(now, SafetyLimit::Jump);
-  } else {
+  } else if (!hold_jumps(now)) {
     keep_caps(now);
   }
   account(now);
@@ -238,6 +231,21 @@ float SafetyLimiter::scale(std::span<const FocusSample> now, SafetyLimit& reason
   if (most >= share) return share;
   reason = cap;
   return most;
+}
+
+/// Fades each focal point that jumps where it was. @return whether all are held, since the device
+/// has one intensity for them.
+bool SafetyLimiter::hold_jumps(std::span<FocusSample> now) noexcept {
+  for (std::size_t f = 0; f < now.size(); ++f) {
+    if (!jumps(f, now[f])) continue;
+    if (limits_.one_intensity) {
+      hold_all(now, SafetyLimit::Jump);
+      return true;
+    }
+    hold(f, now[f]);
+    count(SafetyLimit::Jump);
+  }
+  return false;
 }
 
 /// Lowers all intensities as far as the caps need.

@@ -134,6 +134,7 @@ class SafetyLimiter final : public SampleStage {
   Level level(std::span<const FocusSample> samples) const noexcept;
   float cap_drive(float pressure, SafetyLimit& reason) const noexcept;
   float scale(std::span<const FocusSample> now, SafetyLimit& reason) const noexcept;
+  bool hold_jumps(std::span<FocusSample> now) noexcept;
   void keep_caps(std::span<FocusSample> now) noexcept;
   void hold(std::size_t focus, FocusSample& now) noexcept;
   void hold_all(std::span<FocusSample> now, SafetyLimit reason) noexcept;
