@@ -155,10 +155,14 @@ TEST(SoakLog, KeepsARoomForDipsAndCountsTheRest) {
   soak.to(0.01);
   for (int i = 0; i < 12'000; ++i)
     soak.to(soak.time + 0.002, [](SoakCounts& counts, MachineUse&) { counts.skipped_steps += 1; });
-  soak.log.end(soak.time, soak.use);
+  soak.to(65.0);
   EXPECT_EQ(soak.log.dips().size(), SoakLog::kMostDips);
   EXPECT_EQ(soak.log.left_out() + static_cast<std::int64_t>(SoakLog::kMostDips),
             soak.log.parts()[0].dips);
+  // those of another part are kept all the same
+  soak.to(66.0, [](SoakCounts& counts, MachineUse&) { counts.skipped_steps += 1; });
+  ASSERT_EQ(soak.log.dips().size(), SoakLog::kMostDips + 1);
+  EXPECT_EQ(soak.log.dips().back().part, 2);
 }
 
 TEST(MachineUse, GrowsWithTheWorkOfThisProgram) {

@@ -93,10 +93,13 @@ void SoakLog::update(double due, std::int64_t step, std::int64_t updates, double
 
 void SoakLog::use(double time, const MachineUse& use) {
   for (SoakDip& dip : open_) {
-    if (dips_.size() >= kMostDips) {
+    // those of a quiet part are told however many there were beside the load
+    std::size_t& kept = kept_[static_cast<std::size_t>(dip.part)][dip.covered ? 1 : 0];
+    if (kept >= kMostDips) {
       ++left_out_;
       continue;
     }
+    ++kept;
     dip.cause = cause_of(dip, time - used_at_, use);
     dips_.push_back(std::move(dip));
   }

@@ -67,7 +67,8 @@ class SoakLog {
   /// Tells the causes of the last dips. @param time when the run ended [s].
   void end(double time, const MachineUse& use);
 
-  /// Those with a cause, in the order of time; at most kMostDips.
+  /// Those with a cause, in the order of time; at most kMostDips of a part, and as many close
+  /// calls.
   std::span<const SoakDip> dips() const { return dips_; }
   std::int64_t left_out() const { return left_out_; }  ///< dips and close calls beyond that
   const std::array<SoakPart, 3>& parts() const { return parts_; }
@@ -86,7 +87,8 @@ class SoakLog {
   std::array<SoakPart, 3> parts_;
   bool counting_ = false;
   SoakCounts counts_;
-  std::vector<SoakDip> dips_, open_;  // open: without a cause yet
+  std::vector<SoakDip> dips_, open_;                  // open: without a cause yet
+  std::array<std::array<std::size_t, 2>, 3> kept_{};  // of each part: dips, and close calls
   std::int64_t left_out_ = 0;
 
   // evidence since the last look at the machine
