@@ -45,8 +45,7 @@ class Session {
   bool send(Clock::time_point latest = Clock::time_point::max()) noexcept;
   /// Waits until all units have answered. @return false if one refused or did not in time.
   bool confirm() noexcept;
-  bool exchange() noexcept { return send() && confirm(); }
-  /// The same with the first unit's frame for all.
+  /// Both, with the first unit's frame for all.
   bool exchange_for_all(Clock::time_point latest = Clock::time_point::max()) noexcept;
   /// Asks for the units' answers without a new frame. @return false if they do not come.
   bool poll() noexcept;
