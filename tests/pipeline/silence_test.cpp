@@ -258,6 +258,18 @@ TEST(Silence, FollowsWhenPlansStall) {
   EXPECT_LE(run.device->largest_change, kLargestChange);
 }
 
+TEST(Silence, FollowsAStopThoughAThreadOfTheRunIsHeldUp) {
+  expect_silence("stopped while hands are held up", kStated, [] {
+    SoundingRun run;
+    EXPECT_TRUE(run.device->sounding());
+    run.hands->blocks = true;
+    EXPECT_TRUE(eventually([&] { return run.hands->blocked_at > 0.0; }));
+    const double since = steady_now();
+    run.observer.stop = true;
+    return run.faded_after(since);
+  });
+}
+
 TEST(Silence, FollowsWhenAStageFails) {
   expect_silence("hands throw", kStated + 0.020, [] {
     SoundingRun run;
