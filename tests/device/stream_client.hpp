@@ -134,11 +134,23 @@ class StreamClient {
       in_.insert(in_.end(), bytes, bytes + got);
     }
   }
-  /// The next message of a kind; others are passed over.
+  /// The next message of a kind; others are passed over, but not for longer than next() waits.
   std::optional<StreamMessage> next_of(int kind) {
-    for (;;) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (std::chrono::steady_clock::now() < end) {
       auto message = next();
       if (!message || message->kind == kind) return message;
+    }
+    return {};
+  }
+  /// Reads for so long, so that heartbeats do not fill the socket and push out what comes next.
+  void pass_over(std::chrono::milliseconds time) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    for (;;) {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+          end - std::chrono::steady_clock::now());
+      if (left.count() <= 0) return;
+      next(static_cast<int>(left.count()));
     }
   }
 
