@@ -41,15 +41,15 @@ TEST(FluidPressure, IsReadOutsideTheSkin) {
   const std::vector<float> given = field();
   const std::vector<std::uint8_t> free(kGrid.cell_count(), 1);
   Random random(3);
-  for (const double offset : {0.5, 1.0, 2.5}) {
+  for (const double offset : {0.005, 0.010, 0.025}) {
     FluidPressureSettings settings;
-    settings.offset_cells = offset;
+    settings.offset = offset;
     FluidPressure pressure(settings, kGrid);
     pressure.take(given, free, 0.02);
     for (int n = 0; n < 10'000; ++n) {
       const Vec3 p(random.uniform(-0.1, 0.1), random.uniform(-0.08, 0.08),
                    random.uniform(0.06, 0.16));
-      ASSERT_NEAR(at(pressure, p), linear(p + offset * kGrid.cell * kDown), 1e-6);
+      ASSERT_NEAR(at(pressure, p), linear(p + offset * kDown), 1e-6);
     }
   }
 }
@@ -65,7 +65,9 @@ TEST(FluidPressure, CellsInAHandDoNotCountAndFarFromAirThereIsNone) {
       }
     }
   }
-  FluidPressure pressure({}, kGrid);
+  FluidPressureSettings settings;
+  settings.offset = kGrid.cell;
+  FluidPressure pressure(settings, kGrid);
   pressure.take(given, free, 0.02);
   // half way between the last layer of air and the first in the hand: the air's value alone
   const Vec3 between(0.0, 0.0, kGrid.p_DF.z() + 8.0 * kGrid.cell);
@@ -80,6 +82,7 @@ TEST(FluidPressure, FollowsAStepInTimeAsAnExponential) {
   const std::vector<std::uint8_t> free(kGrid.cell_count(), 1);
   FluidPressureSettings settings;
   settings.time_constant = 0.1;
+  settings.offset = kGrid.cell;
   FluidPressure pressure(settings, kGrid);
   const Vec3 p(0.01, 0.02, 0.1);
   const double level = linear(p + kGrid.cell * kDown);
@@ -95,7 +98,7 @@ TEST(FluidPressure, FollowsAStepInTimeAsAnExponential) {
 
 TEST(FluidPressure, RejectsBadSettings) {
   FluidPressureSettings s;
-  s.offset_cells = 0.0;
+  s.offset = 0.0;
   EXPECT_THROW(FluidPressure(s, kGrid), std::invalid_argument);
   s = {};
   s.time_constant = -1.0;

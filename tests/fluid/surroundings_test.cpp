@@ -69,6 +69,32 @@ TEST(Surroundings, CalmWhatFlowsInThroughAnOpenSide) {
   EXPECT_EQ(velocity[0][grid.index(8, 0, 7)], 1.0F);
 }
 
+TEST(Surroundings, GuideAJetUpToACeiling) {
+  const PaddedGrid grid{kCells};
+  SmokeInflow inflow = one_jet(0.25);
+  inflow.guide_height = 0.06;
+  inflow.guide_time = 0.1;
+  const Surroundings around(box(), inflow);
+  const float hold = 1.0F - std::exp(-0.2F);  // of a step of 20 ms
+  Field velocity[3] = {Field(grid, 1.0F), Field(grid, 1.0F), Field(grid, 0.25F)};
+  around.guide(0.02, 0.045, velocity);
+  // on the axis: w goes to the floor's, u and v to nothing, below 45 mm
+  for (int k = 1; k < 8; ++k) {
+    EXPECT_NEAR(velocity[2][grid.index(10, 4, k)], k < 5 ? 0.25F + hold * 2.0F : 0.25F, 1e-6F) << k;
+    const float keep = k < 4 ? 1.0F - hold : 1.0F;
+    EXPECT_NEAR(velocity[0][grid.index(10, 4, k)], keep, 0.03F) << k;
+    EXPECT_NEAR(velocity[1][grid.index(10, 5, k)], keep, 0.03F) << k;
+  }
+  // the floor and the air far from the jet are left alone
+  EXPECT_EQ(velocity[2][grid.index(10, 4, 0)], 0.25F);
+  EXPECT_EQ(velocity[0][grid.index(1, 14, 2)], 1.0F);
+
+  Field still[3] = {Field(grid, 1.0F), Field(grid, 1.0F), Field(grid, 1.0F)};
+  around.guide(0.02, -0.01, still);  // a hand on the floor
+  Surroundings(box(), one_jet(0.25)).guide(0.02, 1.0, still);
+  EXPECT_EQ(still[2][grid.index(10, 4, 2)], 1.0F);
+}
+
 TEST(Surroundings, RefuseAJetOutOfBounds) {
   SmokeInflow scene = one_jet(0.0);
   scene.jets[0].radius = 0.0;

@@ -128,6 +128,7 @@ class NoObserver final : public RunObserver {
 RunSummary run_with(RunMode mode, double age, SwitchAt switch_at) {
   PipelineSettings settings;
   settings.fluid.cells = 32;
+  settings.fluid_pressure.offset = settings.fluid.width / 32;
   settings.simulated_array.realtime = mode == RunMode::RealTime;
   settings.scripted_hand.period = 5.0;
   settings.emit.switch_at = switch_at;

@@ -11,6 +11,7 @@
 #include "prostm/fluid/detail/fluid_state.hpp"
 #include "prostm/fluid/detail/forces.hpp"
 #include "prostm/fluid/detail/settings.hpp"
+#include "prostm/fluid/detail/viscosity.hpp"
 
 namespace prostm {
 
@@ -41,20 +42,15 @@ GridShape grid_shape(const FluidSettings& settings) {
   return grid;
 }
 
-/// Returns the inflow with its jets at `factor` times their speed.
-SmokeInflow blown(SmokeInflow inflow, double factor) {
-  for (SmokeJet& jet : inflow.jets) jet.speed *= factor;
-  return inflow;
-}
-
 }  // namespace
 
-Fluid::State::State(const FluidSettings& s, const SmokeInflow& inflow, WorkerPool& workers)
+Fluid::State::State(const FluidSettings& s, const SmokeInflow& from, WorkerPool& workers)
     : settings(s),
       pool(workers),
       grid(grid_shape(s)),
       padded{s.cells},
-      surroundings(grid, blown(inflow, s.jet_speed)),
+      inflow(fluid::blown(from, s.jet_speed)),
+      surroundings(grid, inflow),
       velocity{Field(padded), Field(padded), Field(padded)},
       smoke(padded),
       obstacle(s.cells, workers),
@@ -167,7 +163,28 @@ void Fluid::State::advect() {
   surroundings.set_floor(velocity[2]);
 }
 
+/// (F13), in as many passes as keep it stable.
+void Fluid::State::diffuse() {
+  const double share = inflow.viscosity * dt / (grid.cell * grid.cell);
+  const int passes = fluid::viscous_passes(share);
+  const int n = padded.n;
+  for (int pass = 0; pass < passes; ++pass) {
+    over_planes([&](int k0, int k1) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (int k = k0; k < (axis == 2 && k1 == n ? n + 1 : k1); ++k) {
+          fluid::diffuse(padded, axis, velocity[axis], static_cast<float>(share / passes),
+                         next_velocity[axis], k);
+        }
+      }
+    });
+    for (int axis = 0; axis < 3; ++axis) std::swap(velocity[axis], next_velocity[axis]);
+  }
+}
+
 void Fluid::State::add_forces() {
+  constexpr double kBelowHand = 0.050;  // a tube that ends nearer would press on the hand [m]
+  diffuse();
+  surroundings.guide(dt, lowest_hand - kBelowHand, velocity);
   const auto decay = static_cast<float>(std::exp(-settings.dissipation * dt));
   const auto lift = static_cast<float>(dt * settings.buoyancy);
   if (settings.dissipation > 0.0) {
@@ -208,6 +225,7 @@ void Fluid::State::confine_vorticity() {
 
 void Fluid::State::place_hands(const HandRaster& raster) {
   obstacle.update(raster, solver.fine());
+  lowest_hand = fluid::lowest_of(raster);
   solver.rebuild();
   push_swept(raster);
   mark_fluid_cells(raster);
@@ -362,6 +380,11 @@ const GridShape& Fluid::grid() const {
 }
 const FluidSettings& Fluid::settings() const {
   return state_->settings;
+}
+void Fluid::set_inflow(const SmokeInflow& inflow) {
+  fluid::blow(inflow, state_->settings.jet_speed, state_->inflow);
+  state_->surroundings.set_inflow(state_->inflow);
+  state_->surroundings.set_floor(state_->obstacle.wall_velocity(2));
 }
 FluidStats Fluid::step(double dt, const HandRaster& raster) noexcept {
   prepare(dt);

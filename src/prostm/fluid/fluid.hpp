@@ -1,5 +1,5 @@
 #pragma once
-/// The smoke: incompressible Euler on a MAC grid with moving hands in it (the paper's section IV-A,
+/// The smoke: incompressible flow on a MAC grid with moving hands in it (the paper's section IV-A,
 /// and ref. [4]).
 
 #include <array>
@@ -23,12 +23,19 @@ struct SmokeJet {
   double speed = 0.0;   ///< speed on the axis [m/s]
 };
 
-/// Inflow through the floor.
+/// Inflow through the floor, and how it mixes with the air in the box.
 struct SmokeInflow {
   std::vector<SmokeJet> jets;
   /// speed of clean air let in through the whole floor, so that jets side by side need not draw
   /// each other in [m/s]
   double vent_speed = 0.0;
+  /// eddy viscosity ν, the same everywhere [m²/s]; 0: none (F13). Far above that of air, 1.5e-5: it
+  /// stands for the small eddies of a turbulent jet, and keeps thin jets steady.
+  double viscosity = 0.0;
+  /// up to this height above the floor each jet runs as in a tube, whatever moves the air beside it
+  /// [m]; 0: not guided (F14). Where a hand comes lower the tube ends 50 mm below it.
+  double guide_height = 0.0;
+  double guide_time = 0.1;  ///< time constant with which the tube holds a jet [s]
 };
 
 /// Pressure solver: warm-started V-cycles, or the paper's sweeps.
@@ -43,7 +50,9 @@ struct FluidSettings {
   int cycles = 2;            ///< V-cycles a step
   int jacobi_sweeps = 40;    ///< sweeps a step of the paper's solver
   bool jacobi_warm = false;  ///< start from the last pressure
-  double jet_speed = 1.0;    ///< factor on the speed of the scene's jets, 0 to 3
+  /// factor on the speed of the scene's flow, 0 to 3: jets, vent, viscosity and guide alike, so
+  /// that the flow stays similar and its pressure goes with the square
+  double jet_speed = 1.0;
   double buoyancy = 0.0;     ///< upward acceleration of undiluted smoke [m/s²]
   double vorticity = 0.0;    ///< ε of vorticity confinement [1/s]; 0 = off
   double density = 1.2;      ///< density ρ of the air [kg/m³]
@@ -76,6 +85,10 @@ class Fluid {
 
   const GridShape& grid() const;
   const FluidSettings& settings() const;
+
+  /// Blows another way from the next step on. Allocates nothing unless there are more jets than
+  /// ever before. @pre between steps; within the bounds that the constructor holds.
+  void set_inflow(const SmokeInflow& inflow);
 
   /// Advances by dt [s] with the hands of `raster` (made for grid()): section 3 of docs/design.md.
   /// Allocates nothing, throws nothing. A dt that is not a positive number, or a raster that is not

@@ -9,8 +9,8 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"offset_cells", "cells", 0.5, 4, "distance from the skin at which the pressure is read"},
-          s.offset_cells);
+  v.field({"offset", "m", 0.001, 0.05, "distance from the skin at which the pressure is read"},
+          s.offset);
   v.field({"time_constant", "s", 0, 10, "time constant of the pressure's smoothing; 0: none"},
           s.time_constant);
 }
@@ -52,7 +52,7 @@ void FluidPressure::take(std::span<const float> pressure, std::span<const std::u
 
 void FluidPressure::sample(std::span<const Vec3> p_D, const Vec3& outside,
                            std::span<double> out) const noexcept {
-  const Vec3 offset = settings_.offset_cells * grid_.cell * outside;
+  const Vec3 offset = settings_.offset * outside;
   for (std::size_t i = 0; i < p_D.size(); ++i) out[i] = at(p_D[i] + offset);
 }
 

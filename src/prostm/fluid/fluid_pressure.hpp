@@ -11,8 +11,9 @@
 namespace prostm {
 
 struct FluidPressureSettings {
-  /// the pressure is read this many cells outside the skin, towards the array
-  double offset_cells = 1.0;
+  /// the pressure is read this far outside the skin, towards the array [m]; a length, so that
+  /// finer cells do not move it
+  double offset = 0.005625;
   /// time constant of exponential smoothing of the fluid's pressure on the skin [s]; 0 = no
   /// smoothing
   double time_constant = 0.0;
@@ -22,8 +23,8 @@ struct FluidPressureSettings {
   bool operator==(const FluidPressureSettings&) const = default;
 };
 
-/// Reads the pressure of the air `offset_cells` outside the skin, from fluid cells alone, and
-/// smooths it over time if the settings ask for it.
+/// Reads the pressure of the air `offset` outside the skin, from fluid cells alone, and smooths it
+/// over time if the settings ask for it.
 class FluidPressure final : public PressureSource {
  public:
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.

@@ -1,6 +1,7 @@
 #pragma once
 /// The state of a Fluid between steps, and the parts of a step.
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct Fluid::State {
   bool check();
   void measure();
 
+  void diffuse();
   void confine_vorticity();
   void push_swept(const HandRaster& raster);
   void mark_fluid_cells(const HandRaster& raster);
@@ -47,6 +49,7 @@ struct Fluid::State {
   WorkerPool& pool;
   GridShape grid;
   fluid::PaddedGrid padded;
+  SmokeInflow inflow;  // at the settings' speed
   fluid::Surroundings surroundings;
 
   // state
@@ -71,6 +74,8 @@ struct Fluid::State {
   };
   std::vector<PlaneSums> sums;  // one per plane, so that totals do not depend on threads
   CellBox marked;               // box in which fluid_cells may be 0
+  // height of the lowest hand of the last step above the floor [m]
+  double lowest_hand = std::numeric_limits<double>::infinity();
 
   // results for readers, without padding
   std::vector<float> pressure_out, smoke_out;

@@ -1,6 +1,8 @@
 #include "prostm/fluid/detail/obstacle.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace prostm::fluid {
 namespace {
@@ -206,6 +208,18 @@ void Obstacle::close_pockets(PressureLevel& level) {
   for_cut_cells(level, [&](Index c) {
     if (state_[c] == kOpen) close(level, c);
   });
+}
+
+double lowest_of(const HandRaster& raster) {
+  const CellBox& box = raster.box;
+  for (int k = box.lower[2]; k <= box.upper[2] && !box.empty(); ++k) {
+    for (int j = box.lower[1]; j <= box.upper[1]; ++j) {
+      const float* row = raster.node_distance.data() + raster.grid.node_index(0, j, k);
+      if (std::any_of(row + box.lower[0], row + box.upper[0] + 1, [](float d) { return d < 0.0F; }))
+        return k * raster.grid.cell;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace prostm::fluid

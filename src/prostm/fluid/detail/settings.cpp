@@ -17,7 +17,7 @@ void list(Settings& s, Visitor& v) {
           s.jacobi_sweeps);
   v.field({.name = "jacobi_warm", .help = "whether sweeps start from the last pressure"},
           s.jacobi_warm);
-  v.field({"jet_speed", "", 0, 3, "factor on the speed of the scene's jets"}, s.jet_speed);
+  v.field({"jet_speed", "", 0, 3, "factor on the speed of the scene's flow"}, s.jet_speed);
   v.field({"buoyancy", "m/s²", 0, 100, "upward acceleration of undiluted smoke"}, s.buoyancy);
   v.field({"vorticity", "1/s", 0, 100, "strength of vorticity confinement; 0: none"}, s.vorticity);
   v.field({"density", "kg/m³", 0.01, 2000, "density of the air"}, s.density);
@@ -41,6 +41,9 @@ void validate(const FluidSettings& s) {
 
 void validate(const SmokeInflow& inflow) {
   require_between("vent speed", inflow.vent_speed, 0.0, 20.0, "m/s");
+  require_between("viscosity", inflow.viscosity, 0.0, 0.01, "m²/s");
+  require_between("guide height", inflow.guide_height, 0.0, 5.0, "m");
+  require_between("guide time", inflow.guide_time, 1e-3, 1e3, "s");
   for (const SmokeJet& jet : inflow.jets) {
     require_between("jet centre x", jet.centre.x(), -10.0, 10.0, "m");
     require_between("jet centre y", jet.centre.y(), -10.0, 10.0, "m");

@@ -16,19 +16,73 @@ double jet_profile(const SmokeJet& jet, const Vec2& p) {
 
 }  // namespace
 
+void blow(const SmokeInflow& inflow, double factor, SmokeInflow& to) {
+  to = inflow;
+  for (SmokeJet& jet : to.jets) jet.speed *= factor;
+  to.vent_speed *= factor;
+  to.viscosity *= factor;
+  if (factor > 0.0) to.guide_time /= factor;
+  if (factor == 0.0) to.guide_height = 0.0;
+}
+
+SmokeInflow blown(const SmokeInflow& inflow, double factor) {
+  SmokeInflow out;
+  blow(inflow, factor, out);
+  return out;
+}
+
 Surroundings::Surroundings(const GridShape& grid, const SmokeInflow& inflow)
-    : grid_{grid.nx}, vented_(inflow.vent_speed > 0.0) {
+    : grid_{grid.nx},
+      shape_(grid),
+      speed_(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny)),
+      share_(speed_.size()) {
   validate(inflow);
-  for (int j = 0; j < grid.ny; ++j) {
-    for (int i = 0; i < grid.nx; ++i) {
-      const Vec2 p = grid.cell_centre(i, j, 0).head<2>();
+  set_inflow(inflow);
+}
+
+void Surroundings::set_inflow(const SmokeInflow& inflow) {
+  vented_ = inflow.vent_speed > 0.0;
+  guide_height_ = inflow.guide_height;
+  guide_time_ = inflow.guide_time;
+  for (int j = 0; j < shape_.ny; ++j) {
+    for (int i = 0; i < shape_.nx; ++i) {
+      const Vec2 p = shape_.cell_centre(i, j, 0).head<2>();
       double speed = inflow.vent_speed, share = 0.0;
       for (const SmokeJet& jet : inflow.jets) {
-        speed += jet.speed * jet_profile(jet, p);
-        share = std::max(share, jet_profile(jet, p));
+        const double profile = jet_profile(jet, p);
+        speed += jet.speed * profile;
+        share = std::max(share, profile);
       }
-      speed_.push_back(static_cast<float>(speed));
-      share_.push_back(static_cast<float>(share));
+      speed_[column(i, j)] = static_cast<float>(speed);
+      share_[column(i, j)] = static_cast<float>(share);
+    }
+  }
+}
+
+void Surroundings::guide(double dt, double ceiling, Field velocity[3]) const {
+  const double height = std::min(guide_height_, ceiling);
+  if (height <= 0.0) return;
+  const auto hold = static_cast<float>(1.0 - std::exp(-dt / guide_time_));
+  // faces of w are at k h, those of u and v at (k + ½) h
+  const auto below = [&](double z) {
+    return std::clamp(static_cast<int>(std::ceil(z / shape_.cell)), 0, grid_.n);
+  };
+  const int vertical = below(height), sideways = below(height - 0.5 * shape_.cell);
+  for (int j = 0; j < grid_.n; ++j) {
+    for (int i = 0; i < grid_.n; ++i) {
+      const float pull = hold * share_[column(i, j)];
+      if (pull == 0.0F) continue;
+      // a sideways face between two columns takes half of the pull from each
+      const float keep = 1.0F - 0.5F * pull;
+      for (int k = 0; k < std::max(vertical, sideways); ++k) {
+        const Index c = grid_.index(i, j, k);
+        if (k > 0 && k < vertical) velocity[2][c] += pull * (speed_[column(i, j)] - velocity[2][c]);
+        if (k >= sideways) continue;
+        for (int axis = 0; axis < 2; ++axis) {
+          velocity[axis][c] *= keep;
+          velocity[axis][c + grid_.stride(axis)] *= keep;
+        }
+      }
     }
   }
 }

@@ -5,14 +5,26 @@
 
 #include "prostm/fluid/detail/padded_grid.hpp"
 #include "prostm/fluid/fluid.hpp"
+#include "prostm/hand/hand_raster.hpp"
 
 namespace prostm::fluid {
 
-/// Constant once made; the values that it sets in the fluid's fields hold for one step.
+/// Sets `to` to an inflow at `factor` times its speed. All that has a speed goes with it, so that
+/// the flow is similar: lengths stay, times shrink by the factor.
+void blow(const SmokeInflow& inflow, double factor, SmokeInflow& to);
+SmokeInflow blown(const SmokeInflow& inflow, double factor);
+
+/// The values that it sets in the fluid's fields hold for one step.
 class Surroundings {
  public:
   /// @throws std::invalid_argument for an inflow out of bounds.
   Surroundings(const GridShape& grid, const SmokeInflow& inflow);
+
+  /// Blows another way from now on.
+  void set_inflow(const SmokeInflow& inflow);
+
+  /// Holds the jets in the tube of (F14) for a step of dt [s], up to `ceiling` at most [m].
+  void guide(double dt, double ceiling, Field velocity[3]) const;
 
   /// Sets the velocity of the floor's faces.
   void set_floor(Field& w) const;
@@ -29,9 +41,11 @@ class Surroundings {
   std::size_t column(int i, int j) const { return static_cast<std::size_t>(j * grid_.n + i); }
 
   PaddedGrid grid_;
-  bool vented_;               // clean air comes through the floor
-  std::vector<float> speed_;  // inflow speed at the floor's faces [m/s], n·n
-  std::vector<float> share_;  // share of fresh smoke in it, 0..1
+  GridShape shape_;
+  bool vented_ = false;                       // clean air comes through the floor
+  double guide_height_ = 0, guide_time_ = 0;  // [m], [s]
+  std::vector<float> speed_;                  // inflow speed at the floor's faces [m/s], n·n
+  std::vector<float> share_;                  // share of fresh smoke in it, 0..1
 };
 
 }  // namespace prostm::fluid
