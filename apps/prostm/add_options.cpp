@@ -60,16 +60,18 @@ void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option*
 }
 
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
-                  std::string& hand) {
+                  std::string& hand, std::optional<double>& hand_size) {
   add_common(command, common);
   add_name(command, "--scene", scene,
            "one-plume (default), two-plumes, three-plumes, four-plumes, or still-air");
   add_input_or_name(
       command, common.files, "--hand", hand, names_recording,
-      "a recording (.hands.jsonl, or Leap JSON), scripted, leap://HOST:PORT, openxr, or "
+      "a recording (.hands.jsonl, or Leap JSON), scripted, study, leap://HOST:PORT, openxr, or "
       "page (docs/hands.md)",
       hint_for_hand)
       ->capture_default_str();
+  command.add_option("--hand-size", hand_size,
+                     "of --hand study: all lengths over those of an average hand, 0.7 to 1.3");
   add_input_or_name(command, common.files, "--tracker", common.tracker, names_json,
                     "where the tracker is: centre (default), ultraleap-kit or another kit, or a "
                     "pose file (.json)");

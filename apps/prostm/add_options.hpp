@@ -68,6 +68,6 @@ CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& 
 void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of = nullptr);
 /// Those of add_common(), and what a run is made of.
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
-                  std::string& hand);
+                  std::string& hand, std::optional<double>& hand_size);
 
 }  // namespace prostm::app

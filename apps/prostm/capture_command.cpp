@@ -54,6 +54,7 @@ int capture_command(const CaptureOptionsGiven& given) {
   }
   check_hand(given);
   PipelineSettings settings = make_settings(given.common, given.scene);
+  settle_hand(given.hand, given.hand_size, settings);
   settings.simulated_array.realtime = false;
   Pipeline pipeline(settings, make_hands(given.hand, settings));
   Recorder recorder(given.out, settings_groups(settings));

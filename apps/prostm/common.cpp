@@ -151,7 +151,7 @@ bool names_tracker(const std::string& hand) {
 }
 
 bool names_recording(const std::string& hand) {
-  return hand != "scripted" && hand != "page" && !names_tracker(hand);
+  return hand != "scripted" && hand != "study" && hand != "page" && !names_tracker(hand);
 }
 
 std::string hint_for_hand(const std::string& hand) {
@@ -159,15 +159,26 @@ std::string hint_for_hand(const std::string& hand) {
   const bool is_file = word.find_first_of("./") != word.npos;
   if (!is_file && word.find("leap") != word.npos)
     return "; did you mean \"leap://127.0.0.1:6437\"?";
-  return did_you_mean(hand, {"scripted", "page", "openxr"});
+  return did_you_mean(hand, {"scripted", "study", "page", "openxr"});
 }
 
 FocusMethod solver_of(const std::string& name) {
   return from_name<FocusMethod>(name, "--solver");
 }
 
+void settle_hand(const std::string& hand, std::optional<double> size, PipelineSettings& settings) {
+  if (hand == "study") {
+    if (size) settings.study_hand.size = *size;
+    require_bounds(settings.study_hand);
+    settings.jets.place = JetPlace::Hand;
+  } else if (size) {
+    throw InputError("--hand-size belongs to --hand study; --hand " + hand + " has its own size");
+  }
+}
+
 std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings) {
   if (name == "scripted") return make_scripted_hand(settings.scripted_hand, settings.track);
+  if (name == "study") return make_study_hand(settings.study_hand);
   if (!names_recording(name)) {
     if (!settings.simulated_array.realtime) {
       throw InputError("--hand " + name +

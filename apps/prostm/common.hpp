@@ -44,6 +44,10 @@ std::string hint_for_hand(const std::string& hand);
 /// The focus solver that `--solver` names. @throws InputError for a name that is unknown.
 FocusMethod solver_of(const std::string& name);
 
+/// Settles what `--hand` and `--hand-size` say of the settings: under a study hand the jets go to
+/// the palm. @throws InputError for a size of another hand.
+void settle_hand(const std::string& hand, std::optional<double> size, PipelineSettings& settings);
+
 /// The hands that `--hand` names. A recording starts again at its end.
 std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSettings& settings);
 

@@ -133,6 +133,8 @@ std::vector<Looking> look_around() {
   for (const DeviceKind& kind : device_kinds()) looks.push_back(look_for(kind, ""));
   looks.push_back(known({"hand", "scripted", true, "--hand scripted: needs nothing"}));
   looks.push_back(
+      known({"hand", "study", true, "--hand study: a flat hand held still; needs nothing"}));
+  looks.push_back(
       known({"hand", "recording", true,
              "--hand FILE: .hands.jsonl, or Leap JSON v6; tried with recordings of real hands"}));
   looks.push_back(known({"hand", "page", true, "--hand page --view: mouse, touch or keys"}));

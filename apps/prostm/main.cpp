@@ -56,7 +56,7 @@ void add_run(CLI::App& app, Work& work) {
   auto* command =
       app.add_subcommand("run", "a hand in smoke, felt through focal-point paths: the main job");
   auto o = std::make_shared<RunOptionsGiven>();
-  add_pipeline(*command, o->common, o->scene, o->hand);
+  add_pipeline(*command, o->common, o->scene, o->hand, o->hand_size);
   add_device(*command, o->common);
   auto* figure = add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
   command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle")
@@ -112,7 +112,7 @@ void add_plan(CLI::App& app, Work& work) {
 void add_capture(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("capture", "record the target fields of a scene");
   auto o = std::make_shared<CaptureOptionsGiven>();
-  add_pipeline(*command, o->common, o->scene, o->hand);
+  add_pipeline(*command, o->common, o->scene, o->hand, o->hand_size);
   command->add_option("--frames", o->frames, "fields with pressure on them")->capture_default_str();
   add_output(*command, o->common.files, "--out", o->out, prostm::check_recording,
              "the recording (.h5)")
@@ -234,7 +234,7 @@ void add_soak(CLI::App& app, Work& work) {
       app.add_subcommand("soak", "a long run that counts every dip, and says when it was and why");
   auto o = std::make_shared<SoakOptionsGiven>();
   RunOptionsGiven& run = o->run;
-  add_pipeline(*command, run.common, run.scene, run.hand);
+  add_pipeline(*command, run.common, run.scene, run.hand, run.hand_size);
   add_device(*command, run.common);
   command->add_option("--minutes", o->minutes, "how long, 0.05 to 1440")->capture_default_str();
   command->add_flag("--load", o->load,

@@ -30,6 +30,7 @@ struct RunOptionsGiven {
   CommonOptions common;
   std::optional<std::string> scene;
   std::string hand = "scripted";
+  std::optional<double> hand_size;
   std::optional<double> seconds, figure_at;
   bool as_fast_as_possible = false, stepped = false;
   std::string record;
@@ -52,6 +53,7 @@ struct CaptureOptionsGiven {
   CommonOptions common;
   std::optional<std::string> scene;
   std::string hand = "scripted";
+  std::optional<double> hand_size;
   int frames = 500;
   std::string out;
 };

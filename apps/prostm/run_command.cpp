@@ -301,6 +301,7 @@ void begin_words(const RunOptionsGiven& given, const PipelineSettings& settings)
 
 int run_command(const RunOptionsGiven& given) {
   PipelineSettings settings = make_settings(given.common, given.scene, true);
+  settle_hand(given.hand, given.hand_size, settings);
   RunOptions options = options_of(given, settings);
   auto hands = make_hands(given.hand, settings);
   options.seconds = seconds_of(given, hands->recording_length());

@@ -199,6 +199,7 @@ int soak_command(const SoakOptionsGiven& given) {
   RunOptions options;
   options.seconds = seconds_of(given);
   PipelineSettings settings = make_settings(of_run.common, of_run.scene, true);
+  settle_hand(of_run.hand, of_run.hand_size, settings);
   check_view(of_run, true);
   const Interrupt interrupt;
   // before the first thread

@@ -48,7 +48,7 @@ View::View(const RunOptionsGiven& given, const PipelineSettings& settings) : giv
   const std::string source = source_of(given.hand);
   link_.settings.source = source;
   link_.settings.sources = {source};
-  for (const char* other : {"scripted", "page"})
+  for (const char* other : {"scripted", "study", "page"})
     if (source != other) link_.settings.sources.emplace_back(other);
   link_.page_hand = std::make_shared<PageHand>(settings.track);
   link_.make_hands = [this, source](const std::string& wanted, const PipelineSettings& s) {

@@ -30,15 +30,14 @@ std::vector<ControlChoice> scene_choices() {
 }
 
 const std::vector<ControlChoice> kScenes = scene_choices();
+const auto kJetPlaces = choices_of<JetPlace, 2>({"Over the array", "Under the hand"});
 const auto kMethods = choices_of<Method, 2>({"PRO-STM", "AM"});
 const auto kPresets = choices_of<Preset, 4>({"Paper", "Paper, made valid", "Best", "Fast"});
 const auto kSwitches = choices_of<SwitchAt, 2>({"At lap ends", "At once"});
 const auto kWaveforms = choices_of<Waveform, 2>({"Raised cosine", "|sin|"});
-constexpr ControlChoice kSources[] = {{"scripted", "Scripted"},
-                                      {"recording", "Recording"},
-                                      {"leap", "Leap tracker"},
-                                      {"openxr", "OpenXR"},
-                                      {"page", "None: only the page's"}};
+constexpr ControlChoice kSources[] = {
+    {"scripted", "Scripted"}, {"study", "Study hand"}, {"recording", "Recording"},
+    {"leap", "Leap tracker"}, {"openxr", "OpenXR"},    {"page", "None: only the page's"}};
 
 /// Place of a value in a list of choices; 0 when it is not there.
 double place(std::span<const ControlChoice> choices, std::string_view value) {
@@ -152,6 +151,17 @@ std::vector<RunControl> make_controls() {
       [](S& s, double v) { s.pipeline.fluid.jet_speed = v; }, has_jets,
       "Speed of the smoke that the emitter blows, over the scene's own. Pressure goes with its "
       "square.");
+  choice(
+      "Smoke", "jet_place", "Jets", kJetPlaces,
+      [](const S& s) { return static_cast<double>(s.pipeline.jets.place); },
+      [](S& s, double v) { s.pipeline.jets.place = static_cast<JetPlace>(v); }, has_jets,
+      "Over the array's middle, or where the palm is when you choose this, turned and sized with "
+      "it.");
+  number(
+      "Smoke", "trim_rate", "Trim", "1/s", 0, 1, 0.05,
+      [](const S& s) { return s.pipeline.jets.trim_rate; },
+      [](S& s, double v) { s.pipeline.jets.trim_rate = v; }, has_jets,
+      "How fast several jets are made to press alike on the hand. 0: not at all.");
   number(
       "Smoke", "buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
       [](const S& s) { return s.pipeline.fluid.buoyancy; },

@@ -35,8 +35,8 @@ void put_back(double time, HandFrame& frame) {
 
 /// Whether the world's stage is built from the same.
 bool same_world(const PipelineSettings& a, const PipelineSettings& b) {
-  return a.track == b.track && a.fluid == b.fluid && a.fluid_pressure == b.fluid_pressure &&
-         a.contact == b.contact && a.scene == b.scene;
+  return a.track == b.track && a.fluid == b.fluid && a.jets == b.jets &&
+         a.fluid_pressure == b.fluid_pressure && a.contact == b.contact && a.scene == b.scene;
 }
 
 /// Whether the planner's stage is.
@@ -132,8 +132,10 @@ void WorldStage::meet(std::int64_t step, double due, double dt, WorldFrame& out)
 
   out.targeted = targets(step);
   if (out.targeted) {
-    const PressureSource& pressure = world_->pressure(dt * steps_per_plan_);
+    const double since = dt * steps_per_plan_;
+    const PressureSource& pressure = world_->pressure(since);
     out.contact_stats = contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target);
+    world_->hear(out.hands, out.target, since);
   }
   out.contact_time = timer.lap();
   if (out.targeted && side_view_) view_from_side(out.side);

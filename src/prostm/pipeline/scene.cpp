@@ -1,5 +1,6 @@
 #include "prostm/pipeline/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -48,6 +49,20 @@ const Scene& scene_from_name(std::string_view name) {
     names.push_back(scene.name);
   }
   refuse_name("scene", name, names);
+}
+
+ScenePlace place_under(const Palm& palm) {
+  return {palm.centre.head<2>(), palm.yaw, std::clamp(palm.size, 0.7, 1.3)};
+}
+
+SmokeInflow placed(const SmokeInflow& smoke, const ScenePlace& place) {
+  const Eigen::Rotation2Dd turn(place.yaw);
+  SmokeInflow out = smoke;
+  for (SmokeJet& jet : out.jets) {
+    jet.centre = place.centre + turn * (place.size * jet.centre);
+    jet.radius *= place.size;
+  }
+  return out;
 }
 
 }  // namespace prostm

@@ -5,12 +5,15 @@
 #include <string_view>
 
 #include "prostm/fluid/fluid.hpp"
+#include "prostm/track/palm.hpp"
 
 namespace prostm {
 
 struct Scene {
   std::string_view name;   ///< in files and on the command line
   std::string_view label;  ///< for people
+  /// as it blows on a hand of average size whose palm joint is above the array's centre, fingers
+  /// towards +y
   SmokeInflow smoke;
   double full_scale_pressure = 0.0;  ///< target pressure that maps to full output [Pa]
 };
@@ -20,5 +23,15 @@ std::span<const Scene> scenes();
 
 /// @throws std::invalid_argument that lists the names for any other.
 const Scene& scene_from_name(std::string_view name);
+
+/// Where the jets of a scene are: under a palm, turned with it, as large as it.
+struct ScenePlace {
+  Vec2 centre = Vec2::Zero();  ///< of the palm, in D [m]
+  double yaw = 0.0;            ///< as of a palm [rad]
+  double size = 1.0;           ///< factor on lengths across the flow
+};
+/// @return with a size from 0.7 to 1.3.
+ScenePlace place_under(const Palm& palm);
+SmokeInflow placed(const SmokeInflow& smoke, const ScenePlace& place);
 
 }  // namespace prostm

@@ -13,6 +13,7 @@
 #include "prostm/emit/emitter.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/pipeline/jet_trim.hpp"
 #include "prostm/plan/method.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/track/hand_source.hpp"
@@ -40,7 +41,9 @@ struct PipelineSettings {
 
   TrackSettings track;
   ScriptedHandSettings scripted_hand;
+  StudyHandSettings study_hand;
   FluidSettings fluid;
+  JetSettings jets;
   FluidPressureSettings fluid_pressure;  ///< in files with `contact`
   ContactSettings contact;
   PlanSettings plan;

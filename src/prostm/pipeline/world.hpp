@@ -6,7 +6,10 @@
 #include "prostm/contact/pressure_source.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
+#include "prostm/pipeline/scene.hpp"
 #include "prostm/pipeline/settings.hpp"
+#include "prostm/target/target_field.hpp"
+#include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
 
@@ -32,11 +35,18 @@ class World {
   virtual void meet(const HandRaster& raster) noexcept = 0;
   /// Returns the pressure on the skin now. @param dt since the last call [s].
   virtual const PressureSource& pressure(double dt) noexcept = 0;
+  /// Hears what the hands got, before settle(). @param target made from pressure().  @param dt
+  /// since the last call [s].
+  virtual void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept {
+    static_cast<void>(hands), static_cast<void>(target), static_cast<void>(dt);
+  }
   /// Does the rest of the step, for which nobody waits.
   virtual WorldStats settle() noexcept { return {}; }
 
   /// Goes on from where another world is, as far as the two are alike. @pre between steps.
   virtual void go_on_from(const World& other) { static_cast<void>(other); }
+  /// Where the scene is, if it has a place.
+  virtual const ScenePlace* place() const { return nullptr; }
   /// The smoke, where there is some.
   virtual const Fluid* fluid() const { return nullptr; }
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "prostm/core/geometry.hpp"
+#include "prostm/core/names.hpp"
 
 namespace prostm {
 
@@ -44,6 +45,8 @@ enum Joint : int {
 std::string_view joint_name(int joint);  ///< "palm", "wrist", "thumb-metacarpal", …
 
 enum class Side : std::uint8_t { Left, Right };
+template <>
+inline constexpr std::array<std::string_view, 2> kNames<Side> = {"left", "right"};
 
 /// One hand. Positions are in the frame of its source: T from trackers and recordings, D after
 /// to_device(). Joint frames follow OpenXR: −z along the bone to the tip, +y dorsal.

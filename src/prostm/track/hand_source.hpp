@@ -123,6 +123,19 @@ struct ScriptedHandSettings {
 std::unique_ptr<HandSource> make_scripted_hand(const ScriptedHandSettings& settings,
                                                const TrackSettings& track);
 
+/// A hand that is held as participants of a study hold theirs: flat, fingers closed, palm towards
+/// the array, still. Its pose is that of `--hand study`.
+struct StudyHandSettings {
+  double height = 0.215;  ///< height of the palm joint above the tracker [m], 0.05 to 0.60
+  double size = 1.0;      ///< all lengths over those of an average hand, 0.7 to 1.3
+  Side side = Side::Right;
+
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
+};
+/// @throws std::invalid_argument for a setting outside its bounds.
+std::unique_ptr<HandSource> make_study_hand(const StudyHandSettings& settings);
+
 /// Removes the tracker's noise before the fluid meets the hands: each joint is predicted with its
 /// filtered velocity and corrected by a share of the innovation; its velocity and orientation are
 /// low-passed. The shares grow with the innovation, so noise is damped and real motion passes: (H5)

@@ -135,6 +135,51 @@ void pose_right(const Pose& X_TH, double closure, Hand& hand) {
   for (std::size_t j = 0; j < 4; ++j) hand.radius[kThumbMetacarpal + j] = kThumbRadius[j];
 }
 
+// the flat hand: where the tips touch, and the thumb's bones, which lie beside the palm
+constexpr double kFlatTips[4] = {-14.0_mm, 0.0_mm, 12.9_mm, 24.0_mm};  // x in H [m]
+constexpr double kFlatThumb[3] = {degrees(21.5), degrees(2.0),
+                                  degrees(-5.5)};  // splay of each bone
+
+void pose_flat_right(Hand& hand) {
+  pose_right(Pose::Identity(), 0.0, hand);
+  for (std::size_t f = 0; f < 4; ++f) {
+    const FingerShape& finger = kFingers[f];
+    const auto base = static_cast<std::size_t>(finger.base);
+    hand.position[base].y() = 0.0;
+    hand.position[base + 1] = hand.position[base] - finger.length[0] * splayed(finger.splay).col(2);
+    const double length = finger.length[1] + finger.length[2] + finger.length[3];
+    const double turn = std::asin((hand.position[base + 1].x() - kFlatTips[f]) / length);
+    constexpr double kStraight[2] = {0.0, 0.0};
+    walk(splayed(turn), finger.base + 1, 3, finger.length + 1, kStraight, hand);
+  }
+  hand.position[kThumbMetacarpal] = Vec3(-20.0_mm, -3.0_mm, 42.0_mm);
+  for (std::size_t b = 0; b < 3; ++b) {
+    const Eigen::Matrix3d R_HB = splayed(kFlatThumb[b]);
+    hand.position[kThumbMetacarpal + b + 1] =
+        hand.position[kThumbMetacarpal + b] - kThumbLength[b] * R_HB.col(2);
+    hand.orientation[kThumbMetacarpal + b] = hand.orientation[kThumbTip] = Quat(R_HB);
+  }
+}
+
+/// With M the mirror at x = 0 of H: points M p, rotations M R M, which is a rotation again.
+void mirror(Hand& hand) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    hand.position[j].x() *= -1.0;
+    const Quat& q = hand.orientation[j];
+    hand.orientation[j] = Quat(q.w(), q.x(), -q.y(), -q.z());
+  }
+}
+
+/// Moves a hand that was posed in H, `size` times as large.
+void move_to(const Pose& X_TH, double size, Hand& hand) {
+  const Quat q_TH(X_TH.linear());
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    hand.position[j] = X_TH * Vec3(size * hand.position[j]);
+    hand.orientation[j] = (q_TH * hand.orientation[j]).normalized();
+    hand.radius[j] *= size;
+  }
+}
+
 }  // namespace
 
 void pose_skeleton(const Pose& X_TH, double closure, Side side, Hand& hand) noexcept {
@@ -143,15 +188,16 @@ void pose_skeleton(const Pose& X_TH, double closure, Side side, Hand& hand) noex
     pose_right(X_TH, closure, hand);
     return;
   }
-  // with M the mirror at x = 0 of H: points M p, rotations M R M, which is a rotation again
   pose_right(Pose::Identity(), closure, hand);
-  const Quat q_TH(X_TH.linear());
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    Vec3& p = hand.position[j];
-    p = X_TH * Vec3(-p.x(), p.y(), p.z());
-    const Quat& q = hand.orientation[j];
-    hand.orientation[j] = (q_TH * Quat(q.w(), q.x(), -q.y(), -q.z())).normalized();
-  }
+  mirror(hand);
+  move_to(X_TH, 1.0, hand);
+}
+
+void pose_flat_hand(const Pose& X_TH, double size, Side side, Hand& hand) noexcept {
+  hand.side = side;
+  pose_flat_right(hand);
+  if (side == Side::Left) mirror(hand);
+  move_to(X_TH, size, hand);
 }
 
 }  // namespace prostm

@@ -13,4 +13,8 @@ namespace prostm {
 /// Sets side, position, orientation and radius of `hand` and leaves the rest.
 void pose_skeleton(const Pose& X_TH, double closure, Side side, Hand& hand) noexcept;
 
+/// Poses a flat hand: straight fingers that touch, the thumb beside the index finger, every joint
+/// of the fingers in the palm's plane. @param X_TH as above.  @param size factor on all lengths.
+void pose_flat_hand(const Pose& X_TH, double size, Side side, Hand& hand) noexcept;
+
 }  // namespace prostm

@@ -62,6 +62,13 @@ void list_scripted(Settings& s, Visitor& v) {
   v.field({.name = "still", .help = "whether the hand hovers and does not move"}, s.still);
 }
 
+template <class Settings, class Visitor>
+void list_study(Settings& s, Visitor& v) {
+  v.field({"height", "m", 0.05, 0.60, "height of the palm joint above the tracker"}, s.height);
+  v.field({"size", "", 0.7, 1.3, "all lengths over those of an average hand"}, s.size);
+  v.field({.name = "side", .help = "which hand it is"}, s.side);
+}
+
 }  // namespace
 
 void TrackSettings::visit(SettingsReader& v) const {
@@ -77,12 +84,22 @@ void ScriptedHandSettings::visit(SettingsWriter& v) {
   list_scripted(*this, v);
 }
 
+void StudyHandSettings::visit(SettingsReader& v) const {
+  list_study(*this, v);
+}
+void StudyHandSettings::visit(SettingsWriter& v) {
+  list_study(*this, v);
+}
+
 void validate(const TrackSettings& settings) {
   require_factor("filter_position", settings.filter_position);
   require_factor("filter_velocity", settings.filter_velocity);
   require_bounds(settings);
 }
 
+void validate(const StudyHandSettings& settings) {
+  require_bounds(settings);
+}
 void validate(const ScriptedHandSettings& settings) {
   require_bounds(settings);
 }

@@ -8,6 +8,7 @@ namespace prostm {
 /// @throws std::invalid_argument with a sentence that names the setting, its value and its bounds.
 void validate(const TrackSettings& settings);
 void validate(const ScriptedHandSettings& settings);
+void validate(const StudyHandSettings& settings);
 /// @throws std::invalid_argument for no frames, times that do not increase from 0, or two hands of
 /// the same id and side in a frame.
 void validate_recording(const HandRecording& recording);

@@ -1,0 +1,119 @@
+#include "plumes/plumes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plumes/held_hand.hpp"
+#include "prostm/pipeline/pipeline.hpp"
+
+namespace prostm::bench {
+namespace {
+
+constexpr double kSettle = 5.0;  // [s]
+
+std::unique_ptr<HandSource> study(double size, Side side = Side::Right) {
+  return make_study_hand({.size = size, .side = side});
+}
+
+HeldCase held_study(const std::string& name, const Hold& hold) {
+  return {name, [hold](const PipelineSettings&) { return make_still_hand(*study(1.0), hold); },
+          JetPlace::Array};
+}
+
+/// The numbers that `value` takes over the frames.
+template <class Value>
+Summary over_frames(const std::vector<FieldShape>& frames, const Value& value) {
+  Distribution out;
+  for (const FieldShape& frame : frames) out.add(value(frame));
+  return out.summary();
+}
+
+}  // namespace
+
+std::vector<HeldCase> held_cases(const std::string& folder) {
+  std::vector<HeldCase> cases;
+  for (const double size : {0.9, 1.0, 1.1}) {
+    cases.push_back({fmt::format("study hand {:.1f}", size),
+                     [size](const PipelineSettings&) { return study(size); }});
+  }
+  cases.push_back(
+      {"study hand, left", [](const PipelineSettings&) { return study(1.0, Side::Left); }});
+  cases.push_back(held_study("10 mm to the right", {.x = 0.010}));
+  cases.push_back(held_study("10 mm towards the user", {.y = -0.010}));
+  for (const double skin : {0.14, 0.17, 0.24})
+    cases.push_back(held_study(fmt::format("skin at {:.2f} m", skin), {.height = skin + 0.015}));
+  cases.push_back({"scripted hand, open, still",
+                   [](const PipelineSettings& s) {
+                     ScriptedHandSettings still = s.scripted_hand;
+                     still.still = true;
+                     return make_scripted_hand(still, s.track);
+                   },
+                   JetPlace::Array});
+  if (folder.empty()) return cases;
+  for (const char* name :
+       {"flat-closed", "HandSplay-110fps", "rollAndPitchWithEntry", "flapping"}) {
+    const std::string path = folder + "/" + name + ".hands.jsonl";
+    cases.push_back({std::string(name) + ", held",
+                     [path](const PipelineSettings&) { return make_held_hand(path, {}); }});
+  }
+  return cases;
+}
+
+Measured measure_plumes(const HeldCase& held, const PipelineSettings& base, double dt, int frames) {
+  PipelineSettings settings = base;
+  settings.world_rate = 1.0 / dt;
+  settings.world_steps_per_plan = 1;
+  settings.jets.place = held.place;
+  settings.simulated_array.realtime = false;
+  WorldStage stage(settings, held.make(settings));
+  const Stimulus stimulus = stimulus_of(settings.scene);
+  StimulusGate gate(static_cast<int>(std::lround(1.0 / dt)), stage.max_cells());
+  WorldFrame frame;
+  Measured out;
+  const auto settle = std::llround(kSettle / dt);
+  for (std::int64_t step = 1; step <= settle + frames; ++step) {
+    stage.run(step, static_cast<double>(step) * dt, dt, frame);
+    const ScenePlace place = *stage.world().place();
+    const Stimulus wanted = stimulus.scaled(place.size, settings.fluid.jet_speed);
+    const GateResult result = gate.judge(frame.hands, frame.target, wanted, place);
+    if (step <= settle) continue;
+    out.size = place.size;
+    out.frames.push_back(result.shape);
+    out.pass += result.pass ? 1.0 / frames : 0.0;
+    out.says = sentence(result);
+  }
+  return out;
+}
+
+Stimulus stimulus_of(const std::string& scene) {
+  if (scene == "one-plume") return {1, 88e-4, 0.0};
+  if (scene == "four-plumes") return {4, 64e-4, 0.0};
+  return {scene == "two-plumes" ? 2 : scene == "three-plumes" ? 3 : 0, 0.0, 0.0};
+}
+
+void add_rows(const std::string& name, const Measured& m, int maxima, std::vector<Row>& rows) {
+  const auto add = [&](const char* what, const char* unit, const auto& value) {
+    rows.push_back({name + ", " + what, unit, over_frames(m.frames, value), "", 0.0});
+  };
+  const auto add_share = [&](const char* what, const auto& test) {
+    const auto good = std::count_if(m.frames.begin(), m.frames.end(), test);
+    Distribution share(1);
+    share.add(100.0 * static_cast<double>(good) / static_cast<double>(m.frames.size()));
+    rows.push_back({name + ", " + what, "%", share.summary(), "", 0.0});
+  };
+  add_share("frames with its maxima", [&](const FieldShape& s) {
+    return s.count() == maxima && s.balance >= GateBounds::kBalance;
+  });
+  add_share("frames with deep saddles",
+            [](const FieldShape& s) { return s.saddle <= GateBounds::kSaddle; });
+  add("balance", "", [](const FieldShape& s) { return s.balance; });
+  add("saddle", "", [](const FieldShape& s) { return s.saddle; });
+  add("least spacing", "mm", [](const FieldShape& s) { return 1e3 * s.least_spacing; });
+  add("area", "cm2", [](const FieldShape& s) { return 1e4 * s.area; });
+  add("force", "mN", [](const FieldShape& s) { return 1e3 * s.force; });
+  add("largest", "Pa", [](const FieldShape& s) { return s.largest; });
+}
+
+}  // namespace prostm::bench

@@ -1,0 +1,47 @@
+#pragma once
+/// Measures the targets that the scenes make on held hands, frame by frame.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "prostm/pipeline/settings.hpp"
+#include "prostm/pipeline/stimulus_gate.hpp"
+#include "prostm/track/hand_source.hpp"
+#include "report.hpp"
+
+namespace prostm::bench {
+
+/// A hand to measure on, and where the jets are for it.
+struct HeldCase {
+  std::string name;
+  std::function<std::unique_ptr<HandSource>(const PipelineSettings&)> make;
+  JetPlace place = JetPlace::Hand;
+};
+
+/// The study hand in sizes, left, aside, high and low; the scripted hand, open; and what `folder`
+/// has of recordings (none if it is empty).
+std::vector<HeldCase> held_cases(const std::string& folder);
+
+/// The paper's Fig. 3 for one plume and four; the number of maxima alone for others.
+Stimulus stimulus_of(const std::string& scene);
+
+struct Measured {
+  std::vector<FieldShape> frames;
+  double size = 1.0;  ///< of the scene's place
+  double pass = 0.0;  ///< share of frames that the gate passes
+  std::string says;   ///< the gate, of the last frame
+};
+
+/// Lets the air settle for 5 s, then measures `frames` targets, one a step. @param dt a step [s].
+Measured measure_plumes(const HeldCase& held, const PipelineSettings& settings, double dt,
+                        int frames);
+
+/// Adds rows of what was measured: the share of frames with the right number of maxima that are all
+/// at least 0.8 of the largest, and with saddles of at most 0.7; balance, saddle, spacing, area,
+/// force and largest pressure over the frames.
+void add_rows(const std::string& name, const Measured& measured, int maxima,
+              std::vector<Row>& rows);
+
+}  // namespace prostm::bench
