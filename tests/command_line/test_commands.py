@@ -523,3 +523,15 @@ def test_the_program_is_compiled_for_no_machine_in_particular(program):
     mine = [c for c in commands if "/bench/" not in c["file"]]
     assert any("/textbook/" in c["file"] for c in mine) and any("/apps/" in c["file"] for c in mine)
     assert [c["file"] for c in mine if re.search(r" -m(arch|cpu|tune|avx|sse|fma)", c["command"])] == []
+
+
+def test_a_study_hand_has_its_own_size_and_others_do_not(prostm, refuses, tmp_path):
+    areas = []
+    for size in ("0.8", "1.2"):
+        out = tmp_path / f"{size}.h5"
+        prostm("capture", "--hand", "study", "--hand-size", size, "--frames", "2", "--grid", "32", "--out", out)
+        with h5py.File(out) as file:
+            areas.append(int(np.isfinite(file["target/pressure"][:]).sum()))
+    assert 1.8 < areas[1] / areas[0] < 2.8  # the square of 1.5
+    refuses("run", "--hand", "scripted", "--hand-size", "0.9", words=["--hand-size belongs to --hand study"])
+    refuses("capture", "--hand", "study", "--hand-size", "2", "--frames", "1", "--out", "x.h5", words=["0.7", "1.3"])
