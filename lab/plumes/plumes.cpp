@@ -22,11 +22,9 @@ HeldCase held_study(const std::string& name, const Hold& hold) {
           JetPlace::Array};
 }
 
-/// The numbers that `value` takes over the frames.
-template <class Value>
-Summary over_frames(const std::vector<FieldShape>& frames, const Value& value) {
+Summary over_frames(const std::vector<FieldShape>& frames, const Quantity<FieldShape>& quantity) {
   Distribution out;
-  for (const FieldShape& frame : frames) out.add(value(frame));
+  for (const FieldShape& frame : frames) out.add(quantity.scale * value_of(quantity, frame));
   return out.summary();
 }
 
@@ -94,9 +92,6 @@ Stimulus stimulus_of(const std::string& scene) {
 }
 
 void add_rows(const std::string& name, const Measured& m, int maxima, std::vector<Row>& rows) {
-  const auto add = [&](const char* what, const char* unit, const auto& value) {
-    rows.push_back({name + ", " + what, unit, over_frames(m.frames, value), "", 0.0});
-  };
   const auto add_share = [&](const char* what, const auto& test) {
     const auto good = std::count_if(m.frames.begin(), m.frames.end(), test);
     Distribution share(1);
@@ -108,12 +103,8 @@ void add_rows(const std::string& name, const Measured& m, int maxima, std::vecto
   });
   add_share("frames with deep saddles",
             [](const FieldShape& s) { return s.saddle <= GateBounds::kSaddle; });
-  add("balance", "", [](const FieldShape& s) { return s.balance; });
-  add("saddle", "", [](const FieldShape& s) { return s.saddle; });
-  add("least spacing", "mm", [](const FieldShape& s) { return 1e3 * s.least_spacing; });
-  add("area", "cm2", [](const FieldShape& s) { return 1e4 * s.area; });
-  add("force", "mN", [](const FieldShape& s) { return 1e3 * s.force; });
-  add("largest", "Pa", [](const FieldShape& s) { return s.largest; });
+  for (const Quantity<FieldShape>& q : quantities<FieldShape>())
+    rows.push_back({name + ", " + q.name, q.unit, over_frames(m.frames, q), "", 0.0});
 }
 
 }  // namespace prostm::bench

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "prostm/core/units.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/track/palm.hpp"
+#include "support/heap_guard.hpp"
 
 namespace prostm {
 namespace {
@@ -64,10 +66,13 @@ TEST(JetTrim, HoldsItsGainsUnlessEveryJetPressesOnSkin) {
 }
 
 TEST(ScenePlace, MovesTurnsAndSizesTheJets) {
-  const ScenePlace place{Vec2(0.05, -0.01), 0.5 * 3.14159265358979, 1.2};
+  const ScenePlace place{Vec2(0.05, -0.01), 0.5 * kPi, 1.2};
   SmokeInflow inflow;
   inflow.jets = {{Vec2(0.0, 0.02), 0.03, 0.7}};
-  const SmokeInflow moved = placed(inflow, place);
+  SmokeInflow moved = inflow;
+  const test::HeapGuard guard;
+  move_to(place, inflow, moved);
+  EXPECT_EQ(guard.allocations(), 0u);
   EXPECT_LT((moved.jets[0].centre - Vec2(0.05 - 0.024, -0.01)).norm(), 1e-9);
   EXPECT_NEAR(moved.jets[0].radius, 0.036, 1e-12);
   EXPECT_EQ(moved.jets[0].speed, 0.7);
@@ -105,6 +110,23 @@ double middle_of_pressure(JetPlace place, double x) {
     moment += patch.pressure[c] * (patch.X_DP * Vec3(q.x(), q.y(), patch.height[c])).x();
   }
   return moment / sum;
+}
+
+TEST(ScenePlace, StaysWhenAnotherSettingChanges) {
+  PipelineSettings settings;
+  settings.scene = "one-plume";
+  settings.fluid.cells = 32;
+  settings.jets.place = JetPlace::Hand;
+  WorldStage first(settings, std::make_unique<Aside>(0.04));
+  WorldFrame frame;
+  for (int step = 1; step <= 4; ++step) first.run(step, 0.02 * step, 0.02, frame);
+  settings.fluid.jet_speed = 0.8;
+  WorldStage second(settings, nullptr);
+  second.adopt(first);
+  EXPECT_NEAR(second.world().place()->centre.x(), 0.04, 1e-6);
+  second.set_hands(std::make_unique<Aside>(0.0));
+  for (int step = 5; step <= 8; ++step) second.run(step, 0.02 * step, 0.02, frame);
+  EXPECT_NEAR(second.world().place()->centre.x(), 0.04, 1e-6);
 }
 
 TEST(ScenePlace, UnderTheHandThePressureIsTheSameAsUnderOneInTheMiddle) {

@@ -104,7 +104,7 @@ TEST(StimulusGate, RefusesHandsAndSaysWhatToDo) {
   for (const Case& c : cases) {
     const GateResult result = after_a_second(c.hands, four());
     EXPECT_FALSE(result.pass);
-    EXPECT_EQ(result.finding.problem, c.problem) << name_of(c.problem);
+    EXPECT_EQ(result.finding.problem, c.problem) << c.words;
     EXPECT_THAT(sentence(result), HasSubstr(c.words));
   }
 }

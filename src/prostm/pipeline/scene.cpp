@@ -55,14 +55,13 @@ ScenePlace place_under(const Palm& palm) {
   return {palm.centre.head<2>(), palm.yaw, std::clamp(palm.size, 0.7, 1.3)};
 }
 
-SmokeInflow placed(const SmokeInflow& smoke, const ScenePlace& place) {
+void move_to(const ScenePlace& place, const SmokeInflow& smoke, SmokeInflow& out) {
   const Eigen::Rotation2Dd turn(place.yaw);
-  SmokeInflow out = smoke;
+  out = smoke;
   for (SmokeJet& jet : out.jets) {
     jet.centre = place.centre + turn * (place.size * jet.centre);
     jet.radius *= place.size;
   }
-  return out;
 }
 
 }  // namespace prostm

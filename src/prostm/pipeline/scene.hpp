@@ -32,6 +32,7 @@ struct ScenePlace {
 };
 /// @return with a size from 0.7 to 1.3.
 ScenePlace place_under(const Palm& palm);
-SmokeInflow placed(const SmokeInflow& smoke, const ScenePlace& place);
+/// Sets `out` to the flow at that place. Allocates nothing if `out` has held as many jets before.
+void move_to(const ScenePlace& place, const SmokeInflow& smoke, SmokeInflow& out);
 
 }  // namespace prostm

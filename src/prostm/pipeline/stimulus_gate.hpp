@@ -2,12 +2,10 @@
 /// The gate of a study: whether a held hand gets what the scene is meant to press on it, and what
 /// to change where it does not.
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "prostm/core/names.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/pipeline/scene.hpp"
 #include "prostm/target/field_shape.hpp"
@@ -44,10 +42,6 @@ enum class GateProblem : std::uint8_t {
   Area,
   Force
 };
-template <>
-inline constexpr std::array<std::string_view, 14> kNames<GateProblem> = {
-    "none", "no-hand", "two-hands", "bent",    "tilted", "beside", "low",
-    "high", "moving",  "maxima",    "balance", "saddle", "area",   "force"};
 
 /// The first problem of a frame, with its numbers.
 struct GateFinding {

@@ -10,7 +10,8 @@ class Smoke final : public World {
  public:
   Smoke(const PipelineSettings& settings, WorkerPool& pool)
       : scene_(scene_from_name(settings.scene)),
-        waits_for_hand_(settings.jets.place == JetPlace::Hand),
+        settings_(settings.jets),
+        waits_for_hand_(settings_.place == JetPlace::Hand),
         fluid_(settings.fluid, scene_.smoke, pool),
         pressure_(settings.fluid_pressure, fluid_.grid()),
         placed_(scene_.smoke),
@@ -34,21 +35,33 @@ class Smoke final : public World {
   }
   void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept override {
     if (waits_for_hand_ && !hands.hands.empty()) {
-      place_ = place_under(palm_of(hands.hands.front()));
-      placed_ = placed(scene_.smoke, place_);
+      blow_at(place_under(palm_of(hands.hands.front())));
       waits_for_hand_ = false;
-      changed_ = true;
     }
     changed_ = trim_.update(target, placed_.jets, dt) || changed_;
   }
   void go_on_from(const World& other) override {
     const Fluid* before = other.fluid();
     if (before != nullptr && before->grid() == grid()) fluid_.copy_state(*before);
+    const auto* smoke = dynamic_cast<const Smoke*>(&other);
+    if (smoke == nullptr || &smoke->scene_ != &scene_) return;
+    // a place and gains that were found stay, whatever else was changed
+    if (smoke->settings_.place == settings_.place) {
+      waits_for_hand_ = smoke->waits_for_hand_;
+      blow_at(smoke->place_);
+    }
+    if (settings_.trim_rate > 0.0) trim_.set_gains(smoke->trim_.gains());
+    changed_ = true;
   }
   const Fluid* fluid() const override { return &fluid_; }
   const ScenePlace* place() const override { return &place_; }
 
  private:
+  void blow_at(const ScenePlace& place) {
+    place_ = place;
+    move_to(place, scene_.smoke, placed_);
+    changed_ = true;
+  }
   /// Takes over a new place and new gains.
   void blow() {
     blown_ = placed_;
@@ -58,6 +71,7 @@ class Smoke final : public World {
   }
 
   const Scene& scene_;
+  JetSettings settings_;
   bool waits_for_hand_;  // to blow under it
   ScenePlace place_;
   Fluid fluid_;
