@@ -124,6 +124,9 @@ void follow(int foci, int divider, std::uint64_t seed, std::vector<double>& erro
   }
 }
 
+// One share in 200 is farther off: that of a weak focal point beside strong ones, whose side lobes
+// turn there faster than the transducers follow. 5 in 6 of these would be right without the memory,
+// and 20 iterations of the solver instead of 3 change none.
 TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
   for (const int divider : {4, 6, 8}) {
     for (const int foci : {2, 3, 4}) {
