@@ -124,9 +124,10 @@ void follow(int foci, int divider, std::uint64_t seed, std::vector<double>& erro
   }
 }
 
-// One share in 200 is farther off: that of a weak focal point beside strong ones, whose side lobes
-// turn there faster than the transducers follow. 5 in 6 of these would be right without the memory,
-// and 20 iterations of the solver instead of 3 change none.
+// One share in 200 is farther off. Two in three of these are of focal points less than 15 mm apart,
+// the others of weak ones; 5 in 6 would be right without the memory. 20 iterations of the solver
+// instead of 3 help next to nothing. Asking for other intensities because of what the memory will
+// do, which the encoder does not, leaves one share in 600.
 TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
   for (const int divider : {4, 6, 8}) {
     for (const int foci : {2, 3, 4}) {
