@@ -3,17 +3,21 @@
 ///
 /// usage: emit_bench [--json FILE]
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "fields/moving_foci.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/device/detail/slot_encoder.hpp"
 #include "prostm/device/sample_chain.hpp"
 #include "prostm/device/simulated_array.hpp"
 #include "prostm/emit/detail/path_emitter.hpp"
@@ -133,6 +137,34 @@ void add_limiter_rows(std::vector<Row>& rows) {
   rows.push_back({"table of levels, usx", "ms", made.summary(), "", 0.0});
 }
 
+/// Measures what the slots of AUTD3 cost for a sample of 4 moving focal points [us], which lasts
+/// 150 us; in turns with the memory of transducers, and without any as at 1 Hz.
+void add_slot_rows(std::vector<Row>& rows) {
+  constexpr double kSlotRate = 40e3 / 6.0;  // [Hz]
+  const std::array units{autd3_middle()};
+  SlotEncoder with(units, Medium{}, {.foci = kFoci, .sample_rate = kSlotRate});
+  SlotEncoder without(units, Medium{}, {.foci = kFoci, .sample_rate = 1.0});
+  const fields::MovingFoci moving(1, kFoci, 0.03);
+  std::array<SlotWord, 2 * kFoci> words;
+  Distribution with_memory, without_memory;
+  for (int s = 0; s < 40'000; ++s) {
+    std::array<FocusSample, kFoci> sample;
+    for (int f = 0; f < kFoci; ++f) {
+      const double time = s / kSlotRate;
+      sample[static_cast<std::size_t>(f)] = {moving.position(f, time).cast<float>(),
+                                             static_cast<float>(moving.amplitude(f, time))};
+    }
+    for (const auto& [encoder, us] :
+         {std::pair(&with, &with_memory), {&without, &without_memory}}) {
+      const StageTimer timer;
+      encoder->encode(sample, words);
+      us->add(1e6 * timer.seconds());
+    }
+  }
+  rows.push_back({"slots of AUTD3", "us", with_memory.summary(), "", 0.0});
+  rows.push_back({"slots of AUTD3, no memory", "us", without_memory.summary(), "", 0.0});
+}
+
 /// Streams for ten seconds in real time, 25 plans a second, beside `busy` threads that never sleep.
 DeviceStats stream(unsigned busy) {
   std::atomic<bool> done{false};
@@ -183,6 +215,7 @@ std::vector<Row> measure_emission() {
   std::vector<Row> rows;
   add_fill_rows(rows);
   add_limiter_rows(rows);
+  add_slot_rows(rows);
   add_stream_rows(0, "idle", rows);
   add_stream_rows(std::thread::hardware_concurrency(), "all cores busy", rows);
   return rows;

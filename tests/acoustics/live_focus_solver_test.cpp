@@ -286,6 +286,7 @@ TEST(LiveFocusSolver, RefusesSettingsThatCannotBe) {
   EXPECT_THROW(make({.method = FocusMethod::Ibp}), std::invalid_argument);
   EXPECT_THROW(make({.iterations = 0}), std::invalid_argument);
   EXPECT_THROW(make({.phase_levels = 1}), std::invalid_argument);
+  EXPECT_THROW(make({.memory = 1.0}), std::invalid_argument);
   EXPECT_THROW(LiveFocusSolver(TransducerArray(), Medium{}, {}), std::invalid_argument);
 }
 

@@ -39,6 +39,7 @@ const TransducerArray& validated(const TransducerArray& array, const LiveFocusSe
   if (settings.phase_levels != 0) require_between("phase_levels", settings.phase_levels, 2, 65536);
   require_between("full_scale", settings.full_scale, 0.0, 1e6, "Pa");
   require_between("bound", settings.bound, 1.0, 100.0);
+  require_between("memory", settings.memory, 0.0, 0.95);
   if (settings.adds_phasors && settings.method != FocusMethod::Weighted) {
     throw std::invalid_argument("only weighted runs for arrays that add phasors");
   }
@@ -96,6 +97,7 @@ LiveFocusSolver::LiveFocusSolver(const TransducerArray& array, const Medium& med
       drive_(1, packed_.transducers()),
       turns_(kMaxLiveFoci, packed_.transducers()),
       phasors_(settings.adds_phasors ? kMaxLiveFoci : 1, packed_.transducers()),
+      played_(1, packed_.transducers()),
       correlation_(kMaxLiveFoci, kMaxLiveFoci),
       magnitude_(1, kMaxLiveFoci),
       x_(1, kMaxLiveFoci),
@@ -107,6 +109,9 @@ void LiveFocusSolver::reset() {
   phase_.fill(1.0F);
   weight_.fill(1.0F);
   coefficient_.fill(0.0F);
+  magnitude_of_drives_ = 0.0F;
+  std::fill_n(played_.re(0), played_.stride(), 0.0F);
+  std::fill_n(played_.im(0), played_.stride(), 0.0F);
 }
 
 void LiveFocusSolver::solve(std::span<const LiveFocus> foci) noexcept {
@@ -204,10 +209,11 @@ float LiveFocusSolver::add_phasors() {
     const Complex& before = coefficient_[place_[m]];
     c_[m] = before != 0.0F ? before : wanted_[m] * phase_[place_[m]];
   }
+  recall();
   for (int i = 0; i < settings_.iterations; ++i) {
     if (i > 0) correct_phasors();
     solving::back_propagate_phases(phasors_, {c_.data(), count_}, drive_);
-    level_ = reach();
+    level_ = reach_after_memory();
   }
   float largest = kLeastShare;
   for (std::size_t m = 0; m < count_; ++m) largest = std::max(largest, std::abs(c_[m]));
@@ -217,6 +223,21 @@ float LiveFocusSolver::add_phasors() {
     phase_[place_[m]] = direction(c_[m]);
   }
   return 1.0F;
+}
+
+/// Sets what each focal point still gets from the samples before.
+void LiveFocusSolver::recall() {
+  fresh_ = 1.0F;
+  if (settings_.memory == 0.0) return left_.fill(0.0F);
+  solving::propagate_drives(g_, played_, {left_.data(), count_});
+  for (std::size_t m = 0; m < count_; ++m) left_[m] *= static_cast<float>(settings_.memory);
+}
+
+void LiveFocusSolver::play(Complex turn) noexcept {
+  const auto memory = static_cast<float>(settings_.memory);
+  const Complex kept = memory * std::conj(turn);
+  for (std::size_t n = 0; n < played_.columns(); ++n)
+    played_.set(0, n, kept * played_.at(0, n) + (1.0F - memory) * drive_.at(0, n));
 }
 
 /// One step of Gauss-Newton on the |c|, which the shares depend on steeply where two are alike.
@@ -231,7 +252,7 @@ void LiveFocusSolver::correct_phasors() {
     const Eigen::Map<const Eigen::VectorXf> t(turns_.im(row), columns);
     for (Eigen::Index l = 0; l < count; ++l) {
       const Eigen::Map<const Eigen::VectorXf> u(turns_.re(static_cast<std::size_t>(l)), columns);
-      jacobian(m, l) = static_cast<double>(t.dot(u));
+      jacobian(m, l) = static_cast<double>(fresh_ * t.dot(u));
     }
     lacks[m] = static_cast<double>(level_ * wanted_[row] - std::abs(y_[row]) / alone_[row]);
   }
@@ -316,6 +337,20 @@ void LiveFocusSolver::even_out() {
 /// Computes y_ = G q. @return its level.
 float LiveFocusSolver::reach() {
   solving::propagate_drives(g_, drive_, {y_.data(), count_});
+  return level_of_y();
+}
+
+/// Computes y_ = G a, where a are the outputs, (A10), when drives have been scaled and played.
+/// @return its level.
+float LiveFocusSolver::reach_after_memory() {
+  const float level = reach();
+  if (settings_.memory == 0.0) return level;
+  fresh_ = (1.0F - static_cast<float>(settings_.memory)) / std::max(level, 1.0F);
+  for (std::size_t m = 0; m < count_; ++m) y_[m] = left_[m] + fresh_ * y_[m];
+  return level_of_y();
+}
+
+float LiveFocusSolver::level_of_y() const {
   float sum = 0.0F, squares = 0.0F;
   for (std::size_t m = 0; m < count_; ++m) {
     sum += wanted_[m] * std::abs(y_[m]) / alone_[m];

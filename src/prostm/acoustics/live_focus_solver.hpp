@@ -28,6 +28,10 @@ struct LiveFocusSettings {
   /// For arrays that add up their own drives, as the phases of Σ_m c_m e^{−ik r_mn}: Weighted, but
   /// only c may be chosen, (A23). See coefficients().
   bool adds_phasors = false;
+  /// With `adds_phasors`, the share of what transducers give out that is left after a sample,
+  /// e^{−T/τ} of (A10) at resonance, 0..0.95; 0: no memory. The shares reached are then those at
+  /// the end of a sample, if play() is called after each solve().
+  double memory = 0.0;
 };
 
 /// A focal point in one sample.
@@ -67,6 +71,11 @@ class LiveFocusSolver {
   /// Magnitude of all drives of the last sample, ≤ 1, with `adds_phasors`; 0 without focal points.
   float magnitude() const { return magnitude_of_drives_; }
 
+  /// Lets transducers play the drives of the last solve(), with `adds_phasors` and `memory`.
+  /// @param turn factor of all drives by which the array turns them against those of the sample
+  /// before, |turn| = 1. The next solve() expects a turn of 1.
+  void play(std::complex<float> turn) noexcept;
+
   /// Forgets the previous sample.
   void reset();
 
@@ -81,9 +90,12 @@ class LiveFocusSolver {
   float add_phasors();
   void correct_phasors();
   void set_phasor_gradients();
+  void recall();
   void reweigh(float level);
   void even_out();
   float reach();
+  float reach_after_memory();
+  float level_of_y() const;
   void scale(float largest);
 
   LiveFocusSettings settings_;
@@ -91,6 +103,7 @@ class LiveFocusSolver {
   Eigen::AlignedBox3f near_;
   ComplexRows g_, drive_, turns_;  // a row for each focal point that counts; q; (A17)
   ComplexRows phasors_;            // G with all magnitudes 1, for `adds_phasors`
+  ComplexRows played_;             // outputs at the end of the last sample, with `memory`
   ComplexRows correlation_, magnitude_, x_, scratch_;  // for (A13)
 
   // for every focal point, by its index in the list
@@ -104,6 +117,8 @@ class LiveFocusSolver {
   // relative to alone; Σ|G| [Pa]; Σ|G|²
   std::array<float, kMaxLiveFoci> wanted_{}, alone_{}, squares_{};
   std::array<Complex, kMaxLiveFoci> c_{}, y_{};
+  std::array<Complex, kMaxLiveFoci> left_{};  // of G times the last sample's outputs
+  float fresh_ = 1.0F;  // share of the drives, as they will be scaled, in the outputs
   float level_ = 0.0F, magnitude_of_drives_ = 0.0F;
 };
 

@@ -65,8 +65,8 @@ struct Autd3Array::Impl {
 
   const Autd3Setup setup;
   const std::vector<Pose> units;
-  autd3::Session session;  // of the thread that plays, while it runs
-  SlotEncoder encoder;     // likewise, or of the one that loads loops
+  autd3::Session session;                // of the thread that plays, while it runs
+  std::unique_ptr<SlotEncoder> encoder;  // likewise, or of the one that loads loops
   autd3::Output output;
   Autd3Budget budget;
   DeviceInfo info;
@@ -88,18 +88,20 @@ Autd3Array::Impl::Impl(const Autd3Setup& s)
     : setup(s),
       units(units_of(s)),
       session(s.address, units),
-      encoder(units, s.medium, slots_of(s)),
       output(session),
       loops(session, output) {
   if (!session.open(autd3::Session::kOpenTime) || !session.measure())
     throw std::invalid_argument(session.problem());
   link_process = session.link_process();
-  budget = best_autd3_budget(encoder.slots(), session.frames_per_ms(), session.slow_frame(),
+  SlotSettings slots = slots_of(s);
+  budget = best_autd3_budget(slot_count(slots), session.frames_per_ms(), session.slow_frame(),
                              s.block_time);
+  slots.sample_rate = budget.sample_rate();
+  encoder = std::make_unique<SlotEncoder>(units, s.medium, slots);
   info = info_for(s, budget);
-  output.configure(encoder.slots(), budget.divider, budget.block_samples,
+  output.configure(encoder->slots(), budget.divider, budget.block_samples,
                    s.medium.speed_of_sound());
-  stream = std::make_unique<autd3::Stream>(session, output, encoder, budget);
+  stream = std::make_unique<autd3::Stream>(session, output, *encoder, budget);
   description = fmt::format(
       "{} unit{}, {}; {:.2f} frames per ms; {} slots at {:.1f} kHz, which is {:.2f} mm between "
       "samples at {:g} m/s; blocks of {:.1f} ms, so {:.0f} to {:.0f} ms from a sample to its "
@@ -177,23 +179,24 @@ void Autd3Array::Impl::connect_again(const std::stop_token& stop) {
 }
 
 DeviceStatus Autd3Array::Impl::load(std::span<const FocusSample> samples, int foci) {
-  const std::string why = autd3::loop_problem(samples, foci, setup.foci, encoder.slots());
+  const std::string why = autd3::loop_problem(samples, foci, setup.foci, encoder->slots());
   if (!why.empty()) return set_status(DeviceStatus::Refused, why);
   autd3::Loop loop;
   loop.foci = foci;
   loop.samples.assign(samples.begin(), samples.end());
   // the firmware wants two slots at least
-  while (loop.length() * encoder.slots() < 2)
+  while (loop.length() * encoder->slots() < 2)
     loop.samples.insert(loop.samples.end(), samples.begin(), samples.end());
-  const auto slots = static_cast<std::size_t>(encoder.slots()),
+  const auto slots = static_cast<std::size_t>(encoder->slots()),
              width = static_cast<std::size_t>(foci);
   const auto length = static_cast<std::size_t>(loop.length());
   loop.words.assign(units.size(), std::vector<SlotWord>(length * slots));
   std::vector<SlotWord> words(units.size() * slots);
+  encoder->reset();
   // the second time round, phases go on from those of the loop's end
   for (std::size_t i = 0; i < 2 * length; ++i) {
     const std::size_t s = i % length;
-    encoder.encode(std::span(loop.samples).subspan(s * width, width), words);
+    encoder->encode(std::span(loop.samples).subspan(s * width, width), words);
     for (std::size_t u = 0; u < units.size(); ++u)
       std::copy_n(words.begin() + static_cast<std::ptrdiff_t>(u * slots), slots,
                   loop.words[u].begin() + static_cast<std::ptrdiff_t>(s * slots));

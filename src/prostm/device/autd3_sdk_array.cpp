@@ -112,10 +112,12 @@ Autd3SdkArray::Impl::Impl(const Autd3SdkSetup& s)
       session({s.address, static_cast<int>(s.units.size()), std::clamp(s.failsafe_ms, 60, 100)}) {
   if (!session.open()) throw std::invalid_argument(session.problem());
   const std::vector<Pose> units = s.units.empty() ? side_by_side(session.units()) : s.units;
-  encoder = std::make_unique<SlotEncoder>(units, s.medium, slot_settings(s));
   const double frames_per_ms = session.measure();
   if (frames_per_ms == 0.0) throw std::invalid_argument(session.problem());
-  budget = best_autd3_sdk_budget(encoder->slots(), frames_per_ms);
+  SlotSettings slots = slot_settings(s);
+  budget = best_autd3_sdk_budget(slot_count(slots), frames_per_ms);
+  slots.sample_rate = 1e9 / static_cast<double>(kPeriod * budget.divider);
+  encoder = std::make_unique<SlotEncoder>(units, s.medium, slots);
   description = fmt::format(
       "{} unit{}, firmware {}; {:.1f} frames per ms, of which blocks of {:.1f} ms take {:.0f} %",
       session.units(), session.units() == 1 ? "" : "s", session.firmware(), frames_per_ms,
@@ -143,6 +145,7 @@ bool Autd3SdkArray::Impl::begin_stream() {
   gain = 0.0F;
   muted = falls = false;
   playing = 0;
+  encoder->reset();
   if (!session.set_silencer(budget.divider)) return false;
   for (const int bank : {1, 0}) {
     // bank 0 plays silence until bank 1 does
@@ -336,8 +339,7 @@ Autd3SdkArray::~Autd3SdkArray() {
 }
 
 DeviceInfo Autd3SdkArray::info_of(const Autd3SdkSetup& setup) {
-  const SlotEncoder encoder(side_by_side(1), setup.medium, slot_settings(setup));
-  return info_with(setup, best_autd3_sdk_budget(encoder.slots(), 1e3));
+  return info_with(setup, best_autd3_sdk_budget(slot_count(slot_settings(setup)), 1e3));
 }
 
 const DeviceInfo& Autd3SdkArray::info() const {

@@ -37,6 +37,7 @@ void Stream::start(SampleSource& source) {
 bool Stream::begin() {
   turns_.start(Clock::now(), 0, to_duration(budget_.block_time));
   if (!output_.begin(&turns_)) return false;
+  encoder_.reset();
   for (int u = 0; u < encoder_.units(); ++u) {
     std::vector<SlotWord>& words = output_.words(static_cast<std::size_t>(u));
     std::fill(words.begin(), words.end(), SlotWord{0});

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "prostm/acoustics/transducer.hpp"
+
 namespace prostm {
 namespace {
 
@@ -24,11 +26,15 @@ double full_scale_of(const TransducerArray& array, const Medium& medium) {
   return sum;
 }
 
-LiveFocusSettings solver_settings(std::span<const Pose> units, const Medium& medium) {
+LiveFocusSettings solver_settings(std::span<const Pose> units, const Medium& medium,
+                                  const SlotSettings& slots) {
   LiveFocusSettings settings;
   settings.iterations = kIterations;
   settings.full_scale = full_scale_of(autd3_units(units), medium);
   settings.adds_phasors = true;
+  // single slots cannot play what the solver finds
+  if (slots.own_intensities)
+    settings.memory = std::exp(-1.0 / (time_constant({}) * slots.sample_rate));
   return settings;
 }
 
@@ -80,11 +86,17 @@ SlotEncoder::SlotEncoder(std::span<const Pose> units, const Medium& medium,
     : settings_(settings),
       slots_(slot_count(settings)),
       per_focus_(slots_ / settings.foci),
-      solver_(autd3_units(units), medium, solver_settings(units, medium)),
+      solver_(autd3_units(units), medium, solver_settings(units, medium, settings)),
       foci_(static_cast<std::size_t>(settings.foci), LiveFocus{{0.0F, 0.0F, 0.2F}, 0.0F}),
       slot_(static_cast<std::size_t>(slots_)),
       middle_(foci_.size(), 0.0F) {
   for (const Pose& X_DU : units) X_UD_.push_back(X_DU.inverse().cast<float>());
+}
+
+void SlotEncoder::reset() {
+  solver_.reset();
+  std::fill(middle_.begin(), middle_.end(), 0.0F);
+  reference_ = 0;
 }
 
 void SlotEncoder::encode(std::span<const FocusSample> sample, std::span<SlotWord> words) noexcept {
@@ -96,6 +108,9 @@ void SlotEncoder::encode(std::span<const FocusSample> sample, std::span<SlotWord
   solver_.solve(foci_);
   for (std::size_t f = 0; f < foci_.size(); ++f) place(f);
   if (per_focus_ == 1) join_silent();
+  solver_.play(
+      std::polar(1.0F, kTurn / kPhases * static_cast<float>(slot_.front().phase - reference_)));
+  reference_ = slot_.front().phase;
   auto word = words.begin();
   for (const Eigen::Isometry3f& X_UD : X_UD_) {
     for (const Slot& slot : slot_) {
@@ -109,10 +124,19 @@ void SlotEncoder::encode(std::span<const FocusSample> sample, std::span<SlotWord
 /// silent focal point cancel.
 void SlotEncoder::place(std::size_t focus) {
   const std::complex<float> c = solver_.coefficient(focus);
-  const float size = std::min(std::abs(c), 1.0F);
-  // AUTD3 takes the negative of the sum's phase, so its phases are those of c*. A silent focal
-  // point keeps its phase: all others are told relative to the first, and must not jump.
-  if (size > 0.0F) middle_[focus] = -std::arg(c) / kTurn * kPhases;
+  float size = std::min(std::abs(c), 1.0F);
+  // AUTD3 takes the negative of the sum's phase, so its phases are those of c*. All others are told
+  // relative to the first slot's, which must not jump: a silent focal point keeps its phase, and
+  // one that turns around passes through silence, δ through a quarter turn.
+  if (size > 0.0F) {
+    float turned = -std::arg(c) / kTurn * kPhases - middle_[focus];
+    turned -= kPhases * std::round(turned / kPhases);
+    if (per_focus_ > 1 && std::abs(turned) > kPhases / 4) {
+      size = -size;
+      turned -= std::copysign(kPhases / 2.0F, turned);
+    }
+    middle_[focus] += turned;
+  }
   const float middle = middle_[focus];
   const std::size_t first = focus * static_cast<std::size_t>(per_focus_);
   const Eigen::Vector3f& p_D = foci_[focus].p_D;

@@ -23,15 +23,16 @@ struct SlotSettings {
   /// An intensity for each focal point, by two slots each; at most kMostSlots / 2 focal points
   /// then. One focal point needs one slot.
   bool own_intensities = true;
+  double sample_rate = 10e3;  ///< of the samples, which the transducers' memory depends on [Hz]
 };
 
 /// Slots of a sample. @throws std::invalid_argument for more focal points than fit.
 int slot_count(const SlotSettings& settings);
 
 /// Encodes sample after sample for an array of one or several units. All units get the same phases
-/// and the same intensity, and positions in their own frames, (A23). Allocates nothing after
-/// construction. A focal point whose numbers are not finite, that is out of reach or behind the
-/// array is silent.
+/// and the same intensity, and positions in their own frames, (A23). Intensities are those at the
+/// end of each sample, after the transducers' memory. Allocates nothing after construction. A focal
+/// point whose numbers are not finite, that is out of reach or behind the array is silent.
 class SlotEncoder {
  public:
   /// @param units poses X_DU of the units' own frames (transducer 0 is the origin).
@@ -45,6 +46,8 @@ class SlotEncoder {
   /// @param words slots() of unit 0, then those of unit 1, and so on. The byte of slot 0 is the
   /// intensity, that of slot i > 0 the phase of slot i less that of slot 0 [1/256 turn].
   void encode(std::span<const FocusSample> sample, std::span<SlotWord> words) noexcept;
+  /// Begins anew, after silence.
+  void reset();
 
  private:
   struct Slot {
@@ -62,6 +65,7 @@ class SlotEncoder {
   std::vector<LiveFocus> foci_;
   std::vector<Slot> slot_;
   std::vector<float> middle_;  // phase between a focal point's slots [1/256 turn]
+  int reference_ = 0;          // phase of the first slot, which the units take as 0 [1/256 turn]
 };
 
 /// The array of AUTD3's units at these places, X_DU, as transducers in D.
