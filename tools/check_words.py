@@ -17,7 +17,7 @@ FOLDERS = ("apps", "bench", "cmake", "data", "docs", "examples", "fuzz", "lab", 
 DOCUMENTS = (".md",)
 SOURCES = (".cpp", ".hpp", ".py", ".pyi", ".sh", ".ts", ".txt", ".cmake", "run")
 # this list, and what tests it, must name what they forbid
-LISTS = ("tools/check_words.py", "tests/command_line/test_check_words.py")
+LISTS = ("tools/check_words.py", "tests/tools/test_check_words.py")
 
 IDIOM = {
     re.compile(r"\b(?:is|are) none\b"): "say what is missing: 'there is no …'",

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "prostm/io/pose_file.hpp"
 #include "viewer/live_run.hpp"
 
 namespace prostm {

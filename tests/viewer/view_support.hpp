@@ -2,14 +2,9 @@
 /// A page and a view source for tests of the server.
 
 #include <atomic>
-#include <boost/asio/connect.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/websocket.hpp>
 #include <deque>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,8 +18,6 @@
 
 namespace prostm::test {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
 using Json = nlohmann::json;
 
 /// A source without a run: frames count up, and the pages' requests are kept.
@@ -89,116 +82,47 @@ class StandIn final : public ViewSource {
 
 /// Returns the answer of a connection to raw bytes, until it closes or, with `enough`, until that
 /// many bytes have come.
-inline std::string raw_exchange(int port, const std::string& bytes,
-                                std::size_t enough = std::string::npos) {
-  asio::io_context io;
-  asio::ip::tcp::socket socket(io);
-  socket.connect({asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(port)});
-  boost::system::error_code wrong;
-  asio::write(socket, asio::buffer(bytes), wrong);
-  std::string answer;
-  while (!wrong && answer.size() < enough) {
-    char some[4096];
-    const std::size_t n = socket.read_some(asio::buffer(some), wrong);
-    answer.append(some, n);
-  }
-  return answer;
-}
+std::string raw_exchange(int port, const std::string& bytes,
+                         std::size_t enough = std::string::npos);
 
 /// Returns the status of the answer to one request; 0 without an answer.
-inline int status_of(const std::string& answer) {
-  return answer.rfind("HTTP/1.1 ", 0) == 0 ? std::stoi(answer.substr(9, 3)) : 0;
-}
+int status_of(const std::string& answer);
 
 /// Sends a GET of a target with "Connection: close".
-inline std::string get(int port, const std::string& target, const std::string& headers = "",
-                       const std::string& method = "GET") {
-  return raw_exchange(port, method + " " + target + " HTTP/1.1\r\n" +
-                                (headers.find("Host:") == std::string::npos
-                                     ? "Host: 127.0.0.1:" + std::to_string(port) + "\r\n"
-                                     : "") +
-                                headers + "Connection: close\r\n\r\n");
-}
+std::string get(int port, const std::string& target, const std::string& headers = "",
+                const std::string& method = "GET");
 
 /// A page without a browser. Reads block; a test that waits in vain is ended by its time limit.
 class Page {
  public:
-  using Socket = beast::websocket::stream<asio::ip::tcp::socket, false>;
-
-  /// @throws boost::system::system_error if it is refused.
+  /// @throws std::runtime_error if it is refused.
   explicit Page(int port, const std::string& origin = "", const std::string& host = "",
-                const std::string& target = "/live")
-      : socket_(io_) {
-    socket_.next_layer().connect(
-        {asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(port)});
-    if (!origin.empty()) {
-      socket_.set_option(beast::websocket::stream_base::decorator(
-          [origin](beast::websocket::request_type& request) {
-            request.set(beast::http::field::origin, origin);
-          }));
-    }
-    socket_.handshake(host.empty() ? "127.0.0.1:" + std::to_string(port) : host, target);
-  }
+                const std::string& target = "/live");
+  ~Page();
 
-  void say(const std::string& text) {
-    socket_.text(true);
-    socket_.write(asio::buffer(text));
-  }
+  void say(const std::string& text);
+  /// Sends bytes as they are, without the frame of a message.
+  void send_raw(const std::string& bytes);
   /// Returns the next message of a kind and skips others. @throws if the connection closes.
-  std::string next(bool text) {
-    for (;;) {
-      beast::flat_buffer buffer;
-      socket_.read(buffer);
-      if (socket_.got_text() == text) return beast::buffers_to_string(buffer.data());
-    }
-  }
+  std::string next(bool text);
   std::string next_frame() { return next(false); }
   Json next_text() { return Json::parse(next(true)); }
   /// Returns the next text of a type.
-  Json next_text(const std::string& type) {
-    for (;;) {
-      Json json = next_text();
-      if (json.at("type") == type) return json;
-    }
-  }
+  Json next_text(const std::string& type);
   /// Reads the messages that have arrived.
-  void catch_up() {
-    while (socket_.next_layer().available() > 0) {
-      beast::flat_buffer buffer;
-      socket_.read(buffer);
-    }
-  }
+  void catch_up();
   /// Reads until the server closes the connection.
-  void read_to_the_end() {
-    boost::system::error_code wrong;
-    while (!wrong) {
-      beast::flat_buffer buffer;
-      socket_.read(buffer, wrong);
-    }
-  }
-  Socket& socket() { return socket_; }
+  void read_to_the_end();
 
  private:
-  asio::io_context io_;
-  Socket socket_;
+  struct Connection;
+  std::unique_ptr<Connection> connection_;
 };
 
 /// A little-endian number in a frame.
-inline std::uint32_t u32_at(const std::string& bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;)
-    value = value << 8 | static_cast<unsigned char>(bytes.at(at + i));
-  return value;
-}
+std::uint32_t u32_at(const std::string& bytes, std::size_t at);
 
 /// Returns whether a frame has a section.
-inline bool has_section(const std::string& bytes, unsigned id) {
-  std::size_t at = 16;
-  while (at < bytes.size()) {
-    if ((u32_at(bytes, at) & 0xFFFFU) == id) return true;
-    at += 8 + (u32_at(bytes, at + 4) + 7) / 8 * 8;
-  }
-  return false;
-}
+bool has_section(const std::string& bytes, unsigned id);
 
 }  // namespace prostm::test

@@ -9,7 +9,7 @@ import { FakeTracker, kFlesh } from "./tracker";
 
 const tracker = await FakeTracker.start();
 const file = join(folder, "tracker.json");
-const program = new Program(["--grid", "48", "--hand", tracker.address, "--tracker-file", file, "--seconds", "3600"]);
+const program = new Program(["--grid", "32", "--hand", tracker.address, "--tracker-file", file, "--seconds", "3600"]);
 let browser: Browser, page: Page, watch: Watch;
 
 // where the program believes the tracker to be at first, and where it is: poses X_DT [m]

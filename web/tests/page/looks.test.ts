@@ -3,7 +3,7 @@ import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import "../../src/inspection";
 import { clean, openBrowser, Program, until, Watch, writeRecording } from "./program";
 
-const program = new Program(["--grid", "48", "--scene", "four-plumes", "--hand", writeRecording(6), "--seconds", "3600"]);
+const program = new Program(["--grid", "32", "--scene", "four-plumes", "--hand", writeRecording(6), "--seconds", "3600"]);
 let browser: Browser;
 const watches: Watch[] = [];
 
@@ -21,12 +21,18 @@ const kWidths = [390, 1024, 1440, 1920] as const;
 const kHeights: Record<number, number> = { 390: 844, 1024: 768, 1440: 900, 1920: 1080 };
 
 /// A page on the program, without the picture: it is not what is looked at here.
-async function open(width: number, theme: "light" | "dark", more = ""): Promise<Page> {
-  const page = await browser.newPage({ viewport: { width, height: kHeights[width] ?? 900 }, colorScheme: theme });
+async function open(theme: "light" | "dark", more = ""): Promise<Page> {
+  const page = await browser.newPage({ viewport: { width: 1024, height: 768 }, colorScheme: theme });
   watches.push(new Watch(page));
   await page.goto(`${program.address}/#folded=&picture=off${more}`);
   await until(page, () => (window.prostm?.frames ?? 0) > 5 && (window.prostm.state?.controls.length ?? 0) > 0, 0, "frames and controls");
   return page;
+}
+
+/// Gives its window another width and waits until it is drawn so.
+async function widen(page: Page, width: number): Promise<void> {
+  await page.setViewportSize({ width, height: kHeights[width] ?? 900 });
+  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
 }
 
 /// Whatever is wider than the room that it has, and is cut off there.
@@ -94,16 +100,26 @@ const faint = (page: Page) => page.evaluate(() => {
 });
 
 describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
+  let page: Page;
+  beforeAll(async () => {
+    page = await open(theme);
+  });
+  afterAll(() => page.close());
+
+  it("leaves room for the planes where there is no picture above them", async () => {
+    await until(page, () => document.getElementById("picture")!.dataset.drawn === "false", 0, "no picture");
+    const plane = (await page.locator('canvas[data-kind="target"]').boundingBox())!;
+    expect(plane.y + plane.height).toBeLessThanOrEqual(768);
+  });
   it.each(kWidths)("fits into a window %i pixels wide", async (width) => {
-    const page = await open(width, theme);
+    await widen(page, width);
     expect(await tooWide(page)).toBeLessThanOrEqual(0);
     expect(await page.evaluate(() => document.documentElement.scrollHeight - window.innerHeight)).toBeLessThanOrEqual(0);
     expect(await clipped(page)).toEqual([]);
     expect(await faint(page)).toEqual([]);
-    await page.close();
   });
   it("can be read while it is muted, and in its help", async () => {
-    const page = await open(1024, theme);
+    await widen(page, 1024);
     await page.locator("#mute").click();
     await until(page, () => document.getElementById("output-word")!.textContent === "Muted", 0, "muted");
     expect(await faint(page)).toEqual([]);
@@ -112,10 +128,35 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
     await until(page, () => document.querySelector("dialog[open]") !== null, 0, "help");
     expect(await faint(page)).toEqual([]);
     expect(await clipped(page)).toEqual([]);
-    await page.close();
   });
+});
+
+describe("large type", () => {
+  let page: Page;
+  beforeAll(async () => {
+    page = await open("light", "&large=1");
+  });
+  afterAll(() => page.close());
+
+  it.each(kWidths)("cuts nothing off in a window %i pixels wide", async (width) => {
+    await widen(page, width);
+    expect(await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize))).toBeGreaterThanOrEqual(18);
+    expect(await clipped(page)).toEqual([]);
+    expect(await tooWide(page)).toBeLessThanOrEqual(0);
+    // the planes begin at the same height: each has its name in one line
+    const names = await page.locator("figcaption").evaluateAll((all) => all.map((e) => e.getBoundingClientRect().height));
+    expect(new Set(names).size).toBe(1);
+  });
+  it("leaves room for the button beside the longest words on the output", async () => {
+    await widen(page, 390);
+    await page.locator("#mute").click();
+    await until(page, () => document.getElementById("output-why")!.textContent === "by you or another page", 0, "muted");
+    expect(await clipped(page)).toEqual([]);
+    await page.locator("#mute").click();
+  });
+  // changes the page's words: nothing comes after it
   it.each(kWidths)("has room for all that is said in place of the picture, %i pixels wide", async (width) => {
-    const page = await open(width, theme, "&large=1");
+    await widen(page, width);
     const cut = await page.evaluate(() => {
       document.getElementById("no-picture-why")!.textContent = "The picture in three dimensions is off: drawing it here would slow the run down. The planes show the fields.";
       document.getElementById("no-hand-advice")!.textContent = "No tracker yet: nothing answers at leap://127.0.0.1:6437; start the service of the Leap Motion controller, or Ultraleap's bridge.";
@@ -125,38 +166,13 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
       return signs.map((sign) => sign.getBoundingClientRect()).filter((box) => box.bottom > room.bottom || box.top < above.bottom).length;
     });
     expect(cut).toBe(0);
-    await page.close();
-  });
-  it("leaves room for the planes where there is no picture above them", async () => {
-    const page = await open(1024, theme);
-    await until(page, () => document.getElementById("picture")!.dataset.drawn === "false", 0, "no picture");
-    const plane = (await page.locator('canvas[data-kind="target"]').boundingBox())!;
-    expect(plane.y + plane.height).toBeLessThanOrEqual(768);
-    await page.close();
   });
 });
 
-describe("large type", () => {
-  it.each(kWidths)("cuts nothing off in a window %i pixels wide", async (width) => {
-    const page = await open(width, "light", "&large=1");
-    expect(await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize))).toBeGreaterThanOrEqual(18);
-    expect(await clipped(page)).toEqual([]);
-    expect(await tooWide(page)).toBeLessThanOrEqual(0);
-    // the planes begin at the same height: each has its name in one line
-    const names = await page.locator("figcaption").evaluateAll((all) => all.map((e) => e.getBoundingClientRect().height));
-    expect(new Set(names).size).toBe(1);
-    await page.close();
-  });
-  it("leaves room for the button beside the longest words on the output", async () => {
-    const page = await open(390, "light", "&large=1");
-    await page.locator("#mute").click();
-    await until(page, () => document.getElementById("output-why")!.textContent === "by you or another page", 0, "muted");
-    expect(await clipped(page)).toEqual([]);
-    await page.locator("#mute").click();
-    await page.close();
-  });
-  it("of the browser, twice as large, cuts nothing off", async () => {
-    const page = await open(1440, "light");
+describe("the browser's own type", () => {
+  it("twice as large, cuts nothing off", async () => {
+    const page = await open("light");
+    await widen(page, 1440);
     // as a browser does whose own type is 32 pixels high
     await page.evaluate(() => document.documentElement.style.setProperty("font-size", "28px", "important"));
     await page.waitForTimeout(300);
@@ -169,7 +185,7 @@ describe("large type", () => {
 describe("what is read aloud", () => {
   let page: Page;
   beforeAll(async () => {
-    page = await open(1440, "light");
+    page = await open("light");
   });
   it("names every control", async () => {
     const unnamed = await page.evaluate(() => [...document.querySelectorAll<HTMLElement>("button, select, input, summary, canvas[role], fieldset, [role=radiogroup], [role=group], dialog")]

@@ -5,7 +5,7 @@ import "../../src/inspection";
 import { kNumbers } from "../../src/wire";
 import { clean, openBrowser, Program, until, Watch, writeRecording, type Json } from "./program";
 
-const program = new Program(["--grid", "48", "--scene", "four-plumes", "--hand", writeRecording(6), "--seconds", "3600"]);
+const program = new Program(["--grid", "32", "--scene", "four-plumes", "--hand", writeRecording(6), "--seconds", "3600"]);
 let browser: Browser, page: Page, watch: Watch;
 
 beforeAll(async () => {

@@ -5,7 +5,7 @@ import { kNumbers } from "../../src/wire";
 import { clean, openBrowser, Program, until, Watch } from "./program";
 
 // no hand but the page's: it is there when a test wants it
-const program = new Program(["--grid", "48", "--scene", "four-plumes", "--hand", "page", "--seconds", "3600"]);
+const program = new Program(["--grid", "32", "--scene", "four-plumes", "--hand", "page", "--seconds", "3600"]);
 let browser: Browser, page: Page, watch: Watch;
 
 beforeAll(async () => {

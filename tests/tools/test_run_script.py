@@ -4,10 +4,11 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from conftest import ROOT
+ROOT = Path(__file__).resolve().parents[2]
 
 TOOLS = ["bash", "awk", "basename", "cat", "dirname", "env", "grep", "mkdir", "nproc", "readlink", "sed", "tail", "tr"]
 
