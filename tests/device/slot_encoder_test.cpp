@@ -136,9 +136,9 @@ void follow(int foci, int divider, std::uint64_t seed, std::vector<Share>& share
   }
 }
 
-// Two focal points nearer than a wavelength are one to the array, and cannot differ at will.
+// Nearly all shares that are off are of two focal points that pass each other within a wavelength.
 TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
-  constexpr double kNear = 8.6e-3;
+  constexpr double kNear = 8.6e-3;  // a wavelength [m]
   for (const int divider : {4, 6, 8}) {
     for (const int foci : {2, 3, 4}) {
       std::vector<Share> shares;
@@ -146,18 +146,18 @@ TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
         follow(foci, divider, seed, shares);
       std::sort(shares.begin(), shares.end(),
                 [](const Share& a, const Share& b) { return a.error < b.error; });
-      const auto near = std::partition_point(shares.begin(), shares.end(),
-                                             [](const Share& s) { return s.error < 0.1; });
+      const auto first_off = std::partition_point(shares.begin(), shares.end(),
+                                                  [](const Share& s) { return s.error < 0.1; });
       const auto off =
-          std::count_if(near, shares.end(), [](const Share& s) { return s.apart > kNear; });
+          std::count_if(first_off, shares.end(), [](const Share& s) { return s.apart > kNear; });
       std::printf(
           "%d foci, divider %d: median %.4f, 99th percentile %.3f; %td of %zu above 0.1, "
           "%td of them apart\n",
           foci, divider, shares[shares.size() / 2].error, shares[shares.size() * 99 / 100].error,
-          shares.end() - near, shares.size(), off);
+          shares.end() - first_off, shares.size(), off);
       EXPECT_LT(shares[shares.size() / 2].error, 0.003);
       EXPECT_LT(shares[shares.size() * 99 / 100].error, 0.05);
-      EXPECT_LT(static_cast<double>(shares.end() - near),
+      EXPECT_LT(static_cast<double>(shares.end() - first_off),
                 4e-3 * static_cast<double>(shares.size()));
       for (const Share& share : shares) EXPECT_TRUE(share.apart < kNear || share.error < 0.12);
     }

@@ -109,7 +109,6 @@ void LiveFocusSolver::reset() {
   phase_.fill(1.0F);
   weight_.fill(1.0F);
   coefficient_.fill(0.0F);
-  magnitude_of_drives_ = 0.0F;
   std::fill_n(played_.re(0), played_.stride(), 0.0F);
   std::fill_n(played_.im(0), played_.stride(), 0.0F);
 }
@@ -227,13 +226,13 @@ float LiveFocusSolver::add_phasors() {
 
 /// Sets what each focal point still gets from the samples before.
 void LiveFocusSolver::recall() {
-  fresh_ = 1.0F;
-  if (settings_.memory == 0.0) return left_.fill(0.0F);
+  if (settings_.memory == 0.0) return;
   solving::propagate_drives(g_, played_, {left_.data(), count_});
   for (std::size_t m = 0; m < count_; ++m) left_[m] *= static_cast<float>(settings_.memory);
 }
 
 void LiveFocusSolver::play(Complex turn) noexcept {
+  if (settings_.memory == 0.0) return;
   const auto memory = static_cast<float>(settings_.memory);
   const Complex kept = memory * std::conj(turn);
   for (std::size_t n = 0; n < played_.columns(); ++n)

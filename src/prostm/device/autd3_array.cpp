@@ -90,17 +90,16 @@ Autd3Array::Impl::Impl(const Autd3Setup& s)
       session(s.address, units),
       output(session),
       loops(session, output) {
+  SlotSettings slots = slots_of(s);
+  const int count = slot_count(slots);  // refuses too many focal points before anything is opened
   if (!session.open(autd3::Session::kOpenTime) || !session.measure())
     throw std::invalid_argument(session.problem());
   link_process = session.link_process();
-  SlotSettings slots = slots_of(s);
-  budget = best_autd3_budget(slot_count(slots), session.frames_per_ms(), session.slow_frame(),
-                             s.block_time);
+  budget = best_autd3_budget(count, session.frames_per_ms(), session.slow_frame(), s.block_time);
   slots.sample_rate = budget.sample_rate();
   encoder = std::make_unique<SlotEncoder>(units, s.medium, slots);
   info = info_for(s, budget);
-  output.configure(encoder->slots(), budget.divider, budget.block_samples,
-                   s.medium.speed_of_sound());
+  output.configure(count, budget.divider, budget.block_samples, s.medium.speed_of_sound());
   stream = std::make_unique<autd3::Stream>(session, output, *encoder, budget);
   description = fmt::format(
       "{} unit{}, {}; {:.2f} frames per ms; {} slots at {:.1f} kHz, which is {:.2f} mm between "

@@ -30,9 +30,10 @@ struct SlotSettings {
 int slot_count(const SlotSettings& settings);
 
 /// Encodes sample after sample for an array of one or several units. All units get the same phases
-/// and the same intensity, and positions in their own frames, (A23). Intensities are those at the
-/// end of each sample, after the transducers' memory. Allocates nothing after construction. A focal
-/// point whose numbers are not finite, that is out of reach or behind the array is silent.
+/// and the same intensity, and positions in their own frames, (A23). The shares of focal
+/// points are those at the end of each sample, after the transducers' memory. Allocates nothing
+/// after construction. A focal point whose numbers are not finite, that is out of reach or behind
+/// the array is silent.
 class SlotEncoder {
  public:
   /// @param units poses X_DU of the units' own frames (transducer 0 is the origin).
