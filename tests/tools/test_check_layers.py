@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from checks import check
+
 TOOL = Path(__file__).resolve().parents[2] / "tools" / "check_layers.py"
 
 GOOD = {
@@ -31,12 +33,6 @@ GOOD = {
 }
 
 
-def check(root):
-    """Returns the exit status and the lines that the tool prints about the tree in `root`."""
-    result = subprocess.run([sys.executable, str(TOOL), str(root)], capture_output=True, text=True)
-    return result.returncode, result.stdout.splitlines()
-
-
 @pytest.fixture
 def tree(tmp_path):
     """Returns a function that writes files into a tree that keeps every rule, and returns its root."""
@@ -52,7 +48,7 @@ def tree(tmp_path):
 
 
 def test_accepts_a_tree_that_keeps_the_rules(tree):
-    assert check(tree()) == (0, ["layers: every #include is of a stage that CMake links"])
+    assert check(TOOL, tree()) == (0, ["layers: every #include is of a stage that CMake links"])
 
 
 @pytest.mark.parametrize("name, text, line, word", [
@@ -96,7 +92,7 @@ def test_accepts_a_tree_that_keeps_the_rules(tree):
     ("docs/design_old.md", "\n", 1, "old copy"),
 ])
 def test_finds_each_violation_where_it_is(tree, name, text, line, word):
-    status, lines = check(tree([(name, text)]))
+    status, lines = check(TOOL, tree([(name, text)]))
     assert status == 1
     assert len(lines) == 1, lines
     assert lines[0].startswith(f"{name}:{line}: ")
@@ -104,14 +100,14 @@ def test_finds_each_violation_where_it_is(tree, name, text, line, word):
 
 
 def test_finds_every_violation_of_a_file(tree):
-    status, lines = check(tree([("src/prostm/emit/a.cpp", "#include <thread>\n#include <iostream>\nstd::thread t;\n")]))
+    status, lines = check(TOOL, tree([("src/prostm/emit/a.cpp", "#include <thread>\n#include <iostream>\nstd::thread t;\n")]))
     assert status == 1
     assert [line.split(":")[1] for line in lines] == ["1", "2", "3"]
 
 
 def test_a_program_may_include_what_the_linked_stages_link(tree):
     files = [("apps/prostm/a.cpp", '#include "prostm/plan/plan.hpp"\n#include "prostm/core/units.hpp"\n#include "options.hpp"\n')]
-    assert check(tree(files))[0] == 0
+    assert check(TOOL, tree(files))[0] == 0
 
 
 def test_a_folder_without_sources_is_an_error(tmp_path):

@@ -6,17 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from checks import check_file
+
 TOOL = Path(__file__).resolve().parents[2] / "tools" / "check_lengths.py"
 LINE = "  f();\n"
 
 
 def check(root, name="src/prostm/plan/a.cpp", text=""):
     """Returns the exit status and the lines that the tool prints about a tree of one file."""
-    path = root / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
-    result = subprocess.run([sys.executable, str(TOOL), str(root)], capture_output=True, text=True)
-    return result.returncode, result.stdout.splitlines()
+    return check_file(TOOL, root, name, text)
 
 
 @pytest.mark.parametrize("before, head, name", [

@@ -1,21 +1,13 @@
 """The check of words itself: it finds the old idiom, and leaves plain English alone."""
 
-import subprocess
-import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-TOOL = Path(__file__).resolve().parents[2] / "tools" / "check_words.py"
+from checks import check_file
 
-
-def check(root, name, text):
-    """Returns the exit status and the lines that the tool prints about a tree of one file."""
-    path = root / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
-    result = subprocess.run([sys.executable, str(TOOL), str(root)], capture_output=True, text=True)
-    return result.returncode, result.stdout.splitlines()
+check = partial(check_file, Path(__file__).resolve().parents[2] / "tools" / "check_words.py")
 
 
 @pytest.mark.parametrize("name, text", [

@@ -118,6 +118,7 @@ describe.each(["light", "dark"] as const)("a page in the %s theme", (theme) => {
     expect(await clipped(page)).toEqual([]);
     expect(await faint(page)).toEqual([]);
   });
+  // leaves the help open: nothing comes after it
   it("can be read while it is muted, and in its help", async () => {
     await widen(page, 1024);
     await page.locator("#mute").click();
