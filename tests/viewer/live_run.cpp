@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -96,9 +95,10 @@ Json LiveRun::numbers() const {
   return Json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
 }
 
-double LiveRun::number(const char* name) const {
+std::optional<double> LiveRun::number(const char* name) const {
   const Json value = numbers().at("numbers").at(name);
-  return value.is_null() ? std::nan("") : value.get<double>();
+  if (value.is_null()) return std::nullopt;
+  return value.get<double>();
 }
 
 int LiveRun::world_steps() const {

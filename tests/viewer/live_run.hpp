@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -47,8 +48,8 @@ class LiveRun {
   int port() const { return server_->port(); }
   /// Returns the contents of /numbers.json.
   Json numbers() const;
-  /// One of its numbers; NaN for null.
-  double number(const char* name) const;
+  /// One of its numbers; none for null, since a test that compares NaN is stopped by its trap.
+  std::optional<double> number(const char* name) const;
   int world_steps() const;
   int plan_updates() const;
   unsigned flags() const;
