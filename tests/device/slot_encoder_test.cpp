@@ -91,14 +91,10 @@ TEST(SlotEncoder, GivesASingleFocalPointItsIntensity) {
   }
 }
 
-/// How far a focal point is from its share, relatively, and from the nearest other one.
-struct Share {
-  double error, apart;
-};
-
 /// Follows moving focal points of unequal intensities, the least 0.2 of the largest, through the
-/// transducers' memory. Adds their shares at the ends of samples to `shares`.
-void follow(int foci, int divider, std::uint64_t seed, std::vector<Share>& shares) {
+/// transducers' memory. Adds the relative errors of their shares at the ends of samples to
+/// `errors`.
+void follow(int foci, int divider, std::uint64_t seed, std::vector<double>& errors) {
   const fields::MovingFoci moving(seed, foci, 0.03);
   TransducerSettings memory;
   memory.sample_rate = 40e3 / divider;
@@ -125,41 +121,25 @@ void follow(int foci, int divider, std::uint64_t seed, std::vector<Share>& share
       sum += weight[f] * reached[f];
       all += weight[f] * weight[f];
     }
-    for (std::size_t f = 0; f < sample.size(); ++f) {
-      double apart = 1.0;
-      for (const FocusSample& other : sample) {
-        const auto away = static_cast<double>((other.p_D - sample[f].p_D).norm());
-        if (away > 0.0) apart = std::min(apart, away);
-      }
-      shares.push_back({std::abs(reached[f] * all / sum / weight[f] - 1.0), apart});
-    }
+    for (std::size_t f = 0; f < sample.size(); ++f)
+      errors.push_back(std::abs(reached[f] * all / sum / weight[f] - 1.0));
   }
 }
 
-// Nearly all shares that are off are of two focal points that pass each other within a wavelength.
+// None of these paths' is off; on others a few in 10 000 are off, two focal points within a wavelength mostly.
 TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
-  constexpr double kNear = 8.6e-3;  // a wavelength [m]
   for (const int divider : {4, 6, 8}) {
     for (const int foci : {2, 3, 4}) {
-      std::vector<Share> shares;
+      std::vector<double> shares;
       for (std::uint64_t seed = 1; seed <= 1 + test::reduced(9); ++seed)
         follow(foci, divider, seed, shares);
-      std::sort(shares.begin(), shares.end(),
-                [](const Share& a, const Share& b) { return a.error < b.error; });
-      const auto first_off = std::partition_point(shares.begin(), shares.end(),
-                                                  [](const Share& s) { return s.error < 0.1; });
-      const auto off =
-          std::count_if(first_off, shares.end(), [](const Share& s) { return s.apart > kNear; });
-      std::printf(
-          "%d foci, divider %d: median %.4f, 99th percentile %.3f; %td of %zu above 0.1, "
-          "%td of them apart\n",
-          foci, divider, shares[shares.size() / 2].error, shares[shares.size() * 99 / 100].error,
-          shares.end() - first_off, shares.size(), off);
-      EXPECT_LT(shares[shares.size() / 2].error, 0.003);
-      EXPECT_LT(shares[shares.size() * 99 / 100].error, 0.05);
-      EXPECT_LT(static_cast<double>(shares.end() - first_off),
-                4e-3 * static_cast<double>(shares.size()));
-      for (const Share& share : shares) EXPECT_TRUE(share.apart < kNear || share.error < 0.12);
+      std::sort(shares.begin(), shares.end());
+      std::printf("%d foci, divider %d: median %.4f, 99th percentile %.3f, largest %.3f of %zu\n",
+                  foci, divider, shares[shares.size() / 2], shares[shares.size() * 99 / 100],
+                  shares.back(), shares.size());
+      EXPECT_LT(shares[shares.size() / 2], 0.003);
+      EXPECT_LT(shares[shares.size() * 99 / 100], 0.03);
+      EXPECT_LT(shares.back(), 0.1);
     }
   }
 }

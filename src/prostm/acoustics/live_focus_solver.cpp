@@ -17,13 +17,18 @@ using Complex = std::complex<float>;
 
 constexpr int kMost = static_cast<int>(kMaxLiveFoci);
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+using SmallJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, 2 * kMost>;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
-constexpr float kFarthest = 10.0F;      // largest coordinate of focal points, as of transducers [m]
-constexpr float kSilent = 1e-4F;        // amplitudes up to this are silent
-constexpr float kLeastShare = 1e-6F;    // share of the pressure of a focal point alone
-constexpr float kMostWeight = 10.0F;    // highest weight in (A16); the lowest is its inverse
-constexpr float kLeastSum = 0.1F;       // of phasors, over their rms, in the gradients of (A23)
-constexpr double kMostChange = 0.3;     // of a |c| in a step of (A23)
+constexpr float kFarthest = 10.0F;    // largest coordinate of focal points, as of transducers [m]
+constexpr float kSilent = 1e-4F;      // amplitudes up to this are silent
+constexpr float kLeastShare = 1e-6F;  // share of the pressure of a focal point alone
+constexpr float kMostWeight = 10.0F;  // highest weight in (A16); the lowest is its inverse
+constexpr float kLeastSum = 0.1F;     // of phasors, over their rms, in the gradients of (A23)
+constexpr double kMostChange = 0.3;   // of a c in a step of (A23)
+constexpr double kAcross = 0.3;       // share of a c's change across its direction in (A23)
+constexpr int kPhases = 256;          // steps of a turn of c's phases in (A23)
+constexpr int kMoreIterations = 2;    // of (A23) where a share is off by more than kCloseEnough
+constexpr float kCloseEnough = 0.05F;
 constexpr double kDamping = 1e-2;       // in (A17), relative to the mean diagonal
 constexpr double kLeastDamping = 1e-9;  // added in case no phase changes anything
 
@@ -97,6 +102,7 @@ LiveFocusSolver::LiveFocusSolver(const TransducerArray& array, const Medium& med
       drive_(1, packed_.transducers()),
       turns_(kMaxLiveFoci, packed_.transducers()),
       phasors_(settings.adds_phasors ? kMaxLiveFoci : 1, packed_.transducers()),
+      pulls_(settings.adds_phasors ? kMaxLiveFoci : 1, packed_.transducers()),
       played_(1, packed_.transducers()),
       correlation_(kMaxLiveFoci, kMaxLiveFoci),
       magnitude_(1, kMaxLiveFoci),
@@ -209,7 +215,8 @@ float LiveFocusSolver::add_phasors() {
     c_[m] = before != 0.0F ? before : wanted_[m] * phase_[place_[m]];
   }
   recall();
-  for (int i = 0; i < settings_.iterations; ++i) {
+  for (int i = 0; i < settings_.iterations + kMoreIterations; ++i) {
+    if (i >= settings_.iterations && largest_error() < kCloseEnough) break;
     if (i > 0) correct_phasors();
     solving::back_propagate_phases(phasors_, {c_.data(), count_}, drive_);
     level_ = reach_after_memory();
@@ -239,35 +246,43 @@ void LiveFocusSolver::play(Complex turn) noexcept {
     played_.set(0, n, kept * played_.at(0, n) + (1.0F - memory) * drive_.at(0, n));
 }
 
-/// One step of Gauss-Newton on the |c|, which the shares depend on steeply where two are alike.
+/// One step of Gauss-Newton on c, mostly along their directions: the shares depend on |c| steeply
+/// where two are alike. Where focal points are close, phases must change too.
 void LiveFocusSolver::correct_phasors() {
   set_phasor_gradients();
   const auto count = static_cast<Eigen::Index>(count_);
   const auto columns = static_cast<Eigen::Index>(turns_.columns());
-  SmallMatrix jacobian(count, count);
+  SmallJacobian jacobian(count, 2 * count);
   SmallVector lacks(count);
   for (Eigen::Index m = 0; m < count; ++m) {
     const auto row = static_cast<std::size_t>(m);
-    const Eigen::Map<const Eigen::VectorXf> t(turns_.im(row), columns);
+    const Eigen::Map<const Eigen::VectorXf> pull(pulls_.re(row), columns);
     for (Eigen::Index l = 0; l < count; ++l) {
-      const Eigen::Map<const Eigen::VectorXf> u(turns_.re(static_cast<std::size_t>(l)), columns);
-      jacobian(m, l) = static_cast<double>(fresh_ * t.dot(u));
+      const auto of = static_cast<std::size_t>(l);
+      const Eigen::Map<const Eigen::VectorXf> along(turns_.re(of), columns);
+      const Eigen::Map<const Eigen::VectorXf> across(turns_.im(of), columns);
+      jacobian(m, l) = static_cast<double>(fresh_ * pull.dot(along));
+      jacobian(m, count + l) = kAcross * static_cast<double>(fresh_ * pull.dot(across));
     }
     lacks[m] = static_cast<double>(level_ * wanted_[row] - std::abs(y_[row]) / alone_[row]);
   }
   SmallMatrix normal = jacobian * jacobian.transpose();
   normal.diagonal().array() += kDamping * normal.diagonal().mean() + kLeastDamping;
-  const SmallVector change = jacobian.transpose() * normal.llt().solve(lacks);
-  const double most = change.cwiseAbs().maxCoeff();
+  const SmallVector x = normal.llt().solve(lacks);
+  const SmallVector along = jacobian.leftCols(count).transpose() * x;
+  const SmallVector across = kAcross * jacobian.rightCols(count).transpose() * x;
+  const double most = std::max(along.cwiseAbs().maxCoeff(), across.cwiseAbs().maxCoeff());
   const double share = most > kMostChange ? kMostChange / most : 1.0;
   for (std::size_t m = 0; m < count_; ++m) {
-    const auto by = static_cast<float>(share * change[static_cast<Eigen::Index>(m)]);
-    c_[m] += by * direction(c_[m]);
+    const auto i = static_cast<Eigen::Index>(m);
+    const Complex by(static_cast<float>(share * along[i]), static_cast<float>(share * across[i]));
+    c_[m] = rounded_phase(c_[m] + by * direction(c_[m]), kPhases);
   }
 }
 
-/// Writes the derivatives of the drives' phases by |c_l| to the real parts of row l of `turns_`,
-/// and those of |y_m|/alone by the phases to the imaginary parts of row m.
+/// Writes the derivatives of the drives' phases by c_l along and across its direction to the real
+/// and imaginary parts of row l of `turns_`, and those of |y_m|/alone by the phases to row m of
+/// `pulls_`.
 void LiveFocusSolver::set_phasor_gradients() {
   std::array<Complex, kMaxLiveFoci> c_direction, y_direction;
   float squares = 0.0F;
@@ -283,11 +298,23 @@ void LiveFocusSolver::set_phasor_gradients() {
     const float size = std::max(std::sqrt(std::norm(sum)), least);
     const Complex q = drive_.at(0, n);
     for (std::size_t m = 0; m < count_; ++m) {
-      const Complex u = std::conj(q) * c_direction[m] * std::conj(phasors_.at(m, n));
+      const Complex u = std::conj(q) * c_direction[m] * std::conj(phasors_.at(m, n)) / size;
       const Complex t = std::conj(y_direction[m]) * g_.at(m, n) * q;
-      turns_.set(m, n, {u.imag() / size, -t.imag() / (alone_[m] * alone_[m])});
+      turns_.set(m, n, {u.imag(), u.real()});
+      pulls_.re(m)[n] = -t.imag() / (alone_[m] * alone_[m]);
     }
   }
+}
+
+/// The largest relative error of a share wanted.
+float LiveFocusSolver::largest_error() const {
+  float largest = 0.0F;
+  for (std::size_t m = 0; m < count_; ++m) {
+    const float reached = std::abs(y_[m]) / alone_[m];
+    const float wanted = std::max(level_ * wanted_[m], kLeastShare);
+    largest = std::max(largest, std::abs(reached / wanted - 1.0F));
+  }
+  return largest;
 }
 
 /// Takes over the phases reached, and raises the weights of focal points that are below their

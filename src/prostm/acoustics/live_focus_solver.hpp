@@ -90,6 +90,7 @@ class LiveFocusSolver {
   float add_phasors();
   void correct_phasors();
   void set_phasor_gradients();
+  float largest_error() const;
   void recall();
   void reweigh(float level);
   void even_out();
@@ -102,7 +103,7 @@ class LiveFocusSolver {
   PackedArray packed_;
   Eigen::AlignedBox3f near_;
   ComplexRows g_, drive_, turns_;  // a row for each focal point that counts; q; (A17)
-  ComplexRows phasors_;            // G with all magnitudes 1, for `adds_phasors`
+  ComplexRows phasors_, pulls_;    // G with all magnitudes 1, and gradients, for `adds_phasors`
   ComplexRows played_;             // outputs at the end of the last sample, with `memory`
   ComplexRows correlation_, magnitude_, x_, scratch_;  // for (A13)
 
