@@ -60,13 +60,17 @@ void WorldSide::set_clock() {
 /// The newest target wins.
 void WorldSide::in_real_time() {
   WorldStage& stage = pipeline_.world_stage();
+  bool was_late = false;
   while (goes_on()) {
     if (pace_.prepare_early) stage.prepare(pace_.dt);
     ++slot_;
     sleep_until(shared_.start + time());
-    // more than a step behind: let steps go rather than run after the clock
+    // more than a step behind: let steps go rather than run after the clock; a thread that woke
+    // late once makes up for it
     const auto due = static_cast<std::int64_t>(run_time() / pace_.dt);
-    if (due > slot_) {
+    const bool makes_up = due == slot_ + 1 && !was_late;
+    was_late = due > slot_;
+    if (was_late && !makes_up) {
       const std::int64_t last = pace_.stay ? due : std::min(due, pace_.steps);
       log_.skip(last - slot_);
       slot_ = last;
