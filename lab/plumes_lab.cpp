@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   std::vector<int> cells = {64};
   std::vector<double> steps = {20};
   int frames = 250;
-  double trim = 0.0;
+  double trim = JetSettings().trim_rate;
   app.add_option("--hands", folder, "folder with recorded hands");
   app.add_option("--only", only, "cases whose name contains this");
   app.add_option("--scenes", scenes, "scenes")->capture_default_str();
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
             const std::string name = fmt::format("{}, {}, {}³, {} ms", scene, held.name, n, ms);
             fmt::print("{}: {:.0f} % pass. {}\n", name, 100.0 * measured.pass, measured.says);
             std::fflush(stdout);
-            bench::add_rows(name, measured, bench::stimulus_of(scene).maxima, rows);
+            bench::add_rows(name, measured, scene_from_name(scene).stimulus.maxima, rows);
           }
         }
       }

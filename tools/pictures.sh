@@ -8,10 +8,13 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$root/docs/pictures"
 cd "$work"
+"$prostm" run --scene one-plume --seconds 6 --as-fast-as-possible --figure-at 4.5 \
+  --figure "$root/docs/pictures/one-plume.png"
+"$prostm" run --scene four-plumes --hand study --seconds 6 --as-fast-as-possible --figure-at 5.5 \
+  --figure "$root/docs/pictures/four-plumes.png"
 for scene in one-plume four-plumes; do
-  "$prostm" run --scene $scene --seconds 6 --as-fast-as-possible --figure-at 4.5 --figure "$root/docs/pictures/$scene.png"
+  "$prostm" capture --scene $scene --hand study --frames 120 --out $scene.h5
 done
-for scene in one-plume four-plumes; do "$prostm" capture --scene $scene --frames 120 --out $scene.h5; done
 "$prostm" plan four-plumes.h5 --frame 100 --preset paper --figure "$root/docs/pictures/plan.png"
 "$root/build/release/planner_bench" --frames 2 --seeds 1 --figure "$root/docs/pictures/gallery.png" \
   --bending-figure "$root/docs/pictures/bending.png"

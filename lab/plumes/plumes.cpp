@@ -66,7 +66,7 @@ Measured measure_plumes(const HeldCase& held, const PipelineSettings& base, doub
   settings.jets.place = held.place;
   settings.simulated_array.realtime = false;
   WorldStage stage(settings, held.make(settings));
-  const Stimulus stimulus = stimulus_of(settings.scene);
+  const Stimulus stimulus = scene_from_name(settings.scene).stimulus;
   StimulusGate gate(static_cast<int>(std::lround(1.0 / dt)), stage.max_cells());
   WorldFrame frame;
   Measured out;
@@ -83,12 +83,6 @@ Measured measure_plumes(const HeldCase& held, const PipelineSettings& base, doub
     out.says = sentence(result);
   }
   return out;
-}
-
-Stimulus stimulus_of(const std::string& scene) {
-  if (scene == "one-plume") return {1, 88e-4, 0.0};
-  if (scene == "four-plumes") return {4, 64e-4, 0.0};
-  return {scene == "two-plumes" ? 2 : scene == "three-plumes" ? 3 : 0, 0.0, 0.0};
 }
 
 void add_rows(const std::string& name, const Measured& m, int maxima, std::vector<Row>& rows) {

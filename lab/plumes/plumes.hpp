@@ -24,9 +24,6 @@ struct HeldCase {
 /// has of recordings (none if it is empty).
 std::vector<HeldCase> held_cases(const std::string& folder);
 
-/// The paper's Fig. 3 for one plume and four; the number of maxima alone for others.
-Stimulus stimulus_of(const std::string& scene);
-
 struct Measured {
   std::vector<FieldShape> frames;
   double size = 1.0;  ///< of the scene's place

@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, 2> kNames<JetPlace> = {"array", "h
 struct JetSettings {
   /// over the array's centre, or where the palm is when a hand first comes in
   JetPlace place = JetPlace::Array;
-  double trim_rate = 0.0;    ///< K of (F15) [1/s]; 0: no trim
+  double trim_rate = 0.3;    ///< K of (F15) [1/s]; 0: no trim
   double trim_limit = 0.35;  ///< a gain is at most so far from 1
 
   void visit(SettingsReader& v) const;

@@ -12,27 +12,40 @@ namespace {
 
 using namespace literals;
 
-/// Thin plumes that are far enough apart to be felt as places of their own.
-SmokeInflow thin_plumes(const std::vector<Vec2>& centres) {
-  SmokeInflow inflow{{}, 0.30};
-  for (const Vec2& centre : centres) inflow.jets.push_back({centre, 18_mm, 1.20});
+constexpr double kForce = 0.45e-3;  // of every scene but still air [N]
+
+/// Thin plumes that are far enough apart to be felt as places of their own. They are guided and
+/// have an eddy viscosity, without which they meander and merge. The broad part of a hand is in
+/// front of its palm joint, and so are they.
+SmokeInflow thin_plumes(const std::vector<Vec2>& centres, double speed) {
+  const Vec2 ahead(0.0, 15.0_mm);
+  SmokeInflow inflow{{}, 0.06, 0.95e-4, 0.10, 0.1};
+  for (const Vec2& centre : centres) inflow.jets.push_back({centre + ahead, 19_mm, speed});
   return inflow;
 }
 
-/// Radii and speeds are tuned on a flat palm 0.2 m above the array (docs/design.md, section 3.6).
-/// The fewer thin plumes there are the more each of them presses: they slow each other.
+SmokeInflow wide_plume() {
+  return {{SmokeJet{Vec2(0.0, 10.0_mm), 105_mm, 0.283}}, 0.04, 0.8e-4};
+}
+
+/// Tuned on a flat closed hand whose skin is 0.2 m above the array, so that all press with the same
+/// force (docs/design.md, section 3.6).
 std::vector<Scene> make_scenes() {
-  constexpr double kAside = 24.0_mm, kAround = 33.9_mm;
+  constexpr double kAside = 23.2_mm, kAround = 31.0_mm;
+  // a hand is wider at its knuckles than at its heel, and turns jets outwards there
+  constexpr double kHeel = kAside + 0.7_mm, kKnuckles = kAside - 0.7_mm;
   const double x = kAround * std::cos(kPi / 6.0), y = 0.5 * kAround;
-  return {
-      {"one-plume", "One wide plume", {{SmokeJet{Vec2(0, 0), 60_mm, 0.50}}, 0.05}, 0.16},
-      {"two-plumes", "Two thin plumes", thin_plumes({{-kAside, 0}, {kAside, 0}}), 0.66},
-      {"three-plumes", "Three thin plumes", thin_plumes({{-x, -y}, {x, -y}, {0, kAround}}), 0.62},
-      {"four-plumes", "Four thin plumes",
-       thin_plumes({{-kAside, -kAside}, {-kAside, kAside}, {kAside, -kAside}, {kAside, kAside}}),
-       0.50},
-      // ½ρv² of a palm at 0.65 m/s
-      {"still-air", "Still air", {}, 0.25}};
+  const std::vector<Vec2> two = {{-kAside, 0}, {kAside, 0}};
+  const std::vector<Vec2> three = {{-x, -y}, {x, -y}, {0, kAround}};
+  const std::vector<Vec2> four = {
+      {-kHeel, -kAside}, {-kKnuckles, kAside}, {kHeel, -kAside}, {kKnuckles, kAside}};
+  // one and four have the same full scale: the same force is then played with the same strength
+  return {{"one-plume", "One wide plume", wide_plume(), 0.11, {1, 88e-4, kForce}},
+          {"two-plumes", "Two thin plumes", thin_plumes(two, 0.64), 0.16, {2, 0.0, kForce}},
+          {"three-plumes", "Three thin plumes", thin_plumes(three, 0.60), 0.12, {3, 0.0, kForce}},
+          {"four-plumes", "Four thin plumes", thin_plumes(four, 0.60), 0.11, {4, 64e-4, kForce}},
+          // ½ρv² of a palm at 0.65 m/s
+          {"still-air", "Still air", {}, 0.25, {}}};
 }
 
 }  // namespace
@@ -62,6 +75,7 @@ void move_to(const ScenePlace& place, const SmokeInflow& smoke, SmokeInflow& out
     jet.centre = place.centre + turn * (place.size * jet.centre);
     jet.radius *= place.size;
   }
+  out.viscosity *= place.size * place.size;
 }
 
 }  // namespace prostm

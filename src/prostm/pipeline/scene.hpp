@@ -9,6 +9,18 @@
 
 namespace prostm {
 
+/// The pressure that a scene is meant to make on a flat hand of average size.
+struct Stimulus {
+  int maxima = 0;      ///< 0: nothing is asked of the field
+  double area = 0.0;   ///< of at least half of the largest pressure [m²]; 0: not asked
+  double force = 0.0;  ///< [N]; 0: not asked
+
+  /// The same of jets that are `size` times as large, and `speed` times as fast.
+  Stimulus scaled(double size, double speed) const {
+    return {maxima, size * size * area, size * size * speed * speed * force};
+  }
+};
+
 struct Scene {
   std::string_view name;   ///< in files and on the command line
   std::string_view label;  ///< for people
@@ -16,6 +28,7 @@ struct Scene {
   /// towards +y
   SmokeInflow smoke;
   double full_scale_pressure = 0.0;  ///< target pressure that maps to full output [Pa]
+  Stimulus stimulus;
 };
 
 /// In the order in which to show them.
@@ -32,7 +45,9 @@ struct ScenePlace {
 };
 /// @return with a size from 0.7 to 1.3.
 ScenePlace place_under(const Palm& palm);
-/// Sets `out` to the flow at that place. Allocates nothing if `out` has held as many jets before.
+/// Sets `out` to the flow at that place. The viscosity goes with the square of the size, so that
+/// jets of another size keep as far apart over the same height. Allocates nothing if `out` has held
+/// as many jets before.
 void move_to(const ScenePlace& place, const SmokeInflow& smoke, SmokeInflow& out);
 
 }  // namespace prostm
