@@ -126,7 +126,8 @@ void follow(int foci, int divider, std::uint64_t seed, std::vector<double>& erro
   }
 }
 
-// None of these paths' is off; on others a few in 10 000 are off, two focal points within a wavelength mostly.
+// None of these paths' is off; on others a few in 10 000 are off, two focal points within a
+// wavelength mostly.
 TEST(SlotEncoder, ReachesUnequalIntensitiesAfterTheTransducersMemory) {
   for (const int divider : {4, 6, 8}) {
     for (const int foci : {2, 3, 4}) {

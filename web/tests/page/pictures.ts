@@ -20,7 +20,7 @@ try {
       const { plan, numbers, hands } = window.prostm.frame!;
       const tip = hands[0]?.joints.subarray(8 * 15, 8 * 15 + 3), palm = hands[0]?.joints;
       const open = tip !== undefined && palm !== undefined && Math.hypot(tip[0]! - palm[0]!, tip[1]! - palm[1]!, tip[2]! - palm[2]!) > 0.11;
-      const good = open && plan.length === 4 && numbers[24]! > 0.45 && numbers[18]! > 0.94;
+      const good = open && plan.length === 4 && numbers[24]! > 0.08 && numbers[18]! > 0.92;
       if (good) {
         const mode = document.querySelector<HTMLSelectElement>("#picture-mode")!;
         mode.value = "auto";
