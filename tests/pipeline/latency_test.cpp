@@ -163,7 +163,7 @@ TEST(RunLatency, SteppedCountsTheAgeAndTheLapAlone) {
       EXPECT_NEAR(s.max, 0.0, 1e-9) << latency_part_name(part);
     }
   }
-  EXPECT_GT(old.latency_parts[kLapWait].max, 0.005);
+  EXPECT_GT(old.latency_parts[kLapWait].max, 0.002);
 }
 
 TEST(RunLatency, SwitchNowDoesNotWaitForLaps) {
