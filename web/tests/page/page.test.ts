@@ -21,6 +21,8 @@ afterAll(async () => {
 });
 
 // every group open, and the picture drawn however long that takes
+// a frame may take long where a picture is drawn in software
+const kSoon = { timeout: 30_000, interval: 100 };
 const kHash = "/#folded=&picture=on";
 
 const frameCount = () => page.evaluate(() => window.prostm.frames);
@@ -248,7 +250,7 @@ describe("controls", () => {
     await newFrames(page, 20);
     const low = await ratio();
     await turn("gain", 3);
-    await expect.poll(ratio, { timeout: 30_000, interval: 100 }).toBeGreaterThan(2.5 * low);
+    await expect.poll(ratio, kSoon).toBeGreaterThan(2.5 * low);
     await turn("gain", 1);
   });
   it("change the scene with its full scale", async () => {
@@ -256,16 +258,16 @@ describe("controls", () => {
     await newFrames(page, 3);
     const thin = await scale();
     await turn("scene", "two-plumes");
-    await expect.poll(scale, { timeout: 30_000, interval: 100 }).not.toBeCloseTo(thin, 3);
+    await expect.poll(scale, kSoon).not.toBeCloseTo(thin, 3);
     await turn("scene", "four-plumes");
-    await expect.poll(scale, { timeout: 30_000, interval: 100 }).toBeCloseTo(thin, 3);
+    await expect.poll(scale, kSoon).toBeCloseTo(thin, 3);
   });
   it("change what the emitter blows: without it the pressure goes away", async () => {
     const pressure = () => page.evaluate(() => window.prostm.frame!.numbers[24]!);
-    await expect.poll(pressure, { timeout: 30_000, interval: 100 }).toBeGreaterThan(0.07);
+    await expect.poll(pressure, kSoon).toBeGreaterThan(0.07);
     const before = await pressure();
     await turn("jet_speed", 0);
-    await expect.poll(pressure, { timeout: 30_000, interval: 100 }).toBeLessThan(0.5 * before);
+    await expect.poll(pressure, kSoon).toBeLessThan(0.5 * before);
     await turn("jet_speed", 1);
   });
   it("change what is on the skin and how fast focal points go, in the page alone", async () => {
@@ -339,12 +341,12 @@ describe("two pages", () => {
     // the hand goes from page to page, and the page that loses it is told
     await page.locator("#page-hand").check();
     await until(other, () => document.getElementById("source")!.textContent === "hand from another page", 0, "the other page's hand");
-    await expect.poll(() => page.locator("#source").textContent()).toBe("hand from this page");
+    await expect.poll(() => page.locator("#source").textContent(), kSoon).toBe("hand from this page");
     await other.locator("#page-hand").check();
     await until(page, () => document.getElementById("source")!.textContent === "hand from another page", 0, "the hand taken away");
-    await expect.poll(() => page.locator("#page-hand").isChecked()).toBe(false);
-    await expect.poll(() => page.locator("#notice").textContent()).toMatch(/another page has the hand/i);
-    await expect.poll(() => other.locator("#source").textContent()).toBe("hand from this page");
+    await expect.poll(() => page.locator("#page-hand").isChecked(), kSoon).toBe(false);
+    await expect.poll(() => page.locator("#notice").textContent(), kSoon).toMatch(/another page has the hand/i);
+    await expect.poll(() => other.locator("#source").textContent(), kSoon).toBe("hand from this page");
     await other.locator("#page-hand").uncheck();
     await until(page, () => !window.prostm.frame!.run.pageHand, 0, "the hand lets go");
     expect(seen.complaints).toEqual([]);
