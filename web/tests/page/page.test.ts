@@ -20,9 +20,9 @@ afterAll(async () => {
   clean();
 });
 
-// every group open, and the picture drawn however long that takes
 // a frame may take long where a picture is drawn in software
 const kSoon = { timeout: 30_000, interval: 100 };
+// every group open, and the picture drawn however long that takes
 const kHash = "/#folded=&picture=on";
 
 const frameCount = () => page.evaluate(() => window.prostm.frames);
