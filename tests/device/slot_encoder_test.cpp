@@ -153,6 +153,7 @@ TEST(SlotEncoder, TellsThePhasesOfItsSolver) {
   settings.iterations = 3;
   settings.full_scale = full_scale();
   settings.adds_phasors = true;
+  settings.phase_levels = 256;
   settings.memory = std::exp(-1.0 / (time_constant({}) * 6.7e3));
   LiveFocusSolver solver(array, kAir, settings);
   SlotEncoder encoder(std::array{autd3_middle()}, kAir, {.foci = kFoci, .sample_rate = 6.7e3});

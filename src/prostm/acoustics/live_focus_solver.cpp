@@ -25,11 +25,11 @@ constexpr float kLeastShare = 1e-6F;  // share of the pressure of a focal point 
 constexpr float kMostWeight = 10.0F;  // highest weight in (A16); the lowest is its inverse
 constexpr float kLeastSum = 0.1F;     // of phasors, over their rms, in the gradients of (A23)
 constexpr double kMostChange = 0.3;   // of a c in a step of (A23)
-constexpr double kAcross = 0.3;       // share of a c's change across its direction in (A23)
-constexpr int kPhases = 256;          // steps of a turn of c's phases in (A23)
-constexpr int kMoreIterations = 2;    // of (A23) where a share is off by more than kCloseEnough
-constexpr float kCloseEnough = 0.05F;
-constexpr double kDamping = 1e-2;       // in (A17), relative to the mean diagonal
+// scale of the changes of c across its direction in (A23), beside those along it
+constexpr double kAcross = 0.3;
+constexpr float kCloseEnough = 0.05F;   // relative error of a share that (A23) leaves
+constexpr int kMoreIterations = 2;      // of (A23), where a share is not close enough
+constexpr double kDamping = 1e-2;       // in (A17) and (A23), relative to the mean diagonal
 constexpr double kLeastDamping = 1e-9;  // added in case no phase changes anything
 
 static_assert(ComplexRows::kBlock == PackedArray::kRowBlock);  // rows of G are written in place
@@ -86,7 +86,9 @@ bool is_sound(const LiveFocus& focus) {
   return sound;
 }
 
+/// @param levels steps per turn; 0: any phase.
 Complex rounded_phase(const Complex& q, int levels) {
+  if (levels == 0) return q;
   const float step = 2.0F * std::numbers::pi_v<float> / static_cast<float>(levels);
   return std::polar(std::abs(q), step * std::round(std::arg(q) / step));
 }
@@ -276,7 +278,7 @@ void LiveFocusSolver::correct_phasors() {
   for (std::size_t m = 0; m < count_; ++m) {
     const auto i = static_cast<Eigen::Index>(m);
     const Complex by(static_cast<float>(share * along[i]), static_cast<float>(share * across[i]));
-    c_[m] = rounded_phase(c_[m] + by * direction(c_[m]), kPhases);
+    c_[m] = rounded_phase(c_[m] + by * direction(c_[m]), settings_.phase_levels);
   }
 }
 
@@ -396,7 +398,7 @@ void LiveFocusSolver::scale(float largest) {
     re[n] *= factor;
     im[n] *= factor;
   }
-  if (settings_.phase_levels == 0) return;
+  if (settings_.phase_levels == 0 || settings_.adds_phasors) return;
   for (std::size_t n = 0; n < drive_.columns(); ++n) {
     drive_.set(0, n, rounded_phase(drive_.at(0, n), settings_.phase_levels));
   }

@@ -16,9 +16,13 @@ inline constexpr std::size_t kMaxLiveFoci = 32;
 
 struct LiveFocusSettings {
   FocusMethod method = FocusMethod::Weighted;  ///< Weighted, Superposition or GsPat
-  int iterations = 1;    ///< per sample; GsPat, which gains little from the last one, takes 20
-  int phase_levels = 0;  ///< steps per turn that the drives' phases are rounded to; 0: any phase
-  bool warm = true;      ///< whether a sample begins with the previous phases and weights
+  /// Per sample; GsPat, which gains little from the last one, takes 20. With `adds_phasors` up to
+  /// two more follow while a share is off by 5 %.
+  int iterations = 1;
+  /// Steps per turn that the phases of drives, or of c with `adds_phasors`, are rounded to; 0: any
+  /// phase.
+  int phase_levels = 0;
+  bool warm = true;  ///< whether a sample begins with the previous phases and weights
   /// Acoustic pressure (rms) of amplitude 1 [Pa], the same everywhere; 0: the pressure that the
   /// whole array makes there with a single focal point.
   double full_scale = 0.0;

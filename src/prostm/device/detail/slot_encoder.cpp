@@ -32,6 +32,7 @@ LiveFocusSettings solver_settings(std::span<const Pose> units, const Medium& med
   settings.iterations = kIterations;
   settings.full_scale = full_scale_of(autd3_units(units), medium);
   settings.adds_phasors = true;
+  settings.phase_levels = kPhases;
   // single slots cannot play what the solver finds
   if (slots.own_intensities)
     settings.memory = std::exp(-1.0 / (time_constant({}) * slots.sample_rate));
