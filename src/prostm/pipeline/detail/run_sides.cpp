@@ -65,16 +65,16 @@ void WorldSide::in_real_time() {
     if (pace_.prepare_early) stage.prepare(pace_.dt);
     ++slot_;
     sleep_until(shared_.start + time());
-    // more than a step behind: let steps go rather than run after the clock; a thread that woke
-    // late once makes up for it
+    // more than a step behind: let steps go rather than run after the clock, unless the thread
+    // woke late this once
     const auto due = static_cast<std::int64_t>(run_time() / pace_.dt);
-    const bool makes_up = due == slot_ + 1 && !was_late;
-    was_late = due > slot_;
-    if (was_late && !makes_up) {
+    const bool late = due > slot_;
+    if (late && (was_late || due > slot_ + 1)) {
       const std::int64_t last = pace_.stay ? due : std::min(due, pace_.steps);
       log_.skip(last - slot_);
       slot_ = last;
     }
+    was_late = late;
     const double begins = time();
     WorldFrame& frame = shared_.newest.draft();
     take_hands(begins, stage.targets(log_.steps() + 1) ? pace_.frame_wait : 0.0, frame);
