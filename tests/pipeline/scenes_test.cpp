@@ -25,9 +25,6 @@ void PrintTo(const Held& held, std::ostream* out) {
 class Scenes : public ::testing::TestWithParam<Held> {};
 
 TEST_P(Scenes, PassTheGateOfAStudy) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "6 s of smoke take minutes with a sanitizer, and run through nothing new";
-#endif
   const Held& held = GetParam();
   PipelineSettings settings;
   settings.scene = held.scene;
