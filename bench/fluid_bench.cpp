@@ -35,10 +35,11 @@ constexpr int kTimedSteps = 300;
 constexpr double kHandStart = 4.0;  // [s] into the scripted hand's cycle: it hovers, then lowers
 constexpr int kExactCycles = 25;
 
-// Least memory traffic of a step per cell [bytes], each array read or written once per pass:
-// centred velocity 24, trace 24, four fields 44, divergence 16, two V-cycles 2 · 64 · 8/7,
-// projection 28, publishing 40.
-constexpr double kBytesPerCell = 322;
+// Least memory traffic per cell [bytes], each array read or written once per pass. Advection:
+// centred velocity 24, trace 24, four fields 44. Pressure: divergence 16, two V-cycles 2 · 64 ·
+// 8/7, projection 28, publishing 40.
+constexpr double kAdvectionBytes = 92, kPressureBytes = 230;
+constexpr double kBytesPerCell = kAdvectionBytes + kPressureBytes;
 
 /// The scripted hand on a fluid's grid, step by step.
 class MovingHand {
@@ -72,6 +73,14 @@ FluidSettings jacobi(int cells, bool warm) {
   settings.solver = prostm::PressureMethod::Jacobi;
   settings.jacobi_sweeps = 40;
   settings.jacobi_warm = warm;
+  return settings;
+}
+
+FluidSettings mgpcg(int cells, int iterations) {
+  FluidSettings settings;
+  settings.cells = cells;
+  settings.solver = prostm::PressureMethod::Mgpcg;
+  settings.cg_iterations = iterations;
   return settings;
 }
 
@@ -122,25 +131,33 @@ Summary accuracy(const FluidSettings& settings, const std::string& scene) {
 }
 
 struct StepTimes {
-  Summary ours, paper;  // [ms]
+  Summary ours, paper, accurate;  // [ms]
+  Summary advection, pressure;    // of ours [GB/s]
 };
 
-/// Times steps of both solvers in turn.
+/// Times steps of the solvers in turn.
 StepTimes step_times(int cells, int steps) {
   prostm::WorkerPool pool(kThreads);
   const prostm::SmokeInflow scene = prostm::scene_from_name("one-plume").smoke;
   Fluid ours(multigrid(cells, FluidSettings{}.cycles), scene, pool),
-      paper(jacobi(cells, false), scene, pool);
+      paper(jacobi(cells, false), scene, pool),
+      accurate(mgpcg(cells, FluidSettings{}.cg_iterations), scene, pool);
   MovingHand hand(ours.grid(), pool);
-  Distribution ours_ms, paper_ms;
+  const double gigacells = 1e-9 * std::pow(cells, 3);
+  Distribution ours_ms, paper_ms, accurate_ms, advection, pressure;
   for (int t = 0; t < kWarmUp + steps; ++t) {
     const HandRaster& raster = hand.at(t);
-    const double a = ours.step(kStep, raster).total, b = paper.step(kStep, raster).total;
+    const prostm::FluidStats a = ours.step(kStep, raster);
+    const double b = paper.step(kStep, raster).total, c = accurate.step(kStep, raster).total;
     if (t < kWarmUp) continue;
-    ours_ms.add(1e3 * a);
+    ours_ms.add(1e3 * a.total);
     paper_ms.add(1e3 * b);
+    accurate_ms.add(1e3 * c);
+    advection.add(kAdvectionBytes * gigacells / a.advect);
+    pressure.add(kPressureBytes * gigacells / a.solve);
   }
-  return {ours_ms.summary(), paper_ms.summary()};
+  return {ours_ms.summary(), paper_ms.summary(), accurate_ms.summary(), advection.summary(),
+          pressure.summary()};
 }
 
 /// Times rasterising the scripted hand on a 64³ grid, alone or with a second one beside and above
@@ -189,14 +206,19 @@ double triad_rate() {
 std::vector<Row> measure() {
   std::vector<Row> rows;
   const double rate = triad_rate();
-  for (const int cells : {64, 96}) {
+  for (const int cells : {32, 64, 96, 128, 160}) {
     const std::string size = std::to_string(cells) + "^3";
-    const StepTimes times = step_times(cells, cells == 64 ? kTimedSteps : kTimedSteps / 5);
+    const StepTimes times = step_times(cells, cells <= 64 ? kTimedSteps : kTimedSteps / 10);
     const double floor = 1e3 * kBytesPerCell * std::pow(cells, 3) / rate;
     rows.push_back({"step " + size + " with a hand, multigrid", "ms", times.ours,
                     "40 Jacobi sweeps", times.paper.p50});
     rows.push_back(
         {"step " + size + " against its memory traffic", "ms", times.ours, "traffic alone", floor});
+    rows.push_back({"step " + size + " with a hand, mgpcg", "ms", times.accurate, "multigrid",
+                    times.ours.p50});
+    rows.push_back(
+        {"traffic of advection, " + size, "GB/s", times.advection, "triad", 1e-9 * rate});
+    rows.push_back({"traffic of pressure, " + size, "GB/s", times.pressure, "triad", 1e-9 * rate});
   }
   rows.push_back({"raster 64^3, one hand", "ms", raster_times(false), "", 0.0});
   rows.push_back({"raster 64^3, two hands", "ms", raster_times(true), "", 0.0});
@@ -209,6 +231,8 @@ std::vector<Row> measure() {
                     accuracy(multigrid(64, cycles), "one-plume"), "40 Jacobi sweeps cold",
                     cold.p50});
   }
+  rows.push_back({"hand pressure, mgpcg", "%", accuracy(mgpcg(64, 3), "one-plume"),
+                  "40 Jacobi sweeps cold", cold.p50});
   rows.push_back({"hand pressure, default, four plumes", "%",
                   accuracy(FluidSettings{}, "four-plumes"), "", 0.0});
   return rows;

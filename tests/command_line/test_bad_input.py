@@ -180,7 +180,7 @@ def test_bad_options(refuses, args, words):
         ("[plan]\nsigma = nan\n", ["sigma"]),
         ("[plan]\nseed = -1\n", ["plan.seed", "-1"]),
         ("[plan]\n\nspeed = 800\n", ["s.toml, line 3: plan.speed = 800 m/s must be between 0.1 and 100 m/s"]),
-        ("[fluid]\ncells = 50\n", ["s.toml, line 2: fluid.cells = 50 must be a multiple of 16 between 32 and 128"]),
+        ("[fluid]\ncells = 50\n", ["s.toml, line 2: fluid.cells = 50 must be a multiple of 16 between 32 and 160"]),
         ("speed = 8\n",
          ['s.toml, line 1: "speed" stands outside a group of settings; did you mean [plan] speed?']),
         ("sigma = 8e-3\n", ["did you mean [plan] sigma or [am] sigma?"]),

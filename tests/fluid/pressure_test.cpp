@@ -7,7 +7,9 @@
 
 #include "analytic_raster.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
 #include "prostm/fluid/detail/advection.hpp"
+#include "prostm/fluid/detail/conjugate_gradients.hpp"
 #include "prostm/fluid/detail/obstacle.hpp"
 #include "prostm/fluid/detail/pressure_solver.hpp"
 #include "prostm/fluid/detail/projection.hpp"
@@ -59,87 +61,149 @@ double largest_difference(const PaddedGrid& grid, const Field& a, const Field& b
   return most;
 }
 
-/// The same operator in doubles, from (F6) alone: an open box over a floor, without a hand.
+/// Solves (F6) in doubles in an open box over a floor, without a hand: its modes are sines across
+/// the open sides and, along z, cosines of odd quarter waves, each with its own eigenvalue.
 class OpenBox {
  public:
-  explicit OpenBox(int n) : n_(n) {}
-  std::vector<double> apply(const std::vector<double>& p) const {
-    std::vector<double> out(p.size());
-    for (int k = 0; k < n_; ++k) {
-      for (int j = 0; j < n_; ++j) {
-        for (int i = 0; i < n_; ++i) {
-          double sum = 0.0;
-          sum += side(p, i, j, k, i - 1, j, k) + side(p, i, j, k, i + 1, j, k);
-          sum += side(p, i, j, k, i, j - 1, k) + side(p, i, j, k, i, j + 1, k);
-          sum += side(p, i, j, k, i, j, k + 1);
-          if (k > 0) sum += side(p, i, j, k, i, j, k - 1);
-          out[at(i, j, k)] = sum;
-        }
-      }
+  explicit OpenBox(int n) : n_(n), across_(modes(0.0)), up_(modes(0.5)) {}
+
+  /// @return the pressure for the right side b, both with x fastest.
+  std::vector<double> solve(std::vector<double> b) const {
+    for (int axis = 0; axis < 3; ++axis) transform(axis, false, b);
+    for (int m = 0; m < n_ * n_ * n_; ++m) {
+      const double sum = eigenvalue(m % n_ + 1.0) + eigenvalue(m / n_ % n_ + 1.0) +
+                         eigenvalue(m / (n_ * n_) + 0.5);
+      b[static_cast<std::size_t>(m)] /= sum;
     }
-    return out;
-  }
-  std::size_t at(int i, int j, int k) const {
-    return static_cast<std::size_t>((k * n_ + j) * n_ + i);
+    for (int axis = 0; axis < 3; ++axis) transform(axis, true, b);
+    return b;
   }
 
  private:
-  double side(const std::vector<double>& p, int i, int j, int k, int a, int b, int c) const {
-    const bool inside = a >= 0 && b >= 0 && a < n_ && b < n_ && c < n_;
-    return inside ? p[at(i, j, k)] - p[at(a, b, c)] : 2.0 * p[at(i, j, k)];
+  double eigenvalue(double wave) const { return 2.0 - 2.0 * std::cos(kPi * wave / n_); }
+  /// Orthonormal modes in rows: sines, or cosines for a shift of half a wave.
+  std::vector<double> modes(double shift) const {
+    std::vector<double> all(static_cast<std::size_t>(n_ * n_));
+    for (int m = 0; m < n_; ++m) {
+      double squares = 0.0;
+      for (int i = 0; i < n_; ++i) {
+        const double angle = kPi * (m + 1.0 - shift) * (i + 0.5) / n_;
+        const double value = shift > 0.0 ? std::cos(angle) : std::sin(angle);
+        all[at(m, i)] = value;
+        squares += value * value;
+      }
+      for (int i = 0; i < n_; ++i) all[at(m, i)] /= std::sqrt(squares);
+    }
+    return all;
   }
+  void transform(int axis, bool back, std::vector<double>& field) const {
+    const std::vector<double>& basis = axis == 2 ? up_ : across_;
+    const auto n = static_cast<std::size_t>(n_);
+    const std::size_t stride = axis == 0 ? 1 : axis == 1 ? n : n * n;
+    std::vector<double> line(n);
+    for (std::size_t c = 0; c < field.size(); ++c) {
+      if (c / stride % n != 0) continue;  // not where a line begins
+      for (std::size_t m = 0; m < n; ++m) {
+        line[m] = 0.0;
+        for (std::size_t i = 0; i < n; ++i)
+          line[m] += (back ? basis[i * n + m] : basis[m * n + i]) * field[c + i * stride];
+      }
+      for (std::size_t m = 0; m < n; ++m) field[c + m * stride] = line[m];
+    }
+  }
+  std::size_t at(int m, int i) const { return static_cast<std::size_t>(m * n_ + i); }
+
   int n_;
+  std::vector<double> across_, up_;
 };
 
-std::vector<double> conjugate_gradients(const OpenBox& box, const std::vector<double>& b) {
-  const auto dot = [](const auto& x, const auto& y) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
-    return sum;
-  };
-  std::vector<double> x(b.size(), 0.0), r = b, d = b;
-  double rr = dot(r, r);
-  const double goal = 1e-20 * rr;
-  for (int it = 0; it < 1000 && rr > goal; ++it) {
-    const std::vector<double> q = box.apply(d);
-    const double alpha = rr / dot(d, q);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] += alpha * d[i];
-      r[i] -= alpha * q[i];
-    }
-    const double next = dot(r, r);
-    for (std::size_t i = 0; i < d.size(); ++i) d[i] = r[i] + next / rr * d[i];
-    rr = next;
-  }
-  return x;
-}
-
-TEST(Pressure, AgreesWithConjugateGradientsInDoublePrecision) {
-  constexpr int n = 32;
-  WorkerPool pool(1);
-  PressureSolver solver(n, pool, fast_pressure_kernels());
-  Random random(1);
-  fill_random(solver.fine().grid, solver.right_side(), random);
-  const OpenBox box(n);
-  std::vector<double> b(n * n * n);
-  for (int c = 0; c < n * n * n; ++c) {
-    b[static_cast<std::size_t>(c)] = static_cast<double>(
-        solver.right_side()[solver.fine().grid.index(c % n, c / n % n, c / n / n)]);
-  }
-  const std::vector<double> exact = conjugate_gradients(box, b);
-  solver.v_cycles(20);
+/// Relative rms difference to doubles with x fastest.
+double relative_error(const PaddedGrid& grid, const Field& p, const std::vector<double>& exact) {
   double error = 0.0, norm = 0.0;
-  for (int c = 0; c < n * n * n; ++c) {
-    const double p = static_cast<double>(
-        solver.pressure()[solver.fine().grid.index(c % n, c / n % n, c / n / n)]);
-    error += std::pow(p - exact[static_cast<std::size_t>(c)], 2);
+  for (int c = 0; c < grid.n * grid.n * grid.n; ++c) {
+    const double is =
+        static_cast<double>(p[grid.index(c % grid.n, c / grid.n % grid.n, c / (grid.n * grid.n))]);
+    error += std::pow(is - exact[static_cast<std::size_t>(c)], 2);
     norm += std::pow(exact[static_cast<std::size_t>(c)], 2);
   }
-  EXPECT_LT(std::sqrt(error / norm), 1e-5);
+  return std::sqrt(error / norm);
+}
+
+TEST(Pressure, AgreesWithItsCosineTransform) {
+  for (const int n : {32, 48, 64}) {
+    WorkerPool pool(2);
+    PressureSolver solver(n, pool, fast_pressure_kernels());
+    ConjugateGradients conjugate_gradients(solver, pool);
+    const PaddedGrid& grid = solver.fine().grid;
+    Random random(static_cast<std::uint64_t>(n));
+    fill_random(grid, solver.right_side(), random);
+    std::vector<double> b(static_cast<std::size_t>(n * n * n));
+    for (int c = 0; c < n * n * n; ++c)
+      b[static_cast<std::size_t>(c)] =
+          static_cast<double>(solver.right_side()[grid.index(c % n, c / n % n, c / (n * n))]);
+    const std::vector<double> exact = OpenBox(n).solve(b);
+    solver.v_cycles(20);
+    EXPECT_LT(relative_error(grid, solver.pressure(), exact), 1e-5) << n;
+    solver.pressure().fill(0.0F);
+    conjugate_gradients.solve(12);
+    EXPECT_LT(relative_error(grid, solver.pressure(), exact), 1e-5) << n;
+  }
+}
+
+/// A solver for the ball with a random right side.
+struct BallProblem {
+  BallProblem(int n, int threads)
+      : pool(threads),
+        obstacle(n, pool),
+        solver(n, pool, fast_pressure_kernels()),
+        cg(solver, pool) {
+    obstacle.update(ball(n), solver.fine());
+    solver.rebuild();
+    Random random(2);
+    fill_random(solver.fine().grid, solver.right_side(), random);
+    clear_closed(obstacle, solver);
+  }
+  WorkerPool pool;
+  Obstacle obstacle;
+  PressureSolver solver;
+  ConjugateGradients cg;
+};
+
+TEST(Pressure, ConjugateGradientsNeedFewerCycles) {
+  for (const int n : {32, 48, 64, 80, 112}) {
+    BallProblem exact(n, 2), cycles(n, 2), cg(n, 2);
+    exact.solver.v_cycles(25);
+    const auto error = [&](BallProblem& p) {
+      return largest_difference(exact.solver.fine().grid, p.solver.pressure(),
+                                exact.solver.pressure(), n);
+    };
+    cycles.solver.v_cycles(4);
+    cg.cg.solve(4);
+    EXPECT_LT(error(cg), 0.3 * error(cycles)) << n;
+  }
+}
+
+TEST(Pressure, ConjugateGradientsDoNotDependOnThreads) {
+  constexpr int n = 48;
+  BallProblem one(n, 1), three(n, 3);
+  one.cg.solve(4);
+  three.cg.solve(4);
+  EXPECT_EQ(
+      largest_difference(one.solver.fine().grid, one.solver.pressure(), three.solver.pressure(), n),
+      0.0);
+}
+
+TEST(Pressure, ConjugateGradientsStopWhereNothingIsLeftToDo) {
+  BallProblem problem(32, 1);
+  problem.solver.right_side().fill(0.0F);
+  problem.cg.solve(3);
+  const PaddedGrid& grid = problem.solver.fine().grid;
+  EXPECT_EQ(largest_difference(grid, problem.solver.pressure(), Field(grid), 32), 0.0);
+  EXPECT_EQ(problem.solver.convergence().error(), 0.0);
 }
 
 TEST(Pressure, CyclesContractAtEverySize) {
-  for (const int n : {32, 48, 64, 80, 112}) {
+  for (const int n : {32, 48, 64, 80, 112, 144}) {
     WorkerPool pool(2);
     Obstacle obstacle(n, pool);
     PressureSolver solver(n, pool, fast_pressure_kernels());
@@ -206,6 +270,9 @@ TEST(Pressure, VectorKernelsAgreeWithPlainOnes) {
     EXPECT_LT(largest_difference(fine.grid, slow, fast, n), 1e-5);
     s.smooth_zero(fine, b.data(), 0.7F, slow.data(), 0, n);
     f.smooth_zero(fine, b.data(), 0.7F, fast.data(), 0, n);
+    EXPECT_LT(largest_difference(fine.grid, slow, fast, n), 1e-5);
+    s.apply(fine, p.data(), slow.data(), 0, n);
+    f.apply(fine, p.data(), fast.data(), 0, n);
     EXPECT_LT(largest_difference(fine.grid, slow, fast, n), 1e-5);
     s.restrict_residual(fine, p.data(), b.data(), coarse, slow_b.data(), 0, n / 2);
     f.restrict_residual(fine, p.data(), b.data(), coarse, fast_b.data(), 0, n / 2);

@@ -65,6 +65,7 @@ Fluid::State::State(const FluidSettings& s, const SmokeInflow& from, WorkerPool&
       pressure_out(grid.cell_count()),
       smoke_out(grid.cell_count()),
       fluid_cells(grid.cell_count(), 1) {
+  if (s.solver == PressureMethod::Mgpcg) conjugate_gradients.emplace(solver, pool);
   surroundings.set_floor(obstacle.wall_velocity(2));
   reset();
 }
@@ -290,11 +291,17 @@ void Fluid::State::solve() {
   divergence_before = 0.0;
   for (const PlaneSums& sum : sums) divergence_before += sum.divergence.squares;
 
-  if (settings.solver == PressureMethod::Multigrid) {
-    solver.v_cycles(settings.cycles);
-  } else {
-    solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
+  switch (settings.solver) {
+    case PressureMethod::Multigrid:
+      solver.v_cycles(settings.cycles);
+      break;
+    case PressureMethod::Mgpcg:
+      conjugate_gradients->solve(settings.cg_iterations);
+      break;
+    case PressureMethod::Jacobi:
+      solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
   }
+  stats.pressure_error = solver.convergence().error();
 }
 
 void Fluid::State::project() {

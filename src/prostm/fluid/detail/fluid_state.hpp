@@ -2,10 +2,12 @@
 /// The state of a Fluid between steps, and the parts of a step.
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "prostm/fluid/detail/advection.hpp"
+#include "prostm/fluid/detail/conjugate_gradients.hpp"
 #include "prostm/fluid/detail/obstacle.hpp"
 #include "prostm/fluid/detail/pressure_solver.hpp"
 #include "prostm/fluid/detail/projection.hpp"
@@ -57,6 +59,7 @@ struct Fluid::State {
   fluid::Field smoke;        // at cells, 0..1; the halo holds smoke that would flow in
   fluid::Obstacle obstacle;
   fluid::PressureSolver solver;
+  std::optional<fluid::ConjugateGradients> conjugate_gradients;  // where the settings ask for them
 
   // the present step
   double dt = 0.0;                 // [s]

@@ -58,6 +58,19 @@ void smooth_zero(const PressureLevel& level, const float* b, float omega, float*
   }
 }
 
+void apply(const PressureLevel& level, const float* p, float* out, int k0, int k1) {
+  for (int k = k0; k < k1; ++k) {
+    for (int j = 0; j < level.grid.n; ++j) {
+      const RowDiagonal d(level, j, k);
+      for (int i = 0; i < level.grid.n; ++i) {
+        const Index c = d.own + i;
+        const float image = d.diagonal(i) * p[c] - neighbour_sum(level, p, c, d.cut(i));
+        out[c] = d.inverse(i) > 0.0F ? image : 0.0F;
+      }
+    }
+  }
+}
+
 float residual(const PressureLevel& level, const float* p, const float* b, int i, int j, int k) {
   const RowDiagonal d(level, j, k);
   const Index c = d.own + i;
@@ -102,7 +115,8 @@ void prolong_add(const PressureLevel& coarse, const float* e, const PressureLeve
 }  // namespace
 
 const PressureKernels& scalar_pressure_kernels() {
-  static constexpr PressureKernels kernels{smooth, smooth_zero, restrict_residual, prolong_add};
+  static constexpr PressureKernels kernels{smooth, smooth_zero, apply, restrict_residual,
+                                           prolong_add};
   return kernels;
 }
 

@@ -14,6 +14,8 @@ struct PressureKernels {
   /// out = ω D⁻¹ b: the same from p = 0.
   void (*smooth_zero)(const PressureLevel& level, const float* b, float omega, float* out, int k0,
                       int k1);
+  /// out = A p.
+  void (*apply)(const PressureLevel& level, const float* p, float* out, int k0, int k1);
   /// coarse_b = half the sum of b − A p over the 8 children (F9). Planes of the coarse grid.
   void (*restrict_residual)(const PressureLevel& fine, const float* p, const float* b,
                             const PressureLevel& coarse, float* coarse_b, int k0, int k1);

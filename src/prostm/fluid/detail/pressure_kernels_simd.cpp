@@ -90,6 +90,29 @@ void SmoothZero(const PressureLevel& level, const float* HWY_RESTRICT b, float o
   }
 }
 
+void Apply(const PressureLevel& level, const float* HWY_RESTRICT p, float* HWY_RESTRICT out, int k0,
+           int k1) {
+  const D d;
+  const Index row = level.grid.row(), plane = level.grid.plane(), step = lanes(),
+              width = level.grid.width();
+  for (int k = k0; k < k1; ++k) {
+    for (int j = 0; j < level.grid.n; ++j) {
+      const RowSpan span = level.span(j, k);
+      const Index own = level.grid.index(0, j, k);
+      const float *diagonals = level.table_diagonal(j, k), *inverses = level.table_inverse(j, k);
+      for (Index i = 0; i < width; i += step) {
+        const bool cut = i >= span.begin && i < span.end;
+        const Index c = own + i;
+        const V neighbours = cut ? cut_sum(level, p, c) : open_sum(p + c, row, plane);
+        const V diagonal = hn::LoadU(d, cut ? level.diagonal.data() + c : diagonals + i);
+        const V inverse = hn::LoadU(d, cut ? level.inverse.data() + c : inverses + i);
+        const V image = hn::MulSub(diagonal, hn::Load(d, p + c), neighbours);
+        hn::Store(hn::IfThenElseZero(hn::Gt(inverse, hn::Zero(d)), image), d, out + c);
+      }
+    }
+  }
+}
+
 /// sum += b − A p along row (j, k); `sum` holds width() values.
 HWY_INLINE void add_residual(const PressureLevel& level, const float* HWY_RESTRICT p,
                              const float* HWY_RESTRICT b, int j, int k, bool first,
@@ -182,6 +205,7 @@ namespace {
 
 HWY_EXPORT(Smooth);
 HWY_EXPORT(SmoothZero);
+HWY_EXPORT(Apply);
 HWY_EXPORT(RestrictResidual);
 HWY_EXPORT(ProlongAdd);
 
@@ -192,6 +216,9 @@ void smooth(const PressureLevel& level, const float* p, const float* b, float om
 void smooth_zero(const PressureLevel& level, const float* b, float omega, float* out, int k0,
                  int k1) {
   HWY_DYNAMIC_DISPATCH(SmoothZero)(level, b, omega, out, k0, k1);
+}
+void apply(const PressureLevel& level, const float* p, float* out, int k0, int k1) {
+  HWY_DYNAMIC_DISPATCH(Apply)(level, p, out, k0, k1);
 }
 void restrict_residual(const PressureLevel& fine, const float* p, const float* b,
                        const PressureLevel& coarse, float* coarse_b, int k0, int k1) {
@@ -205,7 +232,8 @@ void prolong_add(const PressureLevel& coarse, const float* e, const PressureLeve
 }  // namespace
 
 const PressureKernels& fast_pressure_kernels() {
-  static constexpr PressureKernels kernels{smooth, smooth_zero, restrict_residual, prolong_add};
+  static constexpr PressureKernels kernels{smooth, smooth_zero, apply, restrict_residual,
+                                           prolong_add};
   const bool vectors = (hwy::SupportedTargets() & ~(HWY_SCALAR | HWY_EMU128)) != 0;
   return vectors ? kernels : scalar_pressure_kernels();
 }

@@ -3,7 +3,7 @@
 namespace prostm::fluid {
 namespace {
 
-constexpr int kSmallLevel = 8;  // below this, tables are not worth their branches
+constexpr int kSmallLevel = 9;  // below this, tables are not worth their branches
 
 }  // namespace
 

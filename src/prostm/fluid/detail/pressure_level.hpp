@@ -53,7 +53,7 @@ struct PressureLevel {
   float inverse_at(int i, int j, int k) const;
 
   static constexpr float kClosed = 1e-3F;
-  static constexpr int kMaxCells = 128;  ///< the largest n: rows fit buffers of this size
+  static constexpr int kMaxCells = 160;  ///< the largest n: rows fit buffers of this size
 
   PaddedGrid grid;
   Field open[3];               ///< face fractions 0..1; 1 outside `box`, 0 on the floor

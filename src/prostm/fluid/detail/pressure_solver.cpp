@@ -8,7 +8,6 @@ namespace {
 // relaxation factors of two Jacobi sweeps whose product is the Chebyshev polynomial on [0.3, 1.95],
 // the upper part of the spectrum of D⁻¹A: 1/ω = 1.125 ± 0.825 cos(π/4)
 constexpr float kOmega[2] = {0.585411F, 1.846479F};
-constexpr int kBottomSweeps = 8;  // symmetric, on at most 7³ cells
 constexpr int kPlanesPerTask = 4;
 constexpr int kSerialCells = 16;  // below this a region costs more than it saves
 
@@ -50,7 +49,7 @@ void extend_into_closed(const PressureLevel& level, Field& p) {
 }  // namespace
 
 PressureSolver::PressureSolver(int n, WorkerPool& pool, const PressureKernels& kernels)
-    : pool_(pool), kernels_(kernels) {
+    : pool_(pool), kernels_(kernels), convergence_(PaddedGrid{n}) {
   levels_.emplace_back(n);
   while (n > 4 && n % 2 == 0) levels_.emplace_back(n /= 2);
 }
@@ -122,7 +121,9 @@ void PressureSolver::solve_bottom(Level& level) {
   const int n = problem.grid.n, cells = n * n * n;
   const Index row = problem.grid.row(), plane = problem.grid.plane();
   const Field* a = problem.open;
-  for (int sweep = 0; sweep < 2 * kBottomSweeps; ++sweep) {
+  // symmetric sweeps, as many as leave less than a tenth of the smoothest error
+  const int sweeps = 2 * std::max(8, n * n / 6);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int m = 0; m < cells; ++m) {
       const int cell = sweep % 2 == 0 ? m : cells - 1 - m;
       const Index c = problem.grid.index(cell % n, cell / n % n, cell / (n * n));
@@ -135,19 +136,30 @@ void PressureSolver::solve_bottom(Level& level) {
   }
 }
 
+/// Follows the last two.
+template <class Iteration>
+void PressureSolver::iterate(int times, const Iteration& iteration) {
+  convergence_.begin();
+  for (int left = times; left > 0; --left) {
+    if (left <= 2) convergence_.keep(fine(), pressure());
+    iteration();
+    if (left <= 2) convergence_.compare(fine(), pressure());
+  }
+}
+
 void PressureSolver::v_cycles(int cycles) {
-  for (int cycle = 0; cycle < cycles; ++cycle) v_cycle(0, false);
+  iterate(cycles, [this] { v_cycle(0, false); });
 }
 
 void PressureSolver::jacobi(int sweeps, bool warm) {
   Level& level = levels_.front();
   if (!warm) level.p.fill(0.0F);
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
+  iterate(sweeps, [&] {
     over_planes(level.problem.grid.n, [&](int k0, int k1) {
       kernels_.smooth(level.problem, level.p.data(), level.b.data(), 1.0F, level.q.data(), k0, k1);
     });
     std::swap(level.p, level.q);
-  }
+  });
 }
 
 }  // namespace prostm::fluid

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "prostm/core/worker_pool.hpp"
+#include "prostm/fluid/detail/convergence.hpp"
 #include "prostm/fluid/detail/pressure_kernels.hpp"
 
 namespace prostm::fluid {
@@ -30,6 +31,13 @@ class PressureSolver {
   /// Runs Jacobi sweeps, from the pressure of the last call or from 0.
   void jacobi(int sweeps, bool warm);
 
+  // for ConjugateGradients
+  /// Puts one V-cycle from 0 for the right side in place of the pressure.
+  void v_cycle_from_zero() { v_cycle(0, true); }
+  const PressureKernels& kernels() const { return kernels_; }
+  /// How far the last solve came.
+  Convergence& convergence() { return convergence_; }
+
  private:
   struct Level {
     explicit Level(int n) : problem(n), p(problem.grid), q(problem.grid), b(problem.grid) {}
@@ -41,10 +49,13 @@ class PressureSolver {
   void smooth_twice(Level& level);
   void v_cycle(std::size_t l, bool from_zero);
   void solve_bottom(Level& level);
+  template <class Iteration>
+  void iterate(int times, const Iteration& iteration);
 
   WorkerPool& pool_;
   const PressureKernels& kernels_;
   std::vector<Level> levels_;
+  Convergence convergence_;
 };
 
 }  // namespace prostm::fluid

@@ -8,11 +8,12 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"cells", "", 32, 128, "cells along each edge of the box, a multiple of 16", 16},
+  v.field({"cells", "", 32, 160, "cells along each edge of the box, a multiple of 16", 16},
           s.cells);
   v.field({"width", "m", 0.05, 5, "edge of the box, which stands on the array"}, s.width);
   v.field({.name = "solver", .help = "solver of the pressure"}, s.solver);
   v.field({"cycles", "", 1, 100, "V-cycles a step"}, s.cycles);
+  v.field({"cg_iterations", "", 1, 100, "iterations a step of mgpcg"}, s.cg_iterations);
   v.field({"jacobi_sweeps", "", 1, 100'000, "sweeps a step of the paper's solver"},
           s.jacobi_sweeps);
   v.field({.name = "jacobi_warm", .help = "whether sweeps start from the last pressure"},
