@@ -12,6 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double kMostBehind = 3.0;     // of a step, up to which a delay is made up for
 constexpr double kLatestPrepare = 0.8;  // of a step, after which the next one is prepared anyway
 constexpr std::chrono::microseconds kPoll{200};
 
@@ -60,21 +61,22 @@ void WorldSide::set_clock() {
 /// The newest target wins.
 void WorldSide::in_real_time() {
   WorldStage& stage = pipeline_.world_stage();
-  bool was_late = false;
+  double behind_before = 0.0;  // steps
   while (goes_on()) {
     if (pace_.prepare_early) stage.prepare(pace_.dt);
     ++slot_;
     sleep_until(shared_.start + time());
-    // more than a step behind: let steps go rather than run after the clock, unless the thread
-    // woke late this once
-    const auto due = static_cast<std::int64_t>(run_time() / pace_.dt);
-    const bool late = due > slot_;
-    if (late && (was_late || due > slot_ + 1)) {
+    // a delay is made up for while each step begins less late than the one before; otherwise let
+    // steps go rather than run after the clock
+    const double behind = run_time() / pace_.dt - static_cast<double>(slot_);
+    if (behind >= kMostBehind ||
+        (behind >= 1.0 && behind_before >= 1.0 && behind >= behind_before)) {
+      const std::int64_t due = slot_ + static_cast<std::int64_t>(behind);
       const std::int64_t last = pace_.stay ? due : std::min(due, pace_.steps);
       log_.skip(last - slot_);
       slot_ = last;
     }
-    was_late = late;
+    behind_before = behind;
     const double begins = time();
     WorldFrame& frame = shared_.newest.draft();
     take_hands(begins, stage.targets(log_.steps() + 1) ? pace_.frame_wait : 0.0, frame);
