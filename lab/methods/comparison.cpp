@@ -6,7 +6,9 @@
 #include <array>
 
 #include "fields/fields.hpp"
+#include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
+#include "prostm/io/recorder.hpp"
 
 namespace prostm::bench {
 namespace {
@@ -15,6 +17,7 @@ constexpr int kCells = 54;  // per edge of the raster; each of 3 mm
 
 /// Means over fields for one way of rendering.
 struct Means {
+  Distribution rmse, correlation, model_skill, model_overlap;             // by Eq. (1)
   Distribution skill_0, skill_8, overlap, spill;                          // scores of the envelope
   Distribution felt_skill_8, felt_correlation, felt_overlap, felt_spill;  // scores of the percept
   Distribution lack, felt_lack;                                           // 1 − S_8.5 of each
@@ -25,6 +28,10 @@ struct Means {
   std::array<Level, 3> level;  // by Equal
 
   void add(const Rendering& r, const Rendering& reference) {
+    rmse.add(r.of_model.rmse);
+    correlation.add(r.of_model.correlation);
+    model_skill.add(r.of_model.skill_0);
+    model_overlap.add(r.of_model.overlap);
     skill_0.add(r.of_envelope.skill_0);
     skill_8.add(r.of_envelope.skill_8);
     overlap.add(r.of_envelope.overlap);
@@ -53,6 +60,17 @@ struct Means {
 
 double mean(const Distribution& d) {
   return d.summary().mean;
+}
+
+void print_model(const std::array<Means, kWays.size()>& means) {
+  fmt::print("\nBy Eq. (1), with the paper's width\n{:<16} {:>8} {:>8} {:>8} {:>8}\n", "", "RMSE",
+             "corr.", "S_0", "overlap");
+  for (std::size_t w = 0; w < kWays.size(); ++w) {
+    const Means& m = means[w];
+    if (kWays[w] == Way::Flat) continue;
+    fmt::print("{:<16} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f}\n", to_string(kWays[w]), mean(m.rmse),
+               mean(m.correlation), mean(m.model_skill), mean(m.model_overlap));
+  }
 }
 
 void print_shapes(const std::array<Means, kWays.size()>& means) {
@@ -104,20 +122,45 @@ double factor_for(Equal equal, const Rendering& rendering, const Rendering& refe
   return equal == Equal::Drive ? 1.0 : reference.mean_power / rendering.mean_power;
 }
 
-void compare_ways(int frames, std::vector<Row>& rows) {
-  Renderer renderer(usx_array(), fields::make(fields::Pattern::OnePlume, 0, kCells));
-  std::array<Means, kWays.size()> means;
+Targets generated_targets(int frames) {
+  Targets targets;
   for (const fields::Pattern pattern : fields::kPatterns) {
-    for (int i = 0; i < frames; ++i) {
-      const int frame = (2 * i + 1) * fields::kFrames / (2 * frames);
-      const TargetField target = fields::make(pattern, frame, kCells);
-      const Rendering reference = renderer.render(Way::Best, target);
-      for (std::size_t w = 0; w < kWays.size(); ++w) {
-        means[w].add(kWays[w] == Way::Best ? reference : renderer.render(kWays[w], target),
-                     reference);
-      }
+    for (int i = 0; i < frames; ++i)
+      targets.push_back(
+          fields::make(pattern, (2 * i + 1) * fields::kFrames / (2 * frames), kCells));
+  }
+  return targets;
+}
+
+Targets recorded_targets(const std::string& path, int frames) {
+  const RecordingReader recording(path);
+  Targets targets;
+  for (int i = 0; i < frames; ++i) {
+    const int half = recording.frames() / 2;
+    const int frame = half + (2 * i + 1) * (recording.frames() - half) / (2 * frames);
+    const TargetFrame read = recording.frame(frame);
+    if (read.patches.empty() || max_pressure(read.patches[0]) == 0.0)
+      throw InputError(fmt::format("{}, frame {}: no pressure on a hand", path, frame));
+    targets.push_back(read.patches[0]);
+    const TargetField &first = targets.front(), &last = targets.back();
+    if (last.rows != first.rows || last.cols != first.cols)
+      throw InputError(fmt::format(
+          "{}, frame {}: the hand moved, and its raster is of another size", path, frame));
+  }
+  return targets;
+}
+
+void compare_ways(const Targets& targets, std::vector<Row>& rows) {
+  Renderer renderer(usx_array(), targets.at(0));
+  std::array<Means, kWays.size()> means;
+  for (const TargetField& target : targets) {
+    const Rendering reference = renderer.render(Way::Best, target);
+    for (std::size_t w = 0; w < kWays.size(); ++w) {
+      means[w].add(kWays[w] == Way::Best ? reference : renderer.render(kWays[w], target),
+                   reference);
     }
   }
+  print_model(means);
   print_shapes(means);
   print_levels(means);
   for (std::size_t w = 0; w < kWays.size(); ++w) {

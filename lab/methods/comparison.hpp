@@ -17,10 +17,17 @@ enum class Equal { Drive, Power, Percept };
 /// has no drives to scale.
 double factor_for(Equal equal, const Rendering& rendering, const Rendering& reference);
 
-/// Renders `frames` of each generated sequence in every way, 200 mm above the USX-like array, and
-/// prints means: first the quantities that no factor changes, then pressures and percepts under
-/// each control.
-void compare_ways(int frames, std::vector<Row>& rows);
+/// Targets of one raster, 200 mm or so above the array.
+using Targets = std::vector<TargetField>;
+/// Returns so many frames of each generated sequence.
+Targets generated_targets(int frames);
+/// Returns so many frames of a recording's second half, when jets have settled on a still hand: the
+/// first patch of each. @throws InputError where a frame has no pressure, or another raster.
+Targets recorded_targets(const std::string& path, int frames);
+
+/// Renders targets in every way with the USX-like array, and prints means: first the quantities
+/// that no factor changes, then pressures and percepts under each control.
+void compare_ways(const Targets& targets, std::vector<Row>& rows);
 
 /// Draws the target, and for each way the envelope and the percept, for two generated fields.
 void draw_ways(const std::string& path);

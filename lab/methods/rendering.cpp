@@ -139,6 +139,8 @@ Rendering Renderer::render(Way way, const TargetField& target) {
     out.felt = parts_->skin.feel(target, 1.0 / kModulation, kParts, flat_loop(target, kParts));
   } else {
     parts_->play(target, out);
+    const PlanSettings paper;
+    out.of_model = score_plan(target, out.plan, 0, paper.sigma, paper.gain_law());
   }
   out.of_envelope = score_physical(target, out.field.envelope, 0.0);
   out.of_felt = score_physical(target, out.felt.percept, 0.0);

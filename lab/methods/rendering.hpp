@@ -28,7 +28,8 @@ struct Rendering {
   double mean_power = 0.0;  ///< mean of Σ |q|² over the loop; 0 for Flat
   PhysicalField field;
   FeltField felt;
-  Metrics of_envelope, of_felt;  ///< scores of field.envelope and felt.percept
+  Metrics of_model;              ///< of the plan by Eq. (1) with the paper's width
+  Metrics of_envelope, of_felt;  ///< of field.envelope and felt.percept
   Ghosts ghosts;
 };
 
