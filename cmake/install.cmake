@@ -32,6 +32,6 @@ install(FILES ${PROJECT_BINARY_DIR}/prostm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR
 
 if(PROSTM_PROGRAM)
   install(TARGETS prostm_sockets EXPORT prostmPipelineTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  prostm_install(prostmPipelineTargets track hand contact fluid pipeline)
+  prostm_install(prostmPipelineTargets track hand stimulus contact fluid pipeline)
   install(TARGETS prostm RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

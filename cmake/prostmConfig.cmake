@@ -1,5 +1,6 @@
 # find_package(prostm) provides the planner's library: prostm::core, target, plan, am, acoustics, emit, device and
-# score. find_package(prostm COMPONENTS pipeline) adds prostm::track, hand, contact, fluid and pipeline.
+# score. find_package(prostm COMPONENTS pipeline) adds prostm::track, hand, stimulus, contact, fluid and
+# pipeline.
 foreach(component ${prostm_FIND_COMPONENTS})
   if(component STREQUAL "pipeline" AND EXISTS ${CMAKE_CURRENT_LIST_DIR}/prostmPipelineTargets.cmake)
     set(prostm_pipeline_FOUND TRUE)

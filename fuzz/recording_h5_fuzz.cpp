@@ -62,6 +62,21 @@ prostm::RecordedPlan any_plan(std::string_view& bytes) {
   return made;
 }
 
+/// Makes a result with any numbers, also of a problem that there is not.
+std::optional<prostm::GateResult> any_gate(std::string_view& bytes) {
+  if (take<std::uint8_t>(bytes) % 2 == 0) return {};
+  prostm::GateResult said;
+  said.finding.problem = static_cast<prostm::GateProblem>(take<std::uint8_t>(bytes));
+  said.finding.value = take<double>(bytes);
+  said.share = take<double>(bytes);
+  for (int maxima = take<std::uint8_t>(bytes) % 17; maxima > 0; --maxima) {
+    const prostm::Vec2 position(take<double>(bytes), take<double>(bytes));
+    said.shape.maxima.push_back({position, take<double>(bytes)});
+  }
+  said.shape.force = take<double>(bytes);
+  return said;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -75,7 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const int patches = take<std::uint8_t>(bytes) % 3;
     for (int p = 0; p < patches; ++p) frame.patches.push_back(any_field(bytes));
     const RecordedPlan made = any_plan(bytes);
-    recorder.append(frame, {}, made.plan.paths.empty() ? nullptr : &made);
+    recorder.append(frame, {}, made.plan.paths.empty() ? nullptr : &made, any_gate(bytes));
   }
   recorder.close();
   const RecordingReader reader(path);
@@ -83,6 +98,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       for (const TargetField& field : reader.frame(i).patches) validate(field);
       static_cast<void>(reader.plan(i));
+      if (const auto gate = reader.gate(i)) static_cast<void>(sentence(*gate));
     } catch (const InputError&) {
       // the required answer to bad input
     }

@@ -50,6 +50,10 @@ class Recording {
     return reader_->frame(i);
   }
   std::unique_ptr<PlanResult> plan(int i) const;
+  std::optional<GateResult> gate(int i) const {
+    const Hdf5Turn turn;
+    return reader_->gate(i);
+  }
 
  private:
   template <class S>
@@ -133,6 +137,10 @@ void bind_recording(py::module_& m) {
            "TargetFrame, or None if no plan was made. Its metrics() and quasi_static_field() use\n"
            "the recorded emission, and the width of a focal point that each target was planned\n"
            "with. Raises InputError for a frame that does not exist.",
+           py::arg("frame"))
+      .def("gate", &Recording::gate,
+           "The GateResult of a frame; None where nothing was asked of its target, and in\n"
+           "recordings of earlier versions. Raises InputError for a frame that does not exist.",
            py::arg("frame"))
       .def("__repr__", [](const Recording& self) {
         return "Recording(" + std::to_string(self.reader().frames()) + " frames)";

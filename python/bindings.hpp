@@ -30,6 +30,7 @@ void bind_result(py::module_& m);
 void bind_score(py::module_& m);
 void bind_emit(py::module_& m);
 void bind_io(py::module_& m);
+void bind_shape(py::module_& m);
 void bind_recording(py::module_& m);
 
 /// Names a value in a message: "None", "3", "'palm'", else its type, "an array".

@@ -24,6 +24,7 @@ PYBIND11_MODULE(_prostm, m) {
   bind_result(m);
   bind_planners(m);
   bind_io(m);
+  bind_shape(m);
   bind_recording(m);
   m.attr("__name__") = own_name;
 }

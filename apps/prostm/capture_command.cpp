@@ -16,7 +16,7 @@ class Capture final : public RunObserver {
   bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
     if (plan.status == PlanStatus::Planned && taken_ < frames_) {
       const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
-      recorder_.append(contact.target, contact.hands, &made);
+      recorder_.append(contact.target, contact.hands, &made, plan.gate);
       ++taken_;
     }
     return taken_ < frames_ && !interrupt_.requested();

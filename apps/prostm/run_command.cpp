@@ -16,6 +16,7 @@
 #include "prostm/emit/played.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
+#include "prostm/pipeline/rate_news.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/plan/quasi_static.hpp"
 #include "prostm/track/live/tracker_news.hpp"
@@ -43,10 +44,13 @@ class Observer final : public RunObserver {
       : recorder_(recorder), view_(view), picture_at_(picture_at), options_(options), out_(out) {}
 
   bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
+    if (rate_news_) {
+      if (const auto news = rate_news_->look(contact, plan)) progress_.say(out_, *news);
+    }
     if (recorder_ != nullptr) {
       const bool planned = plan.status == PlanStatus::Planned;
       const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
-      recorder_->append(contact.target, contact.hands, planned ? &made : nullptr);
+      recorder_->append(contact.target, contact.hands, planned ? &made : nullptr, plan.gate);
     }
     if (picture_at_ && plan.status == PlanStatus::Planned) {
       const double away = std::abs(contact.target.time - *picture_at_);
@@ -85,6 +89,10 @@ class Observer final : public RunObserver {
   void follow(std::shared_ptr<Mute> mute) {
     mutes_.emplace(std::move(mute), options_.mode == RunMode::RealTime);
     if (const auto help = mutes_->help()) progress_.say(out_, *help);
+  }
+  /// Says when rates are not held, in real time.
+  void follow(const PipelineSettings& settings) {
+    if (options_.mode == RunMode::RealTime) rate_news_.emplace(settings);
   }
   /// Says what becomes of a live tracker.
   void follow(Pipeline& pipeline) { pipeline_ = &pipeline; }
@@ -136,6 +144,7 @@ class Observer final : public RunObserver {
   StageTimer since_start_;
   double tracker_looked_ = 0.0;  // [s]
   TrackerNews tracker_news_;
+  std::optional<RateNews> rate_news_;
   double away_ = std::numeric_limits<double>::infinity();
   WorldFrame contact_;
   PlanFrame plan_;
@@ -328,6 +337,7 @@ int run_command(const RunOptionsGiven& given) {
   Observer observer(recorder.get(), view.get(), picture_at, options, out);
   observer.follow(mute);
   observer.follow(pipeline);
+  observer.follow(settings);
   Ending ending{given, settings, pipeline, recorder.get(), observer, view.get(), out};
   observer.on_report([&ending](const RunSummary& summary) { ending.report(summary); });
   const RunSummary summary = run(pipeline, settings, options, observer);

@@ -72,9 +72,12 @@ void print_output(std::FILE* out, const RunSummary& s) {
 void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
   fmt::print(out, "\nThe run: {}, {:.1f} s{}\n", settings.scene, s.seconds,
              s.stopped ? ", cut short" : "");
-  print_row(out, "smoke",
-            fmt::format("{} steps, {} skipped; the solver left {:.2g} of the divergence on average",
-                        s.world_steps, s.skipped_world_steps, s.mean_divergence));
+  print_row(
+      out, "smoke",
+      fmt::format("{} steps, {} skipped; the solver left {:.2g} of the divergence on average, and "
+                  "about {:.2g} % of the pressure beside hands",
+                  s.world_steps, s.skipped_world_steps, s.mean_divergence,
+                  100.0 * s.mean_pressure_error));
   print_row(out, "plans",
             fmt::format("{}, and {} updates without pressure on a hand; {} targets skipped",
                         s.plans, s.empty_updates, s.skipped_updates));
@@ -89,6 +92,10 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
             fmt::format("{:.1f} % of its joints outside the smoke's box; {:.0f} % of its skin too "
                         "steep to press on",
                         percent(c.joints_outside, c.joints), 100.0 * steep_share(c)));
+  if (s.judged_updates > 0)
+    print_row(out, "stimulus",
+              fmt::format("as a study needs it in {:.0f} % of the updates (docs/hands.md)",
+                          percent(s.passed_updates, s.judged_updates)));
   if (s.unobserved > 0) print_row(out, "record", fmt::format("{} updates missing", s.unobserved));
 }
 

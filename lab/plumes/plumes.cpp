@@ -66,18 +66,15 @@ Measured measure_plumes(const HeldCase& held, const PipelineSettings& base, doub
   settings.jets.place = held.place;
   settings.simulated_array.realtime = false;
   WorldStage stage(settings, held.make(settings));
-  const Stimulus stimulus = scene_from_name(settings.scene).stimulus;
   StimulusGate gate(static_cast<int>(std::lround(1.0 / dt)), stage.max_cells());
   WorldFrame frame;
   Measured out;
   const auto settle = std::llround(kSettle / dt);
   for (std::int64_t step = 1; step <= settle + frames; ++step) {
     stage.run(step, static_cast<double>(step) * dt, dt, frame);
-    const ScenePlace place = *stage.world().place();
-    const Stimulus wanted = stimulus.scaled(place.size, settings.fluid.jet_speed);
-    const GateResult result = gate.judge(frame.hands, frame.target, wanted, place);
+    const GateResult result = gate.judge(frame.hands, frame.target, *frame.stimulus);
     if (step <= settle) continue;
-    out.size = place.size;
+    out.size = frame.stimulus->place.size;
     out.frames.push_back(result.shape);
     out.pass += result.pass ? 1.0 / frames : 0.0;
     out.says = sentence(result);

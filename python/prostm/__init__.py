@@ -15,7 +15,8 @@ the data that they show. The interpreter's lock is released while planning, scor
   planning             plan, Planner, PlanSettings, PlanResult, PlanStatus, PlanStats, PlanTrace
   the AM baseline      AmPlanner, AmSettings, FocalPoint, FocusEmitter
   plans                Plan, FocalPath, closed_length, read_plan, write_plan, plan_from_json, plan_to_json, PlanFile
-  recordings           Recording
+  recordings           Recording, GateResult
+  shape of a field     field_shape, FieldShape
   quality              quasi_static_field, score_plan, score_field, controls, Metrics, Control
   samples at 40 kHz    emit, Emitter, PathEmitter, EmitSettings, lift, LiftedPlan, LiftedPath, LiftedFocus,
                        drive_intensity, even_share, EmitStats, TakeOver
@@ -30,10 +31,10 @@ from ._arguments import explain_wrong_types as _explain_wrong_types, wrong_type 
 _explain_wrong_types()
 
 from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, Emitter, FocalPath, FocalPoint,
-                      FocusEmitter, InputError, LiftedFocus, LiftedPath, LiftedPlan, Metrics, PathEmitter, Plan,
+                      FieldShape, FocusEmitter, GateResult, InputError, LiftedFocus, LiftedPath, LiftedPlan, Metrics, PathEmitter, Plan,
                       PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace, Recording,
                       TakeOver, TargetField, TargetFrame, __version__, closed_length, controls, drive_intensity,
-                      even_share, field_from_json, field_to_json, height_at, kMaxFieldCells, kMaxPatches,
+                      even_share, field_from_json, field_shape, field_to_json, height_at, kMaxFieldCells, kMaxPatches,
                       kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples, lift, max_pressure, plan_from_json,
                       plan_to_json, quasi_static_field, read_field, read_plan, score_field, score_plan, write_field,
                       write_plan)
@@ -44,7 +45,7 @@ __all__ = [
     "TargetField", "TargetFrame", "read_field", "write_field", "field_from_json", "field_to_json",
     "max_pressure", "height_at",
     "Plan", "FocalPath", "closed_length", "read_plan", "write_plan", "plan_from_json", "plan_to_json", "PlanFile",
-    "Recording",
+    "Recording", "GateResult", "field_shape", "FieldShape",
     "quasi_static_field", "score_plan", "score_field", "controls", "Metrics", "Control",
     "emit", "Emitter", "PathEmitter", "EmitSettings", "lift", "LiftedPlan", "LiftedPath", "LiftedFocus",
     "drive_intensity", "even_share",

@@ -66,13 +66,30 @@ RecordedPlan some_plan() {
   return made;
 }
 
+GateResult some_result() {
+  GateResult said;
+  said.share = 0.4;
+  said.finding = {GateProblem::Beside, 0.05, 0.025, Vec2(0.04, -0.03)};
+  said.shape.maxima.push_back({Vec2(0.01, -0.02), 0.09});
+  said.shape.maxima.push_back({Vec2(-0.03, 0.02), 0.08});
+  said.shape.largest = 0.09;
+  said.shape.balance = 0.08 / 0.09;
+  said.shape.saddle = 0.6;
+  said.shape.least_spacing = said.shape.most_spacing = 0.0566;
+  said.shape.area = 52e-4;
+  said.shape.force = 0.4e-3;
+  return said;
+}
+
 std::string record(const std::string& path, const std::vector<TargetFrame>& frames) {
   Recorder recorder(path, {});
   recorder.set_attribute("scene", "one-plume");
   const RecordedPlan plan = some_plan();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const bool planned = i % 2 == 1;
-    recorder.append(frames[i], hand_at(frames[i].time), planned ? &plan : nullptr);
+    std::optional<GateResult> gate;
+    if (planned) gate = some_result();
+    recorder.append(frames[i], hand_at(frames[i].time), planned ? &plan : nullptr, gate);
   }
   recorder.set_attribute("scene", "four-plumes");
   recorder.close();
@@ -115,6 +132,25 @@ TEST(Recording, ReadsThePlanOfAFrame) {
   EXPECT_EQ(read->sigma[1], 0.0);  // the frame has one patch
   EXPECT_THAT(input_error([&] { static_cast<void>(reader.plan(4)); }),
               HasSubstr("no frame 4; it has 4 frames"));
+}
+
+TEST(Recording, ReadsWhatTheGateSaid) {
+  const test::TemporaryFolder folder;
+  const RecordingReader reader(record(folder.file("r.h5"), random_frames(4)));
+  EXPECT_FALSE(reader.gate(0));
+  const std::optional<GateResult> read = reader.gate(3);
+  ASSERT_TRUE(read);
+  const GateResult said = some_result();
+  EXPECT_EQ(read->pass, said.pass);
+  EXPECT_EQ(read->share, said.share);
+  EXPECT_EQ(read->finding.problem, said.finding.problem);
+  EXPECT_EQ(sentence(*read), sentence(said));
+  ASSERT_EQ(read->shape.count(), 2);
+  EXPECT_EQ(read->shape.maxima[1].position, said.shape.maxima[1].position);
+  EXPECT_EQ(read->shape.maxima[1].pressure, 0.08);
+  for (const Quantity<FieldShape>& number : quantities<FieldShape>())
+    EXPECT_EQ(value_of(number, read->shape), value_of(number, said.shape)) << number.name;
+  EXPECT_THAT(input_error([&] { static_cast<void>(reader.gate(4)); }), HasSubstr("no frame 4"));
 }
 
 TEST(Recording, ReadsThePlanOfFoci) {

@@ -191,7 +191,7 @@ def test_every_public_header_finds_what_it_includes_in_what_is_installed(prefix,
     headers = public_headers(prefix)
     stages = {header.parts[1] for header in headers if len(header.parts) > 2}
     assert stages == {"core", "target", "plan", "am", "acoustics", "emit", "device", "score",
-                      "track", "hand", "contact", "fluid", "pipeline"}
+                      "track", "hand", "stimulus", "contact", "fluid", "pipeline"}
     flags = pkg_config("--cflags")
     for header in headers:
         (tmp_path / "one.cpp").write_text(f"#include <{header}>\n")

@@ -123,10 +123,10 @@ TEST(ScenePlace, StaysWhenAnotherSettingChanges) {
   settings.fluid.jet_speed = 0.8;
   WorldStage second(settings, nullptr);
   second.adopt(first);
-  EXPECT_NEAR(second.world().place()->centre.x(), 0.04, 1e-6);
+  EXPECT_NEAR(second.world().stimulus()->place.centre.x(), 0.04, 1e-6);
   second.set_hands(std::make_unique<Aside>(0.0));
   for (int step = 5; step <= 8; ++step) second.run(step, 0.02 * step, 0.02, frame);
-  EXPECT_NEAR(second.world().place()->centre.x(), 0.04, 1e-6);
+  EXPECT_NEAR(second.world().stimulus()->place.centre.x(), 0.04, 1e-6);
 }
 
 TEST(ScenePlace, UnderTheHandThePressureIsTheSameAsUnderOneInTheMiddle) {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "prostm/pipeline/pipeline.hpp"
-#include "prostm/pipeline/stimulus_gate.hpp"
+#include "prostm/stimulus/stimulus_gate.hpp"
 
 namespace prostm {
 namespace {
@@ -38,8 +38,7 @@ TEST_P(Scenes, PassTheGateOfAStudy) {
     WorldFrame frame;
     stage.run(step, 0.02 * step, 0.02, frame);
     if (!frame.targeted) continue;
-    const ScenePlace& place = *stage.world().place();
-    result = gate.judge(frame.hands, frame.target, scene.stimulus.scaled(place.size, 1.0), place);
+    result = gate.judge(frame.hands, frame.target, *frame.stimulus);
     if (step > 250) largest = std::max(largest, result.shape.largest);
   }
   EXPECT_TRUE(result.pass) << sentence(result);

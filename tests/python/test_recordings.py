@@ -231,3 +231,36 @@ def test_plans_of_an_earlier_version_are_named_so(run, tmp_path):
     assert recording.target(planned_frame(run)).patches
     with pytest.raises(prostm.InputError, match="has no dataset /plan/sigma, so its plans cannot be read: an earlier version"):
         recording.plan(planned_frame(run))
+
+
+def test_the_gate_of_a_frame_says_what_the_file_holds(run, tmp_path):
+    recording, last = prostm.Recording(run), planned_frame(run)
+    result = recording.gate(last)
+    with h5py.File(run) as file:
+        gate = {name: file["gate"][name][last] for name in file["gate"]}
+        names = file["gate/problem"].attrs["meaning"]
+    assert result.passed == (gate["passed"] == 1)
+    assert f"{gate['problem']} {result.problem}" in (names if isinstance(names, str) else names.decode())
+    assert result.sentence in repr(result) and result.sentence.endswith(".")
+    count = gate["maxima"]
+    assert result.shape.maxima.shape == (count, 3)
+    np.testing.assert_array_equal(result.shape.maxima[:, :2], gate["position"][:count])
+    np.testing.assert_array_equal(result.shape.maxima[:, 2], gate["pressure"][:count])
+    assert result.share == gate["share"]
+    # the shape can be measured from the target alone
+    measured = prostm.field_shape(recording.target(last).patches[0])
+    for name in ("largest", "balance", "saddle", "least_spacing", "most_spacing", "area", "force"):
+        assert getattr(result.shape, name) == gate[name] == getattr(measured, name)
+    with pytest.raises(prostm.InputError, match="has no frame 999"):
+        recording.gate(999)
+
+
+def test_a_recording_without_a_gate_has_none(run, program, tmp_path):
+    earlier = tmp_path / "earlier.h5"
+    earlier.write_bytes(run.read_bytes())
+    with h5py.File(earlier, "r+") as file:
+        del file["gate"]
+    assert prostm.Recording(earlier).gate(0) is None
+    # still air is no stimulus
+    program("run", "--scene", "still-air", "--stepped", "--seconds", 0.2, "--record", tmp_path / "air.h5")
+    assert prostm.Recording(tmp_path / "air.h5").gate(0) is None

@@ -1,4 +1,4 @@
-#include "prostm/pipeline/stimulus_gate.hpp"
+#include "prostm/stimulus/stimulus_gate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ GateResult after_a_second(const HandFrame& hands, const TargetFrame& target,
                           const Stimulus& wanted = kFour) {
   StimulusGate gate(kUpdates, 10'000);
   GateResult result;
-  for (int n = 0; n < kUpdates; ++n) result = gate.judge(hands, target, wanted, {});
+  for (int n = 0; n < kUpdates; ++n) result = gate.judge(hands, target, {wanted, {}});
   return result;
 }
 
@@ -73,7 +73,7 @@ TEST(StimulusGate, PassesAHeldHandOnceMostOfASecondIsGood) {
   StimulusGate gate(kUpdates, 10'000);
   int first = 0;
   for (int n = 1; n <= kUpdates && first == 0; ++n) {
-    const GateResult result = gate.judge(held(), four(), kFour, {});
+    const GateResult result = gate.judge(held(), four(), {kFour, {}});
     if (result.pass) first = n;
   }
   EXPECT_EQ(first, 20);
@@ -126,11 +126,11 @@ TEST(StimulusGate, AFifthOfBadFramesIsBorne) {
   StimulusGate gate(kUpdates, 10'000);
   GateResult result;
   for (int n = 0; n < 4 * kUpdates; ++n)
-    result = gate.judge(held(), n % 5 == 0 ? four(0.7) : four(), kFour, {});
+    result = gate.judge(held(), n % 5 == 0 ? four(0.7) : four(), {kFour, {}});
   EXPECT_TRUE(result.pass);
   EXPECT_NEAR(result.share, 0.8, 1e-9);
   for (int n = 0; n < kUpdates; ++n)
-    result = gate.judge(held(), n % 4 == 0 ? four(0.7) : four(), kFour, {});
+    result = gate.judge(held(), n % 4 == 0 ? four(0.7) : four(), {kFour, {}});
   EXPECT_FALSE(result.pass);
 }
 

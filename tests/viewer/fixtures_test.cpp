@@ -96,6 +96,8 @@ std::vector<Fixture> fixtures() {
   one.frame.fields = {some_field(3, 5)};
   one.frame.path_count = 2;
   one.frame.paths = {some_path(0, 12), some_path(0, 8)};
+  one.frame.gate = {1,      0.875F,  "none",  "64 cm² are pressed, as they should be.", 4, 0.875F,
+                    0.625F, 0.0064F, 0.45e-3F};
   all.push_back(one);
 
   Fixture two{"two-hands", some_frame(4'000'000'000U)};
@@ -182,6 +184,13 @@ Json to_json(const Fixture& fixture) {
                             {"period", p.period},
                             {"points", p.points}});
   }
+  json["gate"] = nullptr;
+  if (f.gate) {
+    json["gate"] = {
+        {"passed", f.gate->passed},   {"share", f.gate->share},     {"maxima", f.gate->maxima},
+        {"balance", f.gate->balance}, {"saddle", f.gate->saddle},   {"area", f.gate->area},
+        {"force", f.gate->force},     {"problem", f.gate->problem}, {"sentence", f.gate->sentence}};
+  }
   return json;
 }
 
@@ -243,6 +252,7 @@ TEST(Wire, SectionsAreWhereTheDocumentSaysTheyAre) {
     if (fixture.with_smoke) expected.push_back(4);
     if (fixture.with_fields) expected.push_back(5);
     expected.push_back(6);
+    if (fixture.frame.gate) expected.push_back(7);
     EXPECT_EQ(ids, expected);
   }
 }

@@ -197,6 +197,21 @@ TEST(Live, TellsHowWellWhatIsFeltRendersTheTarget) {
   }));
 }
 
+TEST(Live, TellsWhatTheGateSays) {
+  LiveRun run;
+  Page page(run.port());
+  EXPECT_TRUE(eventually([&] {
+    page.next_text();
+    const Json gate = run.numbers().at("gate");
+    return !gate.is_null() && !gate.at("sentence").get<std::string>().empty() &&
+           gate.at("force_n") > 0.0;
+  }));
+  EXPECT_TRUE(test::has_section(page.next_frame(), 7));
+  // nothing is asked of still air
+  set(page, "scene", "still-air");
+  EXPECT_TRUE(eventually([&] { return run.numbers().at("gate").is_null(); }));
+}
+
 TEST(Live, RecordingsAreSoughtIn) {
   LiveRun run;
   Page page(run.port());

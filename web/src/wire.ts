@@ -71,6 +71,19 @@ export interface Path {
   points: Float32Array;
 }
 
+/// The result of a study's gate for the shown target.
+export interface Gate {
+  passed: boolean;
+  share: number; // of the last second's frames that have no problem
+  maxima: number;
+  balance: number;
+  saddle: number;
+  area: number; // [m²]
+  force: number; // [N]
+  problem: string; // its name
+  sentence: string;
+}
+
 export interface Frame {
   sequence: number;
   bytes: number;
@@ -83,6 +96,7 @@ export interface Frame {
   field: Patch[];
   fieldSequence: number;
   plan: Path[];
+  gate: Gate | null; // null where nothing is asked of the target
 }
 
 export function numberOf(frame: Frame, name: NumberName): number {
@@ -136,6 +150,9 @@ class Reader {
   bytes(count: number): ArrayBuffer {
     const begin = this.take(count);
     return this.buffer.slice(begin, begin + count);
+  }
+  text(): string {
+    return new TextDecoder().decode(this.bytes(this.u32()));
   }
   align(begin: number): void {
     this.take((8 - ((this.at - begin) % 8)) % 8);
@@ -212,6 +229,13 @@ function readPath(reader: Reader): Path {
   return { kind, patch, count, length, speed, period, points: reader.finiteFloats(6 * count) };
 }
 
+function readGate(reader: Reader): Gate {
+  return {
+    passed: reader.u32() !== 0, share: reader.finite(), maxima: reader.u32(), balance: reader.finite(),
+    saddle: reader.finite(), area: reader.finite(), force: reader.finite(), problem: reader.text(), sentence: reader.text(),
+  };
+}
+
 function readEach<T>(count: number, read: () => T): T[] {
   const all: T[] = [];
   for (let i = 0; i < count; ++i) all.push(read());
@@ -240,6 +264,7 @@ export class Decoder {
     let numbers: Float32Array = new Float32Array(0);
     let hands: Hand[] = [];
     let plan: Path[] = [];
+    let gate: Gate | null = null;
     let smoke: Smoke | null = null;
     let field: Patch[] | null = null;
 
@@ -266,6 +291,8 @@ export class Decoder {
       } else if (id === 6) {
         const from = reader("plan");
         plan = readEach(count, () => readPath(from));
+      } else if (id === 7 && count > 0) {
+        gate = readGate(reader("gate"));
       }
       at = end + ((8 - (end % 8)) % 8);
     }
@@ -275,7 +302,7 @@ export class Decoder {
     if (smoke !== null) [this.smoke, this.smokeSequence] = [smoke, sequence];
     if (field !== null) [this.field, this.fieldSequence] = [field, sequence];
     return {
-      sequence, bytes: message.byteLength, run, numbers, hands, plan,
+      sequence, bytes: message.byteLength, run, numbers, hands, plan, gate,
       smoke: this.smoke, smokeSequence: this.smokeSequence,
       field: this.field, fieldSequence: this.fieldSequence,
     };

@@ -99,7 +99,7 @@ struct Recorder::Impl {
   std::string path, part;
   int error = 0;  // the first errno of the file's writes
   h5::Id file;
-  Group frame, target, hand, plan;
+  Group frame, target, hand, plan, gate;
   std::int64_t frames = 0, patches = 0, cells = 0;
   double flushed_at = 0.0;
 
@@ -109,7 +109,10 @@ struct Recorder::Impl {
   void append_plan(const RecordedPlan* made, std::size_t patches_now);
   void append_how(const RecordedPlan* made, std::size_t patches_now);
   void append_foci(const Plan* p);
-  bool ok() const { return error == 0 && frame.ok() && target.ok() && hand.ok() && plan.ok(); }
+  void append_gate(const std::optional<GateResult>& result);
+  bool ok() const {
+    return error == 0 && frame.ok() && target.ok() && hand.ok() && plan.ok() && gate.ok();
+  }
   bool close_all();
   [[noreturn]] void give_up();
 };
@@ -262,11 +265,34 @@ void Recorder::Impl::append_foci(const Plan* p) {
   plan.append("focus_pressure", pressure, 1);
 }
 
+void Recorder::Impl::append_gate(const std::optional<GateResult>& result) {
+  const GateResult said = result.value_or(GateResult{});
+  gate.append<std::int32_t>("passed", !result ? -1 : said.pass ? 1 : 0);
+  gate.append("share", said.share);
+  gate.append("problem", static_cast<std::int32_t>(said.finding.problem));
+  gate.append("value", said.finding.value);
+  gate.append("wanted", said.finding.wanted);
+  gate.append("away", std::vector<double>{said.finding.away.x(), said.finding.away.y()}, 1);
+  gate.append<std::int32_t>("maxima", said.shape.count());
+  std::vector<double> position(2 * FieldShape::kMaxMaxima, kNan);
+  std::vector<double> pressure(FieldShape::kMaxMaxima, kNan);
+  for (std::size_t i = 0; i < said.shape.maxima.size(); ++i) {
+    position[2 * i] = said.shape.maxima[i].position.x();
+    position[2 * i + 1] = said.shape.maxima[i].position.y();
+    pressure[i] = said.shape.maxima[i].pressure;
+  }
+  gate.append("position", position, 1);
+  gate.append("pressure", pressure, 1);
+  for (const recording::ShapeColumn& number : recording::shape_columns())
+    gate.append(number.name, said.shape.*number.value);
+}
+
 bool Recorder::Impl::close_all() {
   bool done = frame.close();
   done = target.close() && done;
   done = hand.close() && done;
   done = plan.close() && done;
+  done = gate.close() && done;
   return file.close() && done && error == 0;
 }
 
@@ -299,6 +325,7 @@ Recorder::Recorder(const std::string& path, const std::vector<SettingsGroup>& se
                   r.target.create(file, "target", recording::target_columns()) &&
                   r.hand.create(file, "hand", recording::hand_columns()) &&
                   r.plan.create(file, "plan", recording::plan_columns()) &&
+                  r.gate.create(file, "gate", recording::gate_columns()) &&
                   H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 && r.error == 0;
   if (!ok) {
     r.close_all();
@@ -316,7 +343,8 @@ Recorder::~Recorder() {
   }
 }
 
-void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const RecordedPlan* plan) {
+void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const RecordedPlan* plan,
+                      const std::optional<GateResult>& gate) {
   if (!impl_->file.valid()) throw std::logic_error("a closed recording cannot be appended to");
   const h5::Quiet quiet;
   Impl& r = *impl_;
@@ -326,6 +354,7 @@ void Recorder::append(const TargetFrame& frame, const HandFrame& hands, const Re
   for (const TargetField& field : frame.patches) r.append_target(field);
   r.append_hands(hands);
   r.append_plan(plan, frame.patches.size());
+  r.append_gate(gate);
 
   // every second of data reaches the file; time that runs backwards is a recording that starts
   // again

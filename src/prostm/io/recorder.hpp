@@ -8,6 +8,7 @@
 #include <string>
 
 #include "prostm/plan/planner.hpp"
+#include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/target/target_field.hpp"
 #include "prostm/track/hand_frame.hpp"
 
@@ -35,9 +36,10 @@ class Recorder {
   ~Recorder();  ///< closes like close(), but keeps quiet about errors
 
   /// Appends a frame: one group entry per target patch, the hands (frame D), and the plan when
-  /// there is one (its points and pressures, padded with NaN to kMaxPathPoints). @throws InputError
-  /// when the disk is full.
-  void append(const TargetFrame& frame, const HandFrame& hands, const RecordedPlan* plan);
+  /// there is one (its points and pressures, padded with NaN to kMaxPathPoints), and what a gate
+  /// said of the frame, if one did. @throws InputError when the disk is full.
+  void append(const TargetFrame& frame, const HandFrame& hands, const RecordedPlan* plan,
+              const std::optional<GateResult>& gate = {});
   /// Writes an attribute of the whole recording, e.g. the run's summary.
   void set_attribute(const std::string& name, const std::string& value);
   void close();
@@ -62,6 +64,9 @@ class RecordingReader {
   TargetFrame frame(int i) const;
   /// Returns the plan made in a frame, if one was made. @throws InputError as frame() does.
   std::optional<RecordedPlan> plan(int i) const;
+  /// Returns what the gate said of a frame; nothing if it said nothing, or if an earlier version
+  /// recorded it. @throws InputError as frame() does.
+  std::optional<GateResult> gate(int i) const;
 
  private:
   struct Impl;

@@ -56,9 +56,19 @@ struct RecordingReader::Impl {
     out.resize(count * row_values);
     if (!h5::read_rows(file.get(), name, type, shape, 0, count, out.data())) broken();
   }
-  /// Returns the values of one row of a dataset of /plan, as the layout lists it.
+  /// Returns the values of one row of a dataset of a group, as the layout's columns list it.
+  /// @param what cannot be read without it.
   template <class T>
-  std::vector<T> plan_row(const std::string& name, std::size_t i) const;
+  std::vector<T> row(const char* group, const char* what, const std::vector<h5::Column>& columns,
+                     const std::string& name, std::size_t i) const;
+  template <class T>
+  std::vector<T> plan_row(const std::string& name, std::size_t i) const {
+    return row<T>("/plan/", "its plans", recording::plan_columns(), name, i);
+  }
+  template <class T>
+  std::vector<T> gate_row(const std::string& name, std::size_t i) const {
+    return row<T>("/gate/", "what its gate said", recording::gate_columns(), name, i);
+  }
   std::size_t checked(int i) const;
   void read_index();
   TargetField read_patch(std::size_t i) const;
@@ -66,25 +76,28 @@ struct RecordingReader::Impl {
   void read_paths(std::size_t i, std::size_t count, Plan& plan) const;
   void read_foci(std::size_t i, std::size_t count, Plan& plan) const;
   PlanStats read_stats(std::size_t i) const;
+  FieldShape read_shape(std::size_t i) const;
   bool has_weights = false;  // any patch
 };
 
 template <class T>
-std::vector<T> RecordingReader::Impl::plan_row(const std::string& name, std::size_t i) const {
-  const std::vector<h5::Column> columns = recording::plan_columns();
+std::vector<T> RecordingReader::Impl::row(const char* group, const char* what,
+                                          const std::vector<h5::Column>& columns,
+                                          const std::string& name, std::size_t i) const {
   const auto column = std::find_if(columns.begin(), columns.end(),
                                    [&](const h5::Column& c) { return name == c.name; });
-  std::vector<T> row(std::accumulate(column->shape.begin(), column->shape.end(), std::size_t{1},
-                                     std::multiplies<>()));
-  const std::string dataset = "/plan/" + name;
+  std::vector<T> values(std::accumulate(column->shape.begin(), column->shape.end(), std::size_t{1},
+                                        std::multiplies<>()));
+  const std::string dataset = group + name;
   if (H5Lexists(file.get(), dataset.c_str(), H5P_DEFAULT) == 0) {
-    throw InputError(path + " has no dataset " + dataset +
-                     ", so its plans cannot be read: an earlier version recorded it, or another "
-                     "program changed it");
+    throw InputError(fmt::format(
+        "{} has no dataset {}, so {} cannot be read: an earlier version recorded it, or another "
+        "program changed it",
+        path, dataset, what));
   }
-  if (!h5::read_rows(file.get(), dataset.c_str(), column->type, column->shape, i, 1, row.data()))
+  if (!h5::read_rows(file.get(), dataset.c_str(), column->type, column->shape, i, 1, values.data()))
     broken();
-  return row;
+  return values;
 }
 
 /// Returns the index of a frame. @throws InputError if it does not exist.
@@ -216,6 +229,22 @@ PlanStats RecordingReader::Impl::read_stats(std::size_t i) const {
   return stats;
 }
 
+FieldShape RecordingReader::Impl::read_shape(std::size_t i) const {
+  FieldShape shape;
+  const std::int32_t maxima = gate_row<std::int32_t>("maxima", i)[0];
+  if (maxima < 0 || maxima > FieldShape::kMaxMaxima) broken();
+  const auto position = gate_row<double>("position", i), pressure = gate_row<double>("pressure", i);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(maxima); ++k) {
+    shape.maxima.push_back({Vec2(position[2 * k], position[2 * k + 1]), pressure[k]});
+    if (!shape.maxima[k].position.allFinite() || !is_number(pressure[k])) broken();
+  }
+  for (const recording::ShapeColumn& number : recording::shape_columns()) {
+    shape.*number.value = gate_row<double>(number.name, i)[0];
+    if (!is_number(shape.*number.value)) broken();
+  }
+  return shape;
+}
+
 RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   check_readable(path);
   const h5::Quiet quiet;
@@ -291,6 +320,30 @@ std::optional<RecordedPlan> RecordingReader::plan(int i) const {
                                  [](double x) { return is_number(x) && x > 0.0; });
   if (!sound) impl_->broken();
   return recorded;
+}
+
+std::optional<GateResult> RecordingReader::gate(int i) const {
+  const std::size_t at = impl_->checked(i);
+  const h5::Quiet quiet;
+  if (H5Lexists(impl_->file.get(), "/gate", H5P_DEFAULT) <= 0) return std::nullopt;
+  const std::int32_t passed = impl_->gate_row<std::int32_t>("passed", at)[0];
+  if (passed == -1) return std::nullopt;
+  const std::int32_t problem = impl_->gate_row<std::int32_t>("problem", at)[0];
+  const auto away = impl_->gate_row<double>("away", at);
+  GateResult result;
+  result.pass = passed == 1;
+  result.share = impl_->gate_row<double>("share", at)[0];
+  result.finding.value = impl_->gate_row<double>("value", at)[0];
+  result.finding.wanted = impl_->gate_row<double>("wanted", at)[0];
+  result.finding.away = Vec2(away[0], away[1]);
+  const bool sound = (passed == 0 || passed == 1) && problem >= 0 &&
+                     static_cast<std::size_t>(problem) < kNames<GateProblem>.size() &&
+                     is_number(result.share) && is_number(result.finding.value) &&
+                     is_number(result.finding.wanted) && result.finding.away.allFinite();
+  if (!sound) impl_->broken();
+  result.finding.problem = static_cast<GateProblem>(problem);
+  result.shape = impl_->read_shape(at);
+  return result;
 }
 
 }  // namespace prostm

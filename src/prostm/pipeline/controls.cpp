@@ -13,6 +13,8 @@
 namespace prostm {
 namespace {
 
+constexpr double kLeastGrid = 32, kMostGrid = 160, kGridStep = 16;  // [cells]
+
 // ---- lists of choices ----
 
 /// Returns the names of an enum, with a label for each.
@@ -167,6 +169,12 @@ std::vector<RunControl> make_controls() {
       [](const S& s) { return s.pipeline.fluid.buoyancy; },
       [](S& s, double v) { s.pipeline.fluid.buoyancy = v; }, always,
       "How strongly undiluted smoke rises.");
+  number(
+      "Smoke", "grid", "Grid", "cells", kLeastGrid, kMostGrid, kGridStep,
+      [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },
+      [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, always,
+      "Cells along each edge of the smoke's box. Fewer are coarser, and cost less time. The smoke "
+      "begins anew.");
 
   choice(
       "Plan", "method", "Method", kMethods,

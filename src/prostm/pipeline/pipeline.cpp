@@ -135,6 +135,7 @@ void WorldStage::meet(std::int64_t step, double due, double dt, WorldFrame& out)
     const double since = dt * steps_per_plan_;
     const PressureSource& pressure = world_->pressure(since);
     out.contact_stats = contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target);
+    out.stimulus = world_->stimulus();
     world_->hear(out.hands, out.target, since);
   }
   out.contact_time = timer.lap();
@@ -173,6 +174,8 @@ PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, do
     : planner_(make_planner(settings, max_cells, full_scale, device.emission_rate())),
       emit_settings_(emit_settings(settings, full_scale)),
       emission_rate_(device.emission_rate()),
+      gate_(static_cast<int>(std::lround(settings.world_rate / settings.steps_per_plan())),
+            max_cells),
       emitter_(make_emitter(settings.method, emit_settings_, emission_rate_)),
       samples_(make_sample_chain(*emitter_, device,
                                  {.power = emit_settings_.power_limit,
@@ -208,6 +211,9 @@ void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
     emitter_->submit();
   }
   out.lift_time = timer.lap();
+  // nobody waits for it
+  out.gate.reset();
+  if (contact.stimulus) out.gate = gate_.judge(contact.hands, contact.target, *contact.stimulus);
 }
 
 void play_until(Device& device, double time) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "prostm/pipeline/settings.hpp"
 #include "prostm/pipeline/world.hpp"
 #include "prostm/plan/planner.hpp"
+#include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/track/hand_source.hpp"
 
 namespace prostm {
@@ -36,7 +38,8 @@ struct WorldFrame {
   HandFrame hands;        ///< filtered, in D
   bool targeted = false;  ///< a plan update follows this step: `target` and `contact` are of now
   TargetFrame target;
-  SideView side;  ///< when settings.side_view
+  std::optional<PlacedStimulus> stimulus;  ///< that the target should be, if there is any
+  SideView side;                           ///< when settings.side_view
   ContactStats contact_stats;
   double track_time = 0, hand_time = 0, meet_time = 0, contact_time = 0;  ///< [s]
   double world_time = 0;  ///< of the whole step; meet_time is what came after the hands [s]
@@ -113,6 +116,8 @@ struct PlanFrame {
   double emission_rate = 0.0;               ///< samples of the emission [Hz]
   /// σ that each patch was planned with, if there is a plan [m].
   std::array<double, kMaxPatches> sigma = {};
+  /// Whether the target is the stimulus that it should be; nothing where nothing is asked of it.
+  std::optional<GateResult> gate;
 };
 
 /// Paths or foci from targets: the stages that run at the planner's rate.
@@ -146,6 +151,7 @@ class PlanStage {
   std::variant<Planner, AmPlanner> planner_;
   EmitSettings emit_settings_;
   double emission_rate_;  // [Hz]
+  StimulusGate gate_;
   std::unique_ptr<Emitter> emitter_;
   std::unique_ptr<SampleChain> samples_;
   std::int64_t updates_ = 0;

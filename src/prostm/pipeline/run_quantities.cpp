@@ -38,6 +38,10 @@ constexpr std::array kStats{
           "Targets that a newer one replaced before they were planned.", Better::Less),
     Quantity<RunSummary>{
         .name = "plan_rate_hz", .unit = "Hz", .help = "Updates a second.", .value = &plan_rate},
+    count("judged_updates", &RunSummary::judged_updates,
+          "Updates whose target is meant to be a stimulus."),
+    count("passed_updates", &RunSummary::passed_updates, "Of these, those that passed its gate.",
+          Better::More),
     count("unrecorded", &RunSummary::unobserved, "Updates that the recording was too slow for.",
           Better::Less),
     count("long_paths", &RunSummary::long_paths, "Paths longer than the limit.", Better::Less),
@@ -66,6 +70,12 @@ constexpr std::array kStats{
                          .help = "What the fluid's pressure solve left, on the mean.",
                          .value = &RunSummary::mean_divergence,
                          .better = Better::Less},
+    Quantity<RunSummary>{
+        .name = "mean_pressure_error",
+        .unit = "",
+        .help = "Estimated error of the fluid's pressure beside hands, relative, on the mean.",
+        .value = &RunSummary::mean_pressure_error,
+        .better = Better::Less},
     count("world_resets", &RunSummary::world_resets,
           "Steps that began anew because a number was not finite.", Better::Less),
 };

@@ -56,7 +56,9 @@ struct RunSummary {
                skipped_updates = 0;
   std::int64_t unobserved = 0;                 ///< plan updates that the observer was too slow for
   std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
-  ContactStats contact_stats;                  ///< of all updates
+  /// Updates whose target is a stimulus, and those of them that passed its gate.
+  std::int64_t judged_updates = 0, passed_updates = 0;
+  ContactStats contact_stats;  ///< of all updates
   DeviceInfo played_by;
   DeviceStats device;
   EmitStats emit;
@@ -64,7 +66,8 @@ struct RunSummary {
   std::int64_t limited_samples = 0;
   SafetyStats safety;
   double max_path_length = 0, max_skin_length = 0;
-  double mean_divergence = 0;  ///< WorldStats::divergence over the steps
+  double mean_divergence = 0;      ///< WorldStats::divergence over the steps
+  double mean_pressure_error = 0;  ///< WorldStats::pressure_error over the steps
   std::int64_t world_resets = 0;
   double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
   Summary latency, redraw;

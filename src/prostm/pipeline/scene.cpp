@@ -1,6 +1,5 @@
 #include "prostm/pipeline/scene.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -62,10 +61,6 @@ const Scene& scene_from_name(std::string_view name) {
     names.push_back(scene.name);
   }
   refuse_name("scene", name, names);
-}
-
-ScenePlace place_under(const Palm& palm) {
-  return {palm.centre.head<2>(), palm.yaw, std::clamp(palm.size, 0.7, 1.3)};
 }
 
 void move_to(const ScenePlace& place, const SmokeInflow& smoke, SmokeInflow& out) {

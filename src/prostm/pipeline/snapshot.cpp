@@ -47,7 +47,7 @@ void average(std::span<const float> smoke, std::size_t n, std::span<std::uint8_t
 
 void view_smoke(const Fluid& fluid, SmokeView& out) {
   const GridShape& grid = fluid.grid();
-  // whole blocks: the cells along an edge are a multiple of 16, and at most 128
+  // whole blocks: the cells along an edge are a multiple of 16, and at most 160
   int block = 1;
   while (grid.nx / block > kSmokeViewCells || grid.nx % block != 0) ++block;
   out.n = grid.nx / block;
@@ -62,8 +62,10 @@ void view_smoke(const Fluid& fluid, SmokeView& out) {
       return average<2>(fluid.smoke(), n, out.density);
     case 3:
       return average<3>(fluid.smoke(), n, out.density);
-    default:
+    case 4:
       return average<4>(fluid.smoke(), n, out.density);
+    default:
+      return average<5>(fluid.smoke(), n, out.density);
   }
 }
 
@@ -96,6 +98,7 @@ void Snapshots::plan(const WorldFrame& contact, const PlanFrame& plan, double la
   s.settings = settings_;
   s.full_scale_pressure = plan.full_scale_pressure;
   s.emission_rate = plan.emission_rate;
+  s.gate = plan.gate;
   s.contact_time = contact.contact_time;
   s.plan_time = plan.plan_time;
   s.lift_time = plan.lift_time;

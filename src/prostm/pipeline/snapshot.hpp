@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "prostm/core/latest.hpp"
@@ -50,6 +51,7 @@ struct PlanSnapshot {
   std::shared_ptr<const PipelineSettings> settings;       ///< that it was planned with
   double full_scale_pressure = 0.0;                       ///< rendered, at intensity 1 [Pa]
   double emission_rate = 0.0;                             ///< samples of the emission [Hz]
+  std::optional<GateResult> gate;                         ///< of the target
   double contact_time = 0, plan_time = 0, lift_time = 0;  ///< [s]
   double latency =
       std::numeric_limits<double>::quiet_NaN();  ///< of the last one that was emitted [s]

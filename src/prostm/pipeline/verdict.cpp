@@ -48,33 +48,38 @@ int smaller_grid(int cells, double time, double due) {
   return 0;
 }
 
+/// The stage that has too much to do.
+enum class Busy : std::uint8_t { Step, Plan, Neither };
+Busy busy(double step, double plan, const PipelineSettings& settings) {
+  const double due = 1.0 / settings.world_rate;
+  if (step > kBusy * due) return Busy::Step;
+  return plan > kBusy * due * settings.steps_per_plan() ? Busy::Plan : Busy::Neither;
+}
+
 /// Sentences on the most likely reason why steps or plans are missing, and what to do. @pre a step
 /// was made.
 std::string reason(const RunSummary& s, const PipelineSettings& settings) {
   const double due = 1.0 / settings.world_rate;
   const double steps_per_plan = settings.steps_per_plan();
   // what one thread does one after the other
-  const double step = s.track.p50 + s.hand.p50 + s.world.p50 + s.contact.p50 / steps_per_plan;
-  if (step > kBusy * due) {
-    const int grid = smaller_grid(settings.fluid.cells, step, due);
-    return fmt::format(
-        "Half of the smoke's steps took longer than {:.1f} ms, and each has {:.0f} ms. {}.",
-        1e3 * step, 1e3 * due,
-        grid > 0 ? fmt::format("Use --grid {}, or close what else runs", grid)
-                 : "Close what else runs");
-  }
-  const double plan = s.plan.p50 + s.lift.p50, between = due * steps_per_plan;
-  if (plan > kBusy * between) {
-    const bool is_slow = settings.method == Method::ProStm && settings.plan.preset != Preset::Fast;
-    return fmt::format(
-        "Half of the plans took longer than {:.1f} ms, and each has {:.0f} ms. Use {}.", 1e3 * plan,
-        1e3 * between, is_slow ? "--preset fast" : "fewer --paths");
+  const double step = s.track.p50 + s.hand.p50 + s.world.p50 + s.contact.p50 / steps_per_plan,
+               plan = s.plan.p50 + s.lift.p50;
+  const std::string what_to_do = remedy(step, plan, settings);
+  switch (busy(step, plan, settings)) {
+    case Busy::Step:
+      return fmt::format(
+          "Half of the smoke's steps took longer than {:.1f} ms, and each has {:.0f} ms. {}",
+          1e3 * step, 1e3 * due, what_to_do);
+    case Busy::Plan:
+      return fmt::format("Half of the plans took longer than {:.1f} ms, and each has {:.0f} ms. {}",
+                         1e3 * plan, 1e3 * due * steps_per_plan, what_to_do);
+    case Busy::Neither:
+      break;
   }
   return fmt::format(
       "Each of the smoke's steps has {1:.0f} ms; half took less than {0:.1f} ms, but some up to "
-      "{2:.0f} ms: another program takes the processor now and then. Close what else runs, or try "
-      "a smaller --grid.",
-      1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max));
+      "{2:.0f} ms: another program takes the processor now and then. {3}",
+      1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max), what_to_do);
 }
 
 void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict& out) {
@@ -214,6 +219,23 @@ void judge_safety(const RunSummary& s, std::vector<std::string>& out) {
 }
 
 }  // namespace
+
+std::string remedy(double step, double plan, const PipelineSettings& settings) {
+  switch (busy(step, plan, settings)) {
+    case Busy::Step: {
+      const int grid = smaller_grid(settings.fluid.cells, step, 1.0 / settings.world_rate);
+      return grid > 0 ? fmt::format("Use --grid {}, or close what else runs.", grid)
+                      : "Close what else runs.";
+    }
+    case Busy::Plan: {
+      const bool slow = settings.method == Method::ProStm && settings.plan.preset != Preset::Fast;
+      return slow ? "Use --preset fast." : "Use fewer --paths.";
+    }
+    case Busy::Neither:
+      break;
+  }
+  return "Close what else runs, or try a smaller --grid.";
+}
 
 bool HeldRate::held() const {
   return done >= kLeastDone * due;

@@ -17,6 +17,10 @@ struct Verdict {
   std::vector<std::string> sentences;
 };
 
+/// A sentence on what to turn down where rates are missed.
+/// @param step time of all that a step's thread does, of a plan's as well [s].
+std::string remedy(double step, double plan, const PipelineSettings& settings);
+
 /// @param settings that the run began with.  @param tracker of hands that are tracked live.
 Verdict verdict_of(const RunSummary& summary, const PipelineSettings& settings,
                    const std::optional<TrackerStatus>& tracker = {});

@@ -11,6 +11,7 @@ class Smoke final : public World {
   Smoke(const PipelineSettings& settings, WorkerPool& pool)
       : scene_(scene_from_name(settings.scene)),
         settings_(settings.jets),
+        jet_speed_(settings.fluid.jet_speed),
         waits_for_hand_(settings_.place == JetPlace::Hand),
         fluid_(settings.fluid, scene_.smoke, pool),
         pressure_(settings.fluid_pressure, fluid_.grid()),
@@ -27,7 +28,7 @@ class Smoke final : public World {
   void meet(const HandRaster& raster) noexcept override { fluid_.meet(raster); }
   WorldStats settle() noexcept override {
     const FluidStats stats = fluid_.settle();
-    return {stats.divergence_rms, stats.reset};
+    return {stats.divergence_rms, stats.pressure_error, stats.reset};
   }
   const PressureSource& pressure(double dt) noexcept override {
     pressure_.take(fluid_.pressure(), fluid_.fluid_cells(), dt);
@@ -54,7 +55,10 @@ class Smoke final : public World {
     changed_ = true;
   }
   const Fluid* fluid() const override { return &fluid_; }
-  const ScenePlace* place() const override { return &place_; }
+  std::optional<PlacedStimulus> stimulus() const override {
+    if (scene_.stimulus.maxima == 0) return {};
+    return PlacedStimulus{scene_.stimulus.scaled(place_.size, jet_speed_), place_};
+  }
 
  private:
   void blow_at(const ScenePlace& place) {
@@ -72,6 +76,7 @@ class Smoke final : public World {
 
   const Scene& scene_;
   JetSettings settings_;
+  double jet_speed_;
   bool waits_for_hand_;  // to blow under it
   ScenePlace place_;
   Fluid fluid_;

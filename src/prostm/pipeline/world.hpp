@@ -2,6 +2,7 @@
 /// The world that the hands meet: smoke, or anything else that presses on them.
 
 #include <memory>
+#include <optional>
 
 #include "prostm/contact/pressure_source.hpp"
 #include "prostm/fluid/fluid.hpp"
@@ -16,7 +17,9 @@ namespace prostm {
 /// How a step went.
 struct WorldStats {
   double divergence = 0.0;  ///< of a fluid: rms that is left, over that before its pressure solve
-  bool reset = false;       ///< it went wrong (a number was not finite), and began anew at rest
+  /// of a fluid: estimated error of its pressure beside hands, relative (F16)
+  double pressure_error = 0.0;
+  bool reset = false;  ///< it went wrong (a number was not finite), and began anew at rest
 };
 
 /// Steps in three parts, so that the hands may come late: prepare, meet, settle, in this order and
@@ -45,8 +48,9 @@ class World {
 
   /// Goes on from where another world is, as far as the two are alike. @pre between steps.
   virtual void go_on_from(const World& other) { static_cast<void>(other); }
-  /// Where the scene is, if it has a place.
-  virtual const ScenePlace* place() const { return nullptr; }
+  /// Where the scene is, and the pressure that it is meant to make there; none for a world that is
+  /// no stimulus.
+  virtual std::optional<PlacedStimulus> stimulus() const { return {}; }
   /// The smoke, where there is some.
   virtual const Fluid* fluid() const { return nullptr; }
 };

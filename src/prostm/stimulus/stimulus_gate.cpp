@@ -1,4 +1,4 @@
-#include "prostm/pipeline/stimulus_gate.hpp"
+#include "prostm/stimulus/stimulus_gate.hpp"
 
 #include <fmt/format.h>
 
@@ -116,12 +116,12 @@ StimulusGate::StimulusGate(int updates, std::size_t max_cells)
     : meter_(max_cells), good_(static_cast<std::size_t>(std::max(1, updates)), 0) {}
 
 GateResult StimulusGate::judge(const HandFrame& hands, const TargetFrame& target,
-                               const Stimulus& wanted, const ScenePlace& place) {
+                               const PlacedStimulus& stimulus) {
   GateResult out;
   if (!target.patches.empty()) out.shape = meter_.measure(target.patches.front());
-  out.finding = look_at(hands, place);
+  out.finding = look_at(hands, stimulus.place);
   const bool held = out.finding.problem == P::None;
-  if (held) out.finding = look_at(out.shape, wanted);
+  if (held) out.finding = look_at(out.shape, stimulus.wanted);
   good_[next_] = out.finding.problem == P::None ? 1 : 0;
   next_ = (next_ + 1) % good_.size();
   out.share = static_cast<double>(std::count(good_.begin(), good_.end(), 1)) /

@@ -2,12 +2,15 @@
 /// The gate of a study: whether a held hand gets what the scene is meant to press on it, and what
 /// to change where it does not.
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "prostm/core/names.hpp"
 #include "prostm/core/units.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/stimulus/stimulus.hpp"
 #include "prostm/target/field_shape.hpp"
 #include "prostm/track/hand_frame.hpp"
 
@@ -30,6 +33,10 @@ enum class GateProblem : std::uint8_t {
   Area,
   Force
 };
+template <>
+inline constexpr std::array<std::string_view, 14> kNames<GateProblem> = {
+    "none", "no-hand", "two-hands", "bent",    "tilted", "beside", "low",
+    "high", "moving",  "maxima",    "balance", "saddle", "area",   "force"};
 
 /// The first problem of a frame, with its numbers.
 struct GateFinding {
@@ -65,15 +72,14 @@ struct GateBounds {
   static constexpr double kShare = 0.8;    ///< least share of good frames
 };
 
-/// Judges update after update. Allocates nothing after its first update of a size.
+/// Judges update after update. Allocates nothing for targets of at most `max_cells`.
 class StimulusGate {
  public:
   /// @param updates in a second, over which frames are counted.
   StimulusGate(int updates, std::size_t max_cells);
 
-  /// @param wanted of the scene, at its size and speed.  @param place of its jets.
-  GateResult judge(const HandFrame& hands, const TargetFrame& target, const Stimulus& wanted,
-                   const ScenePlace& place);
+  GateResult judge(const HandFrame& hands, const TargetFrame& target,
+                   const PlacedStimulus& stimulus);
 
  private:
   FieldShapeMeter meter_;

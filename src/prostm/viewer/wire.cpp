@@ -51,7 +51,7 @@ const Numbers& numbers() {
 }
 
 /// Sections in the order of their ids.
-enum Section : std::uint16_t { kRun = 1, kNumberList, kHands, kSmoke, kFields, kPlan };
+enum Section : std::uint16_t { kRun = 1, kNumberList, kHands, kSmoke, kFields, kPlan, kGate };
 
 constexpr std::size_t kHeaderBytes = 16, kLengthAt = 12, kHandPadding = 16;
 
@@ -64,9 +64,9 @@ class Writer {
   void put(const T& value) {
     bytes(&value, sizeof value);
   }
-  template <class T>
-  void put_all(const std::vector<T>& values) {
-    bytes(values.data(), values.size() * sizeof(T));
+  template <class Range>
+  void put_all(const Range& values) {
+    bytes(values.data(), values.size() * sizeof(*values.data()));
   }
   void zeros(std::size_t n) { out_.resize(out_.size() + n); }
   void align() { zeros((8 - out_.size() % 8) % 8); }
@@ -154,6 +154,22 @@ void write_plan(const ViewFrame& frame, Writer& w) {
   w.end();
 }
 
+void write_text(const std::string& text, Writer& w) {
+  w.put(static_cast<std::uint32_t>(text.size()));
+  w.put_all(text);
+}
+
+void write_gate(const ViewGate& gate, Writer& w) {
+  w.begin(kGate, 1);
+  w.put(gate.passed);
+  w.put(gate.share);
+  w.put(gate.maxima);
+  for (const float x : {gate.balance, gate.saddle, gate.area, gate.force}) w.put(x);
+  write_text(gate.problem, w);
+  write_text(gate.sentence, w);
+  w.end();
+}
+
 }  // namespace
 
 std::span<const std::string_view> view_number_names() {
@@ -169,7 +185,8 @@ void encode(const ViewFrame& frame, bool with_smoke, bool with_fields,
   Writer w(out);
   for (const char c : {'P', 'S', 'T', 'M'}) w.put(c);
   w.put(static_cast<std::uint16_t>(kWireVersion));
-  w.put(static_cast<std::uint16_t>(4 + (with_smoke ? 1 : 0) + (with_fields ? 1 : 0)));
+  w.put(static_cast<std::uint16_t>(4 + (with_smoke ? 1 : 0) + (with_fields ? 1 : 0) +
+                                   (frame.gate ? 1 : 0)));
   w.put(frame.sequence);
   w.put(std::uint32_t{0});
   static_assert(kLengthAt + sizeof(std::uint32_t) == kHeaderBytes);
@@ -189,6 +206,7 @@ void encode(const ViewFrame& frame, bool with_smoke, bool with_fields,
   if (with_smoke) write_smoke(frame.smoke, w);
   if (with_fields) write_fields(frame, w);
   write_plan(frame, w);
+  if (frame.gate) write_gate(*frame.gate, w);
   w.align();
   w.set_u32(kLengthAt, out.size());
 }

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -119,6 +121,18 @@ struct ViewPath {
   std::vector<ViewPoint> points;
 };
 
+/// A GateResult of the shown target.
+struct ViewGate {
+  std::uint32_t passed = 0;  ///< 0 or 1
+  float share = 0.0F;        ///< of the last second's frames that have no problem
+  std::string problem;       ///< of this frame, a name of GateProblem
+  std::string sentence;      ///< in UTF-8
+  std::uint32_t maxima = 0;
+  float balance = 0.0F, saddle = 0.0F;
+  float area = 0.0F;   ///< [m²]
+  float force = 0.0F;  ///< [N]
+};
+
 /// The frame that a page sees at one moment. Vectors keep their room from frame to frame: the first
 /// *_count of them hold.
 struct ViewFrame {
@@ -133,6 +147,7 @@ struct ViewFrame {
   std::vector<ViewField> fields;
   std::uint32_t path_count = 0;
   std::vector<ViewPath> paths;
+  std::optional<ViewGate> gate;  ///< nothing where nothing is asked of the target
 };
 
 /// Writes the frame as one message into `out`, whose old contents go and whose room is used again.

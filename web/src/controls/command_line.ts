@@ -5,7 +5,7 @@ import type { State } from "../messages";
 
 // controls that have an option of `prostm run`; the others go into a settings file
 const kOptions: Record<string, string> = {
-  scene: "--scene", method: "--method", preset: "--preset", paths: "--paths", switch: "--switch",
+  scene: "--scene", grid: "--grid", method: "--method", preset: "--preset", paths: "--paths", switch: "--switch",
 };
 const kHands = ["scripted", "openxr", "page"]; // that --hand knows by name
 
@@ -19,7 +19,7 @@ export interface CommandLine {
 
 // settings that those options set, and the time for a plan that a run in real time has by itself
 const kSaid = [
-  "pipeline.scene", "pipeline.method", "plan.preset", "plan.paths", "am.foci", "emit.foci", "emit.switch_at",
+  "pipeline.scene", "fluid.cells", "pipeline.method", "plan.preset", "plan.paths", "am.foci", "emit.foci", "emit.switch_at",
 ];
 const kLiveBudget = "plan.budget = 0.002";
 

@@ -55,6 +55,16 @@ describe("a page with a hand", () => {
     await expect.poll(labels).toContain("palm 190 mm");
   });
 
+  it("says what keeps the hand from the scene's stimulus", async () => {
+    await says("gate-word", "Stimulus");
+    await page.locator("#view").focus();
+    for (let i = 0; i < 40; ++i) await page.keyboard.press("c");
+    await says("gate-why", "Stretch the fingers");
+    expect(await text("gate-word")).toBe("Stimulus not ready");
+    for (let i = 0; i < 60; ++i) await page.keyboard.press("o");
+    await until(page, () => !document.getElementById("gate-why")!.textContent!.includes("Stretch"), 0, "stretched fingers");
+  });
+
   it("mutes the array with its button and with M", async () => {
     await says("output-word", "Output on");
     await page.locator("#mute").click();
@@ -281,7 +291,7 @@ describe("a page's state", () => {
     await set("speed", 5);
     await page.locator("#copy-command").click();
     await says("notice", "Copied");
-    expect(await clipboard()).toMatch(/^prostm run --view --scene four-plumes --method pro-stm --preset best --paths 2 --switch lap --hand page --settings prostm.toml$/);
+    expect(await clipboard()).toMatch(/^prostm run --view --scene four-plumes --grid 32 --method pro-stm --preset best --paths 2 --switch lap --hand page --settings prostm.toml$/);
     await page.locator("#copy-settings").click();
     await says("notice", "settings file is copied");
     expect(await clipboard()).toContain("[plan]\npaths = 2\nspeed = 5\n");

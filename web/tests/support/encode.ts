@@ -1,5 +1,5 @@
 /// Frames as the program writes them, made here from plain values.
-import type { Hand, Patch, Path, Run, Smoke } from "../../src/wire";
+import type { Gate, Hand, Patch, Path, Run, Smoke } from "../../src/wire";
 
 export interface Contents {
   sequence?: number;
@@ -10,6 +10,7 @@ export interface Contents {
   smoke?: Smoke;
   field?: Patch[];
   plan?: Path[];
+  gate?: Gate;
   unknown?: number; // bytes of a section that no page knows
 }
 
@@ -53,7 +54,7 @@ export function encode(contents: Contents): ArrayBuffer {
   section(1, 1, (w) => w.f64(run.time ?? 0, run.recordingTime ?? NaN).u32(run.worldSteps ?? 0, run.planUpdates ?? 0, flags, 0));
   if (contents.unknown !== undefined) section(99, 3, (w) => w.bytes(new Uint8Array(contents.unknown ?? 0)));
   if (contents.numbers) section(2, contents.numbers.length, (w) => w.f32(...(contents.numbers ?? [])));
-  const { hands, smoke, field, plan } = contents;
+  const { hands, smoke, field, plan, gate } = contents;
   if (hands) {
     section(3, hands.length, (w) => {
       for (const h of hands) w.u32(h.id, h.side === "left" ? 0 : 1).f32(h.confidence).u32(0).array(h.joints).u32(0, 0, 0, 0);
@@ -71,6 +72,15 @@ export function encode(contents: Contents): ArrayBuffer {
   if (plan) {
     section(6, plan.length, (w) => {
       for (const p of plan) w.u32(p.kind === "path" ? 0 : 1, p.patch, p.count).f32(p.length, p.speed, p.period).array(p.points);
+    });
+  }
+  if (gate) {
+    section(7, 1, (w) => {
+      w.u32(gate.passed ? 1 : 0).f32(gate.share).u32(gate.maxima).f32(gate.balance, gate.saddle, gate.area, gate.force);
+      for (const text of [gate.problem, gate.sentence]) {
+        const bytes = new TextEncoder().encode(text);
+        w.u32(bytes.length).bytes(bytes);
+      }
     });
   }
 

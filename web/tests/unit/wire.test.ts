@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { Decoder, WireError, kJoints, kNumbers, numberOf, type Hand, type Patch, type Path, type Smoke } from "../../src/wire";
+import { Decoder, WireError, kJoints, kNumbers, numberOf, type Gate, type Hand, type Patch, type Path, type Smoke } from "../../src/wire";
 import { encode } from "../support/encode";
 
 const hand: Hand = { id: 7, side: "right", confidence: 0.5, joints: Float32Array.from({ length: 8 * kJoints }, (_, i) => i / 8) };
@@ -11,9 +11,10 @@ const patch: Patch = {
 };
 const path: Path = { kind: "path", patch: 0, count: 4, length: 0.125, speed: 7, period: 0.5, points: Float32Array.from({ length: 24 }, (_, i) => i) };
 const focus: Path = { kind: "focus", patch: 1, count: 1, length: 0, speed: 0, period: 0.005, points: Float32Array.from([1, 2, 3, 4, 5, 6]) };
+const gate: Gate = { passed: true, share: 0.75, maxima: 4, balance: 0.875, saddle: 0.5, area: 0.0625, force: 0.125, problem: "none", sentence: "64 cm² are pressed." };
 const whole = () =>
   encode({ sequence: 12, run: { time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, handInSight: true, muted: true }, unknown: 13,
-    numbers: kNumbers.map((_, i) => i), hands: [hand, { ...hand, side: "left" }], smoke, field: [patch, patch], plan: [path, focus] });
+    numbers: kNumbers.map((_, i) => i), hands: [hand, { ...hand, side: "left" }], smoke, field: [patch, patch], plan: [path, focus], gate });
 
 /// Float32 has rounded what was not a multiple of a power of two.
 const rounded = (p: Patch): Patch => ({ ...p, cell: Math.fround(p.cell) });
@@ -28,6 +29,7 @@ describe("a whole frame", () => {
     expect(frame.hands).toEqual([hand, { ...hand, side: "left" }]);
     expect(frame.smoke).toEqual(smoke);
     expect(frame.field).toEqual([rounded(patch), rounded(patch)]);
+    expect(frame.gate).toEqual(gate);
     expect(frame.plan).toEqual([path, { ...focus, period: Math.fround(0.005) }]);
   });
 
@@ -37,6 +39,7 @@ describe("a whole frame", () => {
     const next = decoder.decode(encode({ sequence: 13, plan: [] }));
     expect([next.smoke, next.smokeSequence, next.fieldSequence]).toEqual([smoke, 12, 12]);
     expect(next.hands).toEqual([]);
+    expect(next.gate).toBeNull();
     expect(decoder.decode(encode({ sequence: 14, field: [] })).field).toEqual([]);
   });
 
@@ -81,16 +84,16 @@ describe("a malformed message", () => {
   it("with more sections than it holds is refused", () => refused(changed((v) => v.setUint16(6, 60000, true))));
   it("without a run is refused", () => refused(changed((v) => v.setUint16(16, 77, true))));
   it("with absurd lengths is refused, and nothing is allocated for them", () => {
-    for (const [id, offset] of [[4, 8], [5, 8], [5, 12], [6, 16]] as const) {
+    for (const [id, offset] of [[4, 8], [5, 8], [5, 12], [6, 16], [7, 36]] as const) {
       for (const value of [0xffffffff, 0x7fffffff, 100000]) {
         refused(changed((v) => v.setUint32(find(v.buffer as ArrayBuffer, id) + offset, value, true)));
       }
     }
-    for (const id of [1, 2, 3, 4, 5, 6]) refused(changed((v) => v.setUint32(find(v.buffer as ArrayBuffer, id) + 4, 0xfffffff0, true)));
+    for (const id of [1, 2, 3, 4, 5, 6, 7]) refused(changed((v) => v.setUint32(find(v.buffer as ArrayBuffer, id) + 4, 0xfffffff0, true)));
     for (const id of [2, 3, 5, 6]) refused(changed((v) => v.setUint16(find(v.buffer as ArrayBuffer, id) + 2, 65535, true)));
   });
   it("with joints, boxes or paths that are not finite is refused", () => {
-    for (const [id, offset] of [[3, 24], [4, 12], [5, 16], [6, 32]] as const) {
+    for (const [id, offset] of [[3, 24], [4, 12], [5, 16], [6, 32], [7, 20]] as const) {
       refused(changed((v) => v.setFloat32(find(v.buffer as ArrayBuffer, id) + offset, NaN, true)));
     }
   });

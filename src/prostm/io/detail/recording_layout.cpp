@@ -1,9 +1,11 @@
 #include "prostm/io/detail/recording_layout.hpp"
 
+#include <array>
 #include <string>
 #include <variant>
 
 #include "prostm/plan/plan.hpp"
+#include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/target/target_field.hpp"
 #include "prostm/track/hand_frame.hpp"
 
@@ -17,7 +19,53 @@ std::string names_of(std::span<const Quantity<PlanStats>> numbers) {
   return names;
 }
 
+/// Returns "0 none, 1 no-hand, …".
+std::string gate_problems() {
+  std::string text;
+  for (std::size_t i = 0; i < kNames<GateProblem>.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(i) + " " + std::string(kNames<GateProblem>[i]);
+  }
+  return text;
+}
+
+constexpr std::array<ShapeColumn, 7> kShape{{
+    {"largest", &FieldShape::largest, "Pa", "largest pressure"},
+    {"balance", &FieldShape::balance, "1", "the least of the maxima over the largest"},
+    {"saddle", &FieldShape::saddle, "1",
+     "highest level at which two maxima join, over the largest pressure"},
+    {"least_spacing", &FieldShape::least_spacing, "m", "least distance of two maxima"},
+    {"most_spacing", &FieldShape::most_spacing, "m",
+     "largest distance of a maximum to its nearest other"},
+    {"area", &FieldShape::area, "m2", "of at least half of the largest pressure"},
+    {"force", &FieldShape::force, "N", "total force"},
+}};
+
 }  // namespace
+
+std::span<const ShapeColumn> shape_columns() {
+  return kShape;
+}
+
+std::vector<h5::Column> gate_columns() {
+  const hsize_t most = FieldShape::kMaxMaxima;
+  std::vector<h5::Column> columns = {
+      {"passed", H5T_NATIVE_INT32, {}, "1", "1 = yes, 0 = no, -1 = nothing was asked"},
+      {"share", H5T_NATIVE_DOUBLE, {}, "1", "of the last second's frames that have no problem"},
+      {"problem", H5T_NATIVE_INT32, {}, "1", gate_problems()},
+      {"value", H5T_NATIVE_DOUBLE, {}, "SI", "what the problem is about"},
+      {"wanted", H5T_NATIVE_DOUBLE, {}, "SI", "the bound that it passes, or what the scene has"},
+      {"away", H5T_NATIVE_DOUBLE, {2}, "m", "of the palm from the jets, where that is the problem"},
+      {"maxima", H5T_NATIVE_INT32, {}, "1", "maxima of the target, of the first patch"},
+      {"position",
+       H5T_NATIVE_DOUBLE,
+       {most, 2},
+       "m",
+       "of the maxima in the plane, padded with NaN"},
+      {"pressure", H5T_NATIVE_DOUBLE, {most}, "Pa", "of the maxima, padded with NaN"}};
+  for (const ShapeColumn& number : kShape)
+    columns.push_back({number.name, H5T_NATIVE_DOUBLE, {}, number.unit, number.meaning});
+  return columns;
+}
 
 std::vector<h5::Column> frame_columns() {
   return {{"time", H5T_NATIVE_DOUBLE, {}, "s", "time of the hand frame"},

@@ -17,6 +17,7 @@ void WorldLog::meet(const WorldFrame& frame) {
 void WorldLog::settle(const WorldStats& stats) {
   resets_ += stats.reset ? 1 : 0;
   divergence_ += stats.divergence;
+  pressure_error_ += stats.pressure_error;
 }
 
 void WorldLog::write(RunSummary& out) const {
@@ -24,7 +25,9 @@ void WorldLog::write(RunSummary& out) const {
   out.skipped_world_steps = skipped_;
   out.world_resets = resets_;
   out.contact_stats = contact_stats_;
-  out.mean_divergence = steps_ > 0 ? divergence_ / static_cast<double>(steps_) : 0.0;
+  const auto steps = static_cast<double>(std::max<std::int64_t>(1, steps_));
+  out.mean_divergence = divergence_ / steps;
+  out.mean_pressure_error = pressure_error_ / steps;
   out.track = track_.summary();
   out.hand = hand_.summary();
   out.world = world_.summary();
@@ -35,6 +38,8 @@ void PlanLog::add(const WorldFrame& contact, const PlanFrame& frame, double run_
   latency_.plan(contact, frame, run_start);
   plan_.add(frame.stats.total);
   lift_.add(frame.lift_time);
+  judged_ += frame.gate ? 1 : 0;
+  passed_ += frame.gate && frame.gate->pass ? 1 : 0;
   if (frame.status != PlanStatus::Planned) {
     ++empty_;
     return;
@@ -58,6 +63,8 @@ void PlanLog::write(RunSummary& out) const {
   out.empty_updates = empty_;
   out.long_paths = long_paths_;
   out.crossings = crossings_;
+  out.judged_updates = judged_;
+  out.passed_updates = passed_;
   out.max_path_length = max_path_length_;
   out.max_skin_length = max_skin_length_;
   out.plan = plan_.summary();

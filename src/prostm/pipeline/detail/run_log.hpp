@@ -24,7 +24,7 @@ class WorldLog {
  private:
   std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0;
   ContactStats contact_stats_;
-  double divergence_ = 0.0;
+  double divergence_ = 0.0, pressure_error_ = 0.0;
   Distribution track_, hand_, world_, contact_;
 };
 
@@ -43,7 +43,7 @@ class PlanLog {
   void write(RunSummary& out) const;
 
  private:
-  std::int64_t plans_ = 0, empty_ = 0, long_paths_ = 0, crossings_ = 0;
+  std::int64_t plans_ = 0, empty_ = 0, long_paths_ = 0, crossings_ = 0, judged_ = 0, passed_ = 0;
   double max_path_length_ = 0.0, max_skin_length_ = 0.0;
   Distribution plan_, lift_;
   LatencyLog latency_;

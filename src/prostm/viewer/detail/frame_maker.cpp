@@ -111,6 +111,21 @@ void fill_paths(const PlanSnapshot& plan, ViewFrame& out) {
   }
 }
 
+void fill_gate(const std::optional<GateResult>& gate, std::optional<ViewGate>& out) {
+  out.reset();
+  if (!gate) return;
+  out.emplace();
+  out->passed = gate->pass ? 1 : 0;
+  out->share = static_cast<float>(gate->share);
+  out->problem = name_of(gate->finding.problem);
+  out->sentence = sentence(*gate);
+  out->maxima = static_cast<std::uint32_t>(gate->shape.count());
+  out->balance = static_cast<float>(gate->shape.balance);
+  out->saddle = static_cast<float>(gate->shape.saddle);
+  out->area = static_cast<float>(gate->shape.area);
+  out->force = static_cast<float>(gate->shape.force);
+}
+
 void set(ViewFrame& frame, std::size_t number, double value) {
   frame.numbers[number] = static_cast<float>(value);
 }
@@ -187,6 +202,7 @@ void FrameMaker::take_plan(ViewFrame& frame) {
   for (std::size_t i = 0; i < count; ++i)
     fill_field(plan.target.patches[i], rendered_.field[i], scale, frame.fields[i]);
   fill_paths(plan, frame);
+  fill_gate(plan.gate, frame.gate);
 }
 
 void FrameMaker::fill_scores(ViewFrame& frame) const {

@@ -47,6 +47,15 @@ std::string Hub::numbers() {
   const auto names = view_number_names();
   for (std::size_t i = 0; i < names.size(); ++i)
     json["numbers"][std::string(names[i])] = number(static_cast<double>(frame.numbers[i]));
+  json["gate"] = nullptr;
+  if (frame.gate) {
+    const ViewGate& gate = *frame.gate;
+    json["gate"] = {{"passed", gate.passed != 0},    {"share", number(gate.share)},
+                    {"problem", gate.problem},       {"sentence", gate.sentence},
+                    {"maxima", gate.maxima},         {"balance", number(gate.balance)},
+                    {"saddle", number(gate.saddle)}, {"area_m2", number(gate.area)},
+                    {"force_n", number(gate.force)}};
+  }
   return json.dump() + "\n";
 }
 
