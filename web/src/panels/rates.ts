@@ -1,12 +1,21 @@
 /// Whether the run keeps its rates, and what keeps it from that, as a sentence.
 
-import type { Rates } from "../messages";
+import type { Control, Rates, Value } from "../messages";
 import { fixed } from "../text";
 import { numberOf, type Frame } from "../wire";
 
 const kHeld = 0.98; // share of a rate that counts as kept
 const kOver = 3; // [s] over which rates and times are averaged
+const kFull = 0.85; // share of the time there is, above which the work itself is too much
+const kComfortable = 0.6; // share of the time there is that a smaller grid may take
 const kSure = 2; // [s] for which they must be missed before anything is said
+
+/// A setting that would help.
+export interface Offer {
+  id: string; // of the control
+  value: Value;
+  label: string; // of a button
+}
 
 interface Sample {
   time: number; // [s]
@@ -68,7 +77,8 @@ export class RateWatch {
       `because ${this.reason(rates, drawing)}.`;
   }
 
-  private reason(rates: Rates, drawing: boolean): string {
+  /// The work of the two threads, one stage after the other, with the time for it.
+  private work(rates: Rates): { name: "a step" | "a plan"; sum: number; room: number; parts: [Stage, number][] }[] {
     const stage = (name: Stage) => this.mean((s) => s.stages[name]);
     const perStep = rates.plan_hz / rates.world_hz; // plans
     const step: [Stage, number][] = [
@@ -76,16 +86,44 @@ export class RateWatch {
       ["contact", perStep * stage("contact")],
     ];
     const plan: [Stage, number][] = [["plan", stage("plan")], ["lift", stage("lift")]];
-    for (const [what, parts, hz] of [["a step", step, rates.world_hz], ["a plan", plan, rates.plan_hz]] as const) {
-      const sum = parts.reduce((all, [, ms]) => all + ms, 0), room = 1000 / hz;
-      if (sum < 0.85 * room) continue;
+    const sum = (parts: [Stage, number][]) => parts.reduce((all, [, ms]) => all + ms, 0);
+    return [
+      { name: "a step", sum: sum(step), room: 1000 / rates.world_hz, parts: step },
+      { name: "a plan", sum: sum(plan), room: 1000 / rates.plan_hz, parts: plan },
+    ];
+  }
+  private tooMuch(rates: Rates) {
+    return this.work(rates).find(({ sum, room }) => sum >= kFull * room);
+  }
+
+  private reason(rates: Rates, drawing: boolean): string {
+    const over = this.tooMuch(rates);
+    if (over !== undefined) {
+      const { name, sum, room, parts } = over;
       const [slowest, ms] = parts.reduce((a, b) => (b[1] > a[1] ? b : a));
       const takes = sum > room ? `${fixed(sum, 0)} ms but has only ${fixed(room, 0)} ms` : `${fixed(sum, 0)} of its ${fixed(room, 0)} ms`;
-      return `${what} takes ${takes}; ${kNames[slowest]} alone takes ${fixed(ms, 0)} ms`;
+      return `${name} takes ${takes}; ${kNames[slowest]} alone takes ${fixed(ms, 0)} ms`;
     }
-    const sum = step.reduce((all, [, ms]) => all + ms, 0);
+    const { sum, room } = this.work(rates)[0]!;
     const others = drawing ? "this page's picture and other work have" : "other work has";
-    const room = fixed(1000 / rates.world_hz, 0);
-    return `${others} the processor (the stages of a step take ${fixed(sum, 0)} of ${room} ms)`;
+    return `${others} the processor (the stages of a step take ${fixed(sum, 0)} of ${fixed(room, 0)} ms)`;
+  }
+
+  /// Returns what to turn down while sentence() says something; null where nothing would help.
+  offer(rates: Rates, controls: Control[]): Offer | null {
+    const over = this.tooMuch(rates);
+    if (over?.name === "a plan") {
+      const preset = controls.find((c) => c.id === "preset");
+      const slow = preset?.kind === "choice" && preset.enabled && preset.value !== "fast";
+      return slow ? { id: "preset", value: "fast", label: "Use the preset Fast" } : null;
+    }
+    const grid = controls.find((c) => c.id === "grid");
+    if (grid?.kind !== "number") return null;
+    const { sum, room } = this.work(rates)[0]!;
+    // the work grows with the number of cells
+    const fits = (cells: number) => sum * (cells / grid.value) ** 3 <= kComfortable * room;
+    let cells = grid.value - grid.step;
+    while (cells > grid.min && !fits(cells)) cells -= grid.step;
+    return cells < grid.min ? null : { id: "grid", value: cells, label: `Turn the smoke's grid down to ${cells} cells` };
   }
 }

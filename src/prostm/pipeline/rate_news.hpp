@@ -1,0 +1,36 @@
+#pragma once
+/// The news of a run's rates for those who watch its terminal, each change once.
+
+#include <optional>
+#include <string>
+
+#include "prostm/pipeline/pipeline.hpp"
+
+namespace prostm {
+
+/// Tells, while a run in real time goes on, that it does not hold its rates and what to turn down,
+/// and that it holds them again.
+class RateNews {
+ public:
+  explicit RateNews(const PipelineSettings& settings) : settings_(settings) {}
+
+  /// Looks at an update, of which some may be left out. @return a sentence, or nothing where there
+  /// is nothing new.
+  std::optional<std::string> look(const WorldFrame& contact, const PlanFrame& plan);
+
+  static constexpr double kOver = 5.0;   ///< over which rates are taken [s]
+  static constexpr double kHeld = 0.98;  ///< share of a rate that counts as kept
+
+ private:
+  struct Span {
+    double begin = 0.0;  // run time [s]
+    std::int64_t steps = 0, plans = 0, updates = 0;
+    double step_time = 0.0, plan_time = 0.0;  // sums over the updates [s]
+  };
+
+  PipelineSettings settings_;
+  std::optional<Span> span_;
+  bool missed_ = false;
+};
+
+}  // namespace prostm

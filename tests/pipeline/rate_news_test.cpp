@@ -1,0 +1,56 @@
+#include "prostm/pipeline/rate_news.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace prostm {
+namespace {
+
+/// Returns the news of a run where each second makes so many of its steps.
+std::vector<std::string> told(const std::vector<int>& steps_of_each_second, double step_time = 7e-3,
+                              double plan_time = 4e-3) {
+  RateNews news{PipelineSettings{}};
+  std::vector<std::string> all;
+  WorldFrame contact;
+  PlanFrame plan;
+  contact.world_time = step_time;
+  plan.plan_time = plan_time;
+  for (std::size_t second = 0; second < steps_of_each_second.size(); ++second) {
+    for (int step = 0; step < steps_of_each_second[second]; ++step) {
+      contact.due =
+          static_cast<double>(second) + static_cast<double>(step) / steps_of_each_second[second];
+      if (++contact.step % 2 != 0) continue;
+      ++plan.id;
+      if (const auto sentence = news.look(contact, plan)) all.push_back(*sentence);
+    }
+  }
+  return all;
+}
+
+TEST(RateNews, SaysNothingWhileRatesAreHeld) {
+  EXPECT_TRUE(told(std::vector<int>(30, 50)).empty());
+  // a hiccup
+  EXPECT_TRUE(told({50, 50, 50, 46, 50, 50, 50, 50, 50, 50, 50, 50}).empty());
+}
+
+TEST(RateNews, TellsWhatIsMissedAndWhatToTurnDownOnce) {
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  EXPECT_THAT(told(std::vector<int>(30, 40), 24e-3),
+              ElementsAre(testing::AllOf(HasSubstr("smoke 40.0 of 50 Hz, plans 20.0 of 25 Hz"),
+                                         HasSubstr("Use --grid 48"))));
+  EXPECT_THAT(told(std::vector<int>(30, 40), 7e-3, 39e-3),
+              ElementsAre(HasSubstr("Use --preset fast.")));
+  EXPECT_THAT(told(std::vector<int>(30, 40)), ElementsAre(HasSubstr("Close what else runs")));
+}
+
+TEST(RateNews, TellsThatTheyAreHeldAgain) {
+  std::vector<int> seconds(12, 40);
+  seconds.insert(seconds.end(), 12, 50);
+  const auto all = told(seconds);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[1], "The rates are held again.");
+}
+
+}  // namespace
+}  // namespace prostm
