@@ -10,6 +10,9 @@ namespace {
 nlohmann::ordered_json number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
+nlohmann::ordered_json number(float value) {
+  return number(static_cast<double>(value));
+}
 
 }  // namespace
 
@@ -46,7 +49,7 @@ std::string Hub::numbers() {
                                    {"flags", frame.run.flags}}}};
   const auto names = view_number_names();
   for (std::size_t i = 0; i < names.size(); ++i)
-    json["numbers"][std::string(names[i])] = number(static_cast<double>(frame.numbers[i]));
+    json["numbers"][std::string(names[i])] = number(frame.numbers[i]);
   json["gate"] = nullptr;
   if (frame.gate) {
     const ViewGate& gate = *frame.gate;
