@@ -264,8 +264,8 @@ describe("controls", () => {
   });
   it("change what the emitter blows: without it the pressure goes away", async () => {
     const pressure = () => page.evaluate(() => window.prostm.frame!.numbers[24]!);
-    await expect.poll(pressure, kSoon).toBeGreaterThan(0.07);
-    const before = await pressure();
+    let before = 0;
+    await expect.poll(async () => (before = await pressure()), kSoon).toBeGreaterThan(0.07);
     await turn("jet_speed", 0);
     await expect.poll(pressure, kSoon).toBeLessThan(0.5 * before);
     await turn("jet_speed", 1);
