@@ -170,7 +170,7 @@ struct BallProblem {
 };
 
 TEST(Pressure, ConjugateGradientsNeedFewerCycles) {
-  for (const int n : {32, 48, 64, 80, 112}) {
+  for (const int n : {32, 48, 80}) {
     BallProblem exact(n, 2), cycles(n, 2), cg(n, 2);
     exact.solver.v_cycles(25);
     const auto error = [&](BallProblem& p) {
