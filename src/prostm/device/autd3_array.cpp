@@ -45,6 +45,7 @@ DeviceInfo info_for(const Autd3Setup& setup, const Autd3Budget& budget) {
   info.streams = true;
   info.loads_segments = true;
   info.decimation = budget.divider;
+  info.place_unit = kSlotUnit;
   info.comes_back = true;
   return info;
 }

@@ -54,6 +54,7 @@ DeviceInfo info_with(const Autd3SdkSetup& setup, const Autd3SdkBudget& budget) {
           .streams = true,
           .loads_segments = true,
           .decimation = budget.divider,
+          .place_unit = kSlotUnit,
           .comes_back = true};
 }
 

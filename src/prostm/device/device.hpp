@@ -22,10 +22,14 @@ struct DeviceInfo {
   bool loads_segments = false;       ///< plays segments that are loaded whole
   bool keeps_time = true;            ///< plays at its own times; false: when pull() is called
   int decimation = 1;                ///< samples of an emission per sample of the device
+  double place_unit = 0.0;           ///< unit that places are rounded to [m]; 0: none
   bool comes_back = false;           ///< plays on by itself after it was Vanished for a while
 
   /// Rate of the samples that an emission makes for it [Hz].
   double emission_rate() const { return sample_rate * decimation; }
+  /// Speed of a focal point that is at most kMaxFocusSpeed once places are rounded: rounding both
+  /// ends of a step lengthens it by at most the diagonal of a unit [m/s].
+  double max_focus_speed() const;
   /// Length of a block [s].
   double block_time() const { return block_samples / sample_rate; }
 };

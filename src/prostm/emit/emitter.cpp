@@ -91,9 +91,10 @@ EmitStats Emitter::stats() const {
 }
 
 std::unique_ptr<Emitter> make_emitter(Method method, const EmitSettings& settings,
-                                      double sample_rate) {
+                                      double sample_rate, double max_speed) {
+  // foci move while they are silent
   if (method == Method::Am) return std::make_unique<FocusEmitter>(settings, sample_rate);
-  return std::make_unique<PathEmitter>(settings, sample_rate);
+  return std::make_unique<PathEmitter>(settings, sample_rate, max_speed);
 }
 
 }  // namespace prostm

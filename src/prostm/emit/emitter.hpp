@@ -134,8 +134,9 @@ class Emitter : public SampleSource {
   std::unique_ptr<Exchange> exchange_;
 };
 
-/// Makes an emitter for the plans of a method. @throws as its constructor does.
+/// Makes an emitter for the plans of a method. @param max_speed of an audible focal point, above 0
+/// and at most kMaxFocusSpeed [m/s]. @throws as its constructor does.
 std::unique_ptr<Emitter> make_emitter(Method method, const EmitSettings& settings,
-                                      double sample_rate);
+                                      double sample_rate, double max_speed = kMaxFocusSpeed);
 
 }  // namespace prostm

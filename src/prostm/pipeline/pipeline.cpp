@@ -176,7 +176,8 @@ PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, do
       emission_rate_(device.emission_rate()),
       gate_(static_cast<int>(std::lround(settings.world_rate / settings.steps_per_plan())),
             max_cells),
-      emitter_(make_emitter(settings.method, emit_settings_, emission_rate_)),
+      emitter_(
+          make_emitter(settings.method, emit_settings_, emission_rate_, device.max_focus_speed())),
       samples_(make_sample_chain(*emitter_, device,
                                  {.power = emit_settings_.power_limit,
                                   .caps = settings.safety,

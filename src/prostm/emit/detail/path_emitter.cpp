@@ -39,7 +39,7 @@ struct Focus {
 }  // namespace
 
 struct PathEmitter::Impl {
-  Impl(Exchange& e, double sample_rate);
+  Impl(Exchange& e, double sample_rate, double max_speed);
 
   Exchange& exchange;
 
@@ -78,7 +78,7 @@ struct PathEmitter::Impl {
   void count(Focus& f, const Drive& d, std::int64_t sample);
 };
 
-PathEmitter::Impl::Impl(Exchange& e, double sample_rate)
+PathEmitter::Impl::Impl(Exchange& e, double sample_rate, double max_speed)
     : exchange(e),
       settings(e.settings),
       at_once(settings.switch_at == SwitchAt::Now),
@@ -87,7 +87,7 @@ PathEmitter::Impl::Impl(Exchange& e, double sample_rate)
       stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * sample_rate))),
       longest_lap(static_cast<std::int64_t>(kLongestLap * sample_rate)) {
   for (Focus& f : focus) {
-    f.motion.configure(sample_rate, kMaxFocusSpeed / sample_rate * kFloatMargin);
+    f.motion.configure(sample_rate, max_speed / sample_rate * kFloatMargin);
     f.last.p_D = f.motion.position().cast<float>();
   }
 }
@@ -297,9 +297,9 @@ void PathEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
   }
 }
 
-PathEmitter::PathEmitter(const EmitSettings& settings, double sample_rate)
+PathEmitter::PathEmitter(const EmitSettings& settings, double sample_rate, double max_speed)
     : Emitter(settings, sample_rate, Method::ProStm),
-      impl_(std::make_unique<Impl>(exchange(), sample_rate)) {}
+      impl_(std::make_unique<Impl>(exchange(), sample_rate, max_speed)) {}
 
 PathEmitter::~PathEmitter() = default;
 

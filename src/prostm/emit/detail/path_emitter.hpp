@@ -10,8 +10,9 @@ namespace prostm {
 /// Turns plans of paths into samples.
 ///
 /// Guarantees, for any sequence of plans: while its intensity is above 1 % a focal point moves at
-/// most 8 m/s (0.2 mm between samples at 40 kHz), its intensity changes by at most 1/40 per sample,
-/// intensities lie in [0, 1], Σ intensity² is within the limit, and every number is finite.
+/// most max_speed (8 m/s is 0.2 mm between samples at 40 kHz), its intensity changes by at most
+/// 1/40 per sample, intensities lie in [0, 1], Σ intensity² is within the limit, and every number
+/// is finite.
 ///
 /// A new plan's paths are matched to the focal points, (E5). Each focal point goes over at the end
 /// of its lap (at the next block with switch_at = "now", or when a lap takes over 1 s): by moving,
@@ -21,8 +22,9 @@ namespace prostm {
 /// rests where it is. docs/design.md, section 7.
 class PathEmitter final : public Emitter {
  public:
-  /// @param sample_rate of the device [Hz]. @throws as validate() does.
-  PathEmitter(const EmitSettings& settings, double sample_rate);
+  /// @param sample_rate of the device [Hz].  @param max_speed above 0, at most kMaxFocusSpeed
+  /// [m/s]. @throws as validate() does.
+  PathEmitter(const EmitSettings& settings, double sample_rate, double max_speed = kMaxFocusSpeed);
   ~PathEmitter() override;
 
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override;
