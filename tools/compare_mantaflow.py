@@ -4,8 +4,8 @@
 usage: tools/compare_mantaflow.py [--cells N] [--frames N] [--bench FILE]
 
 Mantaflow gets a box of N³ cells, open but for its floor, with one jet and an ellipsoid that bobs, one substep a frame
-and no adaptive domain; prostm gets the scripted hand, which costs more. Prints the time of a frame (medians), and
-the largest divergence left (|∇·u| Δt, per cell), for Mantaflow away from obstacle, jet and sides.
+and no adaptive domain; prostm gets the scripted hand. Prints the time of a frame (medians), and the largest
+divergence left (|∇·u| Δt, per cell), for Mantaflow away from obstacle, jet and sides.
 """
 
 import argparse
@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 WARM_UP = 10  # frames
 
-# In Blender. Its unit of time is a 0.1·25/fps-th of a frame (Mantaflow's), its velocities are in cells per unit.
+# In Blender. A frame lasts 0.1·25/fps of Mantaflow's units of time; velocities are in cells per unit.
 IN_BLENDER = """
 import bpy, json, math, sys, time
 import numpy as np
@@ -95,7 +95,7 @@ def mantaflow(cells, frames):
         script.write_text(IN_BLENDER)
         subprocess.run(["blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python", script,
                         "--", str(cells), str(frames), folder, out], check=True, stdout=subprocess.DEVNULL,
-                       env={**os.environ, "PATH": "/usr/bin:/bin"})  # where its own Python is
+                       stderr=subprocess.PIPE, env={**os.environ, "PATH": "/usr/bin:/bin"})  # where its own Python is
         result = json.loads(out.read_text())
     return 1e3 * median(result["times"][WARM_UP:]), median(result["divergence"])
 
@@ -104,7 +104,7 @@ def ours(bench, cells):
     """Returns the same of prostm, from its benchmark: by multigrid, then by mgpcg."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out.json"
-        subprocess.run([bench, "--json", out], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([bench, "--json", out], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         rows = {row["name"]: row["p50"] for row in json.loads(out.read_text())}
     return [(rows[f"step {cells}^3 with a hand, {solver}"], rows[f"largest divergence, {cells}^3{more}"])
             for solver, more in (("multigrid", ""), ("mgpcg", ", mgpcg"))]
@@ -112,7 +112,7 @@ def ours(bench, cells):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cells", type=int, default=64, help="along an edge of the box")
+    parser.add_argument("--cells", type=int, default=64, choices=(32, 64, 96, 128, 160), help="along an edge")
     parser.add_argument("--frames", type=int, default=60)
     parser.add_argument("--bench", type=Path, default=ROOT / "build/release/fluid_bench")
     given = parser.parse_args()
@@ -121,6 +121,8 @@ def main():
         by_solver = ours(given.bench, given.cells)
     except FileNotFoundError as error:
         sys.exit(f"{error.filename} is missing: install blender, and run ./run bench fluid once")
+    except subprocess.CalledProcessError as error:
+        sys.exit(f"{error.cmd[0]} failed with {error.returncode}: {error.stderr.decode().strip()[-500:]}")
     print(f"{given.cells}³ cells        Mantaflow   multigrid       mgpcg")
     print(f"a step [ms]      {time:10.1f}" + "".join(f"  {ms:10.2f}" for ms, _ in by_solver))
     print(f"largest |∇·u| Δt {divergence:10.1e}" + "".join(f"  {left:10.1e}" for _, left in by_solver))

@@ -44,9 +44,7 @@ class Observer final : public RunObserver {
       : recorder_(recorder), view_(view), picture_at_(picture_at), options_(options), out_(out) {}
 
   bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
-    if (rate_news_) {
-      if (const auto news = rate_news_->look(contact, plan)) progress_.say(out_, *news);
-    }
+    say_news_of_rates(contact, plan);
     if (recorder_ != nullptr) {
       const bool planned = plan.status == PlanStatus::Planned;
       const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
@@ -90,11 +88,7 @@ class Observer final : public RunObserver {
     mutes_.emplace(std::move(mute), options_.mode == RunMode::RealTime);
     if (const auto help = mutes_->help()) progress_.say(out_, *help);
   }
-  /// Says when rates are not held, in real time.
-  void follow(const PipelineSettings& settings) {
-    if (options_.mode == RunMode::RealTime) rate_news_.emplace(settings);
-  }
-  /// Says what becomes of a live tracker.
+  /// Says what becomes of rates, and of a live tracker.
   void follow(Pipeline& pipeline) { pipeline_ = &pipeline; }
   /// Sets the function to call when the run's seconds are over and it goes on.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
@@ -114,6 +108,12 @@ class Observer final : public RunObserver {
   void say_whether_muted() {
     if (!mutes_) return;
     while (const auto news = mutes_->look()) progress_.say(out_, *news);
+  }
+
+  void say_news_of_rates(const WorldFrame& contact, const PlanFrame& plan) {
+    if (pipeline_ == nullptr || options_.mode != RunMode::RealTime) return;
+    if (const auto news = rate_news_.look(contact, plan, pipeline_->settings()))
+      progress_.say(out_, *news);
   }
 
   void say_news_of_tracker() {
@@ -144,7 +144,7 @@ class Observer final : public RunObserver {
   StageTimer since_start_;
   double tracker_looked_ = 0.0;  // [s]
   TrackerNews tracker_news_;
-  std::optional<RateNews> rate_news_;
+  RateNews rate_news_;
   double away_ = std::numeric_limits<double>::infinity();
   WorldFrame contact_;
   PlanFrame plan_;
@@ -337,7 +337,6 @@ int run_command(const RunOptionsGiven& given) {
   Observer observer(recorder.get(), view.get(), picture_at, options, out);
   observer.follow(mute);
   observer.follow(pipeline);
-  observer.follow(settings);
   Ending ending{given, settings, pipeline, recorder.get(), observer, view.get(), out};
   observer.on_report([&ending](const RunSummary& summary) { ending.report(summary); });
   const RunSummary summary = run(pipeline, settings, options, observer);

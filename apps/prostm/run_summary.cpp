@@ -74,8 +74,8 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
              s.stopped ? ", cut short" : "");
   print_row(
       out, "smoke",
-      fmt::format("{} steps, {} skipped; the solver left {:.2g} of the divergence on average, and "
-                  "about {:.2g} % of the pressure beside hands",
+      fmt::format("{} steps, {} skipped; on average the solver left {:.2g} of the divergence, and "
+                  "an error of about {:.2g} % in the pressure beside hands",
                   s.world_steps, s.skipped_world_steps, s.mean_divergence,
                   100.0 * s.mean_pressure_error));
   print_row(out, "plans",

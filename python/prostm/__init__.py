@@ -31,13 +31,13 @@ from ._arguments import explain_wrong_types as _explain_wrong_types, wrong_type 
 _explain_wrong_types()
 
 from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, Emitter, FocalPath, FocalPoint,
-                      FieldShape, FocusEmitter, GateResult, InputError, LiftedFocus, LiftedPath, LiftedPlan, Metrics, PathEmitter, Plan,
-                      PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace, Recording,
-                      TakeOver, TargetField, TargetFrame, __version__, closed_length, controls, drive_intensity,
-                      even_share, field_from_json, field_shape, field_to_json, height_at, kMaxFieldCells, kMaxPatches,
-                      kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples, lift, max_pressure, plan_from_json,
-                      plan_to_json, quasi_static_field, read_field, read_plan, score_field, score_plan, write_field,
-                      write_plan)
+                      FieldShape, FocusEmitter, GateResult, InputError, LiftedFocus, LiftedPath, LiftedPlan, Metrics,
+                      PathEmitter, Plan, PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace,
+                      Recording, TakeOver, TargetField, TargetFrame, __version__, closed_length, controls,
+                      drive_intensity, even_share, field_from_json, field_shape, field_to_json, height_at,
+                      kMaxFieldCells, kMaxPatches, kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples, lift,
+                      max_pressure, plan_from_json, plan_to_json, quasi_static_field, read_field, read_plan,
+                      score_field, score_plan, write_field, write_plan)
 
 __all__ = [
     "plan", "Planner", "PlanSettings", "PlanResult", "PlanStatus", "PlanStats", "PlanTrace",

@@ -9,7 +9,7 @@ namespace {
 /// Returns the news of a run where each second makes so many of its steps.
 std::vector<std::string> told(const std::vector<int>& steps_of_each_second, double step_time = 7e-3,
                               double plan_time = 4e-3) {
-  RateNews news{PipelineSettings{}};
+  RateNews news;
   std::vector<std::string> all;
   WorldFrame contact;
   PlanFrame plan;
@@ -21,7 +21,7 @@ std::vector<std::string> told(const std::vector<int>& steps_of_each_second, doub
           static_cast<double>(second) + static_cast<double>(step) / steps_of_each_second[second];
       if (++contact.step % 2 != 0) continue;
       ++plan.id;
-      if (const auto sentence = news.look(contact, plan)) all.push_back(*sentence);
+      if (const auto sentence = news.look(contact, plan, {})) all.push_back(*sentence);
     }
   }
   return all;
@@ -50,6 +50,22 @@ TEST(RateNews, TellsThatTheyAreHeldAgain) {
   const auto all = told(seconds);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[1], "The rates are held again.");
+}
+
+// AM plans on every step, PRO-STM on every second
+TEST(RateNews, AnotherMethodHasOtherRates) {
+  RateNews news;
+  PipelineSettings settings;
+  WorldFrame contact;
+  PlanFrame plan;
+  for (int step = 1; step <= 2000; ++step) {
+    settings.method = step <= 1000 ? Method::Am : Method::ProStm;
+    contact.step = step;
+    contact.due = 0.02 * step;
+    if (step % settings.steps_per_plan() != 0) continue;
+    ++plan.id;
+    EXPECT_FALSE(news.look(contact, plan, settings)) << step;
+  }
 }
 
 }  // namespace

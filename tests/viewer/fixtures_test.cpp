@@ -96,7 +96,7 @@ std::vector<Fixture> fixtures() {
   one.frame.fields = {some_field(3, 5)};
   one.frame.path_count = 2;
   one.frame.paths = {some_path(0, 12), some_path(0, 8)};
-  one.frame.gate = {1,      0.875F,  "none",  "64 cm² are pressed, as they should be.", 4, 0.875F,
+  one.frame.gate = {true,   0.875F,  "none",  "64 cm² are pressed, as they should be.", 4, 0.875F,
                     0.625F, 0.0064F, 0.45e-3F};
   all.push_back(one);
 

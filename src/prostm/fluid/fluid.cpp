@@ -10,6 +10,7 @@
 #include "prostm/fluid/detail/extrapolation.hpp"
 #include "prostm/fluid/detail/fluid_state.hpp"
 #include "prostm/fluid/detail/forces.hpp"
+#include "prostm/fluid/detail/over_planes.hpp"
 #include "prostm/fluid/detail/settings.hpp"
 #include "prostm/fluid/detail/viscosity.hpp"
 
@@ -20,7 +21,6 @@ using fluid::Index;
 
 namespace {
 
-constexpr int kPlanesPerTask = 4;
 constexpr float kAbsurd = 1e6F;  // [m/s]; a state with a larger value is unusable
 
 /// Returns the bits of the largest |x| in [begin, end), without a floating-point comparison: NaN
@@ -81,8 +81,7 @@ void Fluid::State::reset() {
 
 template <class F>
 void Fluid::State::over_planes(F&& f) {
-  pool.run(padded.n / kPlanesPerTask,
-           [&](int task) { f(task * kPlanesPerTask, (task + 1) * kPlanesPerTask); });
+  fluid::over_planes(pool, padded.n, f);
 }
 
 void Fluid::State::prepare(double step_dt) {

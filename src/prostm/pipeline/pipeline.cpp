@@ -212,7 +212,7 @@ void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
     emitter_->submit();
   }
   out.lift_time = timer.lap();
-  // nobody waits for it
+  // the plan need not wait for it
   out.gate.reset();
   if (contact.stimulus) out.gate = gate_.judge(contact.hands, contact.target, *contact.stimulus);
 }

@@ -183,6 +183,8 @@ class Pipeline {
   const WorldFrame& contact() const { return contact_frame_; }
   const PlanFrame& plan() const { return plan_frame_; }
   double time() const { return time_; }  ///< run time [s]
+  /// As reconfigure() took them last. @pre on the thread that calls it.
+  const PipelineSettings& settings() const { return settings_; }
 
   /// Takes other settings between two steps, and rebuilds what they concern: hands stay, and so
   /// does the smoke where the box is the same. Where plans or their emission change the device

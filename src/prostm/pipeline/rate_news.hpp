@@ -12,23 +12,22 @@ namespace prostm {
 /// and that it holds them again.
 class RateNews {
  public:
-  explicit RateNews(const PipelineSettings& settings) : settings_(settings) {}
-
-  /// Looks at an update, of which some may be left out. @return a sentence, or nothing where there
-  /// is nothing new.
-  std::optional<std::string> look(const WorldFrame& contact, const PlanFrame& plan);
+  /// Looks at an update, of which some may be left out. @param settings of the run now.
+  /// @return a sentence, or nothing where there is nothing new.
+  std::optional<std::string> look(const WorldFrame& contact, const PlanFrame& plan,
+                                  const PipelineSettings& settings);
 
   static constexpr double kOver = 5.0;   ///< over which rates are taken [s]
   static constexpr double kHeld = 0.98;  ///< share of a rate that counts as kept
 
  private:
   struct Span {
-    double begin = 0.0;  // run time [s]
+    double begin = 0.0;      // run time [s]
+    int steps_per_plan = 0;  // with which it began
     std::int64_t steps = 0, plans = 0, updates = 0;
     double step_time = 0.0, plan_time = 0.0;  // sums over the updates [s]
   };
 
-  PipelineSettings settings_;
   std::optional<Span> span_;
   bool missed_ = false;
 };

@@ -11,7 +11,6 @@ class Smoke final : public World {
   Smoke(const PipelineSettings& settings, WorkerPool& pool)
       : scene_(scene_from_name(settings.scene)),
         settings_(settings.jets),
-        jet_speed_(settings.fluid.jet_speed),
         waits_for_hand_(settings_.place == JetPlace::Hand),
         fluid_(settings.fluid, scene_.smoke, pool),
         pressure_(settings.fluid_pressure, fluid_.grid()),
@@ -57,7 +56,8 @@ class Smoke final : public World {
   const Fluid* fluid() const override { return &fluid_; }
   std::optional<PlacedStimulus> stimulus() const override {
     if (scene_.stimulus.maxima == 0) return {};
-    return PlacedStimulus{scene_.stimulus.scaled(place_.size, jet_speed_), place_};
+    const double speed = fluid_.settings().jet_speed;
+    return PlacedStimulus{scene_.stimulus.scaled(place_.size, speed), place_};
   }
 
  private:
@@ -76,7 +76,6 @@ class Smoke final : public World {
 
   const Scene& scene_;
   JetSettings settings_;
-  double jet_speed_;
   bool waits_for_hand_;  // to blow under it
   ScenePlace place_;
   Fluid fluid_;

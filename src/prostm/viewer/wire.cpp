@@ -161,7 +161,7 @@ void write_text(const std::string& text, Writer& w) {
 
 void write_gate(const ViewGate& gate, Writer& w) {
   w.begin(kGate, 1);
-  w.put(gate.passed);
+  w.put(std::uint32_t{gate.passed ? 1U : 0U});
   w.put(gate.share);
   w.put(gate.maxima);
   for (const float x : {gate.balance, gate.saddle, gate.area, gate.force}) w.put(x);

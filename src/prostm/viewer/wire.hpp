@@ -123,10 +123,10 @@ struct ViewPath {
 
 /// A GateResult of the shown target.
 struct ViewGate {
-  std::uint32_t passed = 0;  ///< 0 or 1
-  float share = 0.0F;        ///< of the last second's frames that have no problem
-  std::string problem;       ///< of this frame, a name of GateProblem
-  std::string sentence;      ///< in UTF-8
+  bool passed = false;
+  float share = 0.0F;    ///< of the last second's frames that have no problem
+  std::string problem;   ///< of this frame, a name of GateProblem
+  std::string sentence;  ///< in UTF-8
   std::uint32_t maxima = 0;
   float balance = 0.0F, saddle = 0.0F;
   float area = 0.0F;   ///< [m²]

@@ -262,6 +262,17 @@ describe("controls", () => {
     await turn("scene", "four-plumes");
     await expect.poll(scale, kSoon).toBeCloseTo(thin, 3);
   });
+  it("turn the grid down where it is too fine for the machine", async () => {
+    await turn("grid", 160);
+    await page.locator("#turn-down").waitFor({ timeout: 30000 });
+    expect(await page.locator("#rates").textContent()).toMatch(/^Rates not held: smoke .* of 50 Hz/);
+    expect(await page.locator("#turn-down").textContent()).toMatch(/^Turn the smoke's grid down to \d+ cells$/);
+    await page.locator("#turn-down").click();
+    const grid = () => page.evaluate(() => window.prostm.state!.controls.find((c) => c.id === "grid")!.value as number);
+    await expect.poll(grid, kSoon).toBeLessThan(160);
+    await turn("grid", 32);
+    await expect.poll(() => page.locator("#missed").isHidden(), { timeout: 30000 }).toBe(true);
+  });
   it("change what the emitter blows: without it the pressure goes away", async () => {
     const pressure = () => page.evaluate(() => window.prostm.frame!.numbers[24]!);
     let before = 0;

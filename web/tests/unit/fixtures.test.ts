@@ -24,7 +24,7 @@ function inWords(frame: Frame): unknown {
       target: [...p.target], rendered: [...p.rendered], height: [...p.height], skin: [...p.skin],
     })),
     plan: frame.plan.map((p) => ({ kind: p.kind === "path" ? 0 : 1, patch: p.patch, length: p.length, speed: p.speed, period: p.period, points: rows(p.points, 6) })),
-    gate: frame.gate && { ...frame.gate, passed: frame.gate.passed ? 1 : 0 },
+    gate: frame.gate,
   };
 }
 

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <utility>
 
+#include "prostm/fluid/detail/over_planes.hpp"
+
 namespace prostm::fluid {
 namespace {
-
-constexpr int kPlanesPerTask = 4;
 
 /// Σ x y over plane k, in 16 lanes: the compiler may use vectors of any width, and the result stays
 /// the same.
@@ -37,21 +37,15 @@ ConjugateGradients::ConjugateGradients(PressureSolver& solver, WorkerPool& pool)
       image_(grid_),
       sums_(static_cast<std::size_t>(grid_.n)) {}
 
-template <class F>
-void ConjugateGradients::over_planes(F&& f) {
-  pool_.run(grid_.n / kPlanesPerTask,
-            [&](int task) { f(task * kPlanesPerTask, (task + 1) * kPlanesPerTask); });
-}
-
 double ConjugateGradients::dot(const Field& x, const Field& y) {
-  over_planes([&](int k0, int k1) {
+  over_planes(pool_, grid_.n, [&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) sums_[static_cast<std::size_t>(k)] = plane_dot(grid_, x, y, k);
   });
   return std::accumulate(sums_.begin(), sums_.end(), 0.0);
 }
 
 void ConjugateGradients::apply(const Field& x, Field& out) {
-  over_planes([&](int k0, int k1) {
+  over_planes(pool_, grid_.n, [&](int k0, int k1) {
     solver_.kernels().apply(solver_.fine(), x.data(), out.data(), k0, k1);
   });
 }
@@ -59,7 +53,7 @@ void ConjugateGradients::apply(const Field& x, Field& out) {
 /// to += factor x.
 void ConjugateGradients::add(double factor, const Field& x, Field& to) {
   const auto f = static_cast<float>(factor);
-  over_planes([&](int k0, int k1) {
+  over_planes(pool_, grid_.n, [&](int k0, int k1) {
     for (Index c = grid_.index(0, 0, k0); c < grid_.index(0, 0, k1); ++c) to[c] += f * x[c];
   });
 }
@@ -89,7 +83,7 @@ void ConjugateGradients::solve(int iterations) {
     // Polak and Ribière's quotient, where r_new − r_old = −step A d
     const double turn = -step * dot(correction, image_) / descent;
     descent = dot(residual, correction);
-    over_planes([&](int k0, int k1) {
+    over_planes(pool_, grid_.n, [&](int k0, int k1) {
       const auto beta = static_cast<float>(turn);
       for (Index c = grid_.index(0, 0, k0); c < grid_.index(0, 0, k1); ++c)
         direction_[c] = correction[c] + beta * direction_[c];

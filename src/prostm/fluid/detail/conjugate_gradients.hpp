@@ -20,8 +20,6 @@ class ConjugateGradients {
   void solve(int iterations);
 
  private:
-  template <class F>
-  void over_planes(F&& f);
   double dot(const Field& x, const Field& y);
   void apply(const Field& x, Field& out);
   void add(double factor, const Field& x, Field& to);

@@ -2,13 +2,14 @@
 
 #include <utility>
 
+#include "prostm/fluid/detail/over_planes.hpp"
+
 namespace prostm::fluid {
 namespace {
 
 // relaxation factors of two Jacobi sweeps whose product is the Chebyshev polynomial on [0.3, 1.95],
 // the upper part of the spectrum of D⁻¹A: 1/ω = 1.125 ± 0.825 cos(π/4)
 constexpr float kOmega[2] = {0.585411F, 1.846479F};
-constexpr int kPlanesPerTask = 4;
 constexpr int kSerialCells = 16;  // below this a region costs more than it saves
 
 /// Sets p to 0 where the fine level is closed, e.g. in cells that a hand covers now.
@@ -67,8 +68,7 @@ void PressureSolver::over_planes(int n, F&& f) {
     f(0, n);
     return;
   }
-  pool_.run((n + kPlanesPerTask - 1) / kPlanesPerTask,
-            [&](int task) { f(task * kPlanesPerTask, std::min(n, (task + 1) * kPlanesPerTask)); });
+  fluid::over_planes(pool_, n, f);
 }
 
 void PressureSolver::smooth_twice(Level& level) {

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kMostBehind = 3.0;     // of a step, up to which a delay is made up for
+constexpr double kMostBehind = 3.0;     // steps, up to which a delay is made up for
 constexpr double kLatestPrepare = 0.8;  // of a step, after which the next one is prepared anyway
 constexpr std::chrono::microseconds kPoll{200};
 

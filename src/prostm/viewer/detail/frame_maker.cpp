@@ -115,7 +115,7 @@ void fill_gate(const std::optional<GateResult>& gate, std::optional<ViewGate>& o
   out.reset();
   if (!gate) return;
   out.emplace();
-  out->passed = gate->pass ? 1 : 0;
+  out->passed = gate->pass;
   out->share = static_cast<float>(gate->share);
   out->problem = name_of(gate->finding.problem);
   out->sentence = sentence(*gate);

@@ -53,7 +53,7 @@ std::string Hub::numbers() {
   json["gate"] = nullptr;
   if (frame.gate) {
     const ViewGate& gate = *frame.gate;
-    json["gate"] = {{"passed", gate.passed != 0},    {"share", number(gate.share)},
+    json["gate"] = {{"passed", gate.passed},         {"share", number(gate.share)},
                     {"problem", gate.problem},       {"sentence", gate.sentence},
                     {"maxima", gate.maxima},         {"balance", number(gate.balance)},
                     {"saddle", number(gate.saddle)}, {"area_m2", number(gate.area)},
