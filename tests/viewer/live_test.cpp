@@ -191,7 +191,7 @@ TEST(Live, TellsHowWellWhatIsFeltRendersTheTarget) {
   LiveRun run;
   Page page(run.port());  // it is computed while a page watches
   EXPECT_TRUE(eventually([&] {
-    page.next_text();
+    page.next_frame();
     const Json skill = run.numbers().at("numbers").at("felt_skill");
     return skill.is_number() && skill <= 1.0;
   }));
@@ -201,12 +201,11 @@ TEST(Live, TellsWhatTheGateSays) {
   LiveRun run;
   Page page(run.port());
   EXPECT_TRUE(eventually([&] {
-    page.next_text();
     const Json gate = run.numbers().at("gate");
     return !gate.is_null() && !gate.at("sentence").get<std::string>().empty() &&
            gate.at("force_n") > 0.0;
   }));
-  EXPECT_TRUE(test::has_section(page.next_frame(), 7));
+  EXPECT_TRUE(eventually([&] { return test::has_section(page.next_frame(), 7); }));
   // nothing is asked of still air
   set(page, "scene", "still-air");
   EXPECT_TRUE(eventually([&] { return run.numbers().at("gate").is_null(); }));

@@ -6,6 +6,7 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
+#include <chrono>
 
 namespace prostm::test {
 
@@ -69,11 +70,14 @@ void Page::send_raw(const std::string& bytes) {
 }
 
 std::string Page::next(bool text) {
-  for (;;) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  while (std::chrono::steady_clock::now() < end) {
     beast::flat_buffer buffer;
     connection_->socket.read(buffer);
     if (connection_->socket.got_text() == text) return beast::buffers_to_string(buffer.data());
   }
+  throw std::runtime_error(text ? "no text came within two minutes"
+                                : "no frame came within two minutes");
 }
 
 Json Page::next_text(const std::string& type) {
