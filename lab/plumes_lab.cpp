@@ -1,15 +1,19 @@
 /// Measures what the scenes press on held hands, beside the numbers of the paper's Fig. 3.
 
 #include "plumes/plumes.hpp"
+#include "plumes/refinement.hpp"
 #include "program.hpp"
 
 int main(int argc, char** argv) {
   using namespace prostm;
   CLI::App app("what the scenes press on held hands");
-  std::string folder, only;
+  std::string folder, only, curves;
   std::vector<std::string> scenes = {"four-plumes", "one-plume", "two-plumes", "three-plumes"};
   std::vector<int> cells = {64};
   std::vector<double> steps = {20};
+  double width = 1e3 * FluidSettings().width, theta = FluidSettings().theta;
+  int substeps = FluidSettings().substeps;
+  std::string follow;
   int frames = 250;
   double trim = JetSettings().trim_rate;
   app.add_option("--hands", folder, "folder with recorded hands");
@@ -17,12 +21,22 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", scenes, "scenes")->capture_default_str();
   app.add_option("--cells", cells, "cells along each edge")->capture_default_str();
   app.add_option("--steps", steps, "steps [ms]")->capture_default_str();
+  app.add_option("--width", width, "edge of the box [mm]")->capture_default_str();
+  app.add_option("--theta", theta, "weight of the pressure at the end of a path")
+      ->capture_default_str();
+  app.add_option("--substeps", substeps, "steps of the fluid in a step")->capture_default_str();
+  app.add_option("--follow", follow, "what the box follows: palm or index");
   app.add_option("--trim", trim, "rate of the jets' trim [1/s]")->capture_default_str();
   app.add_option("--frames", frames, "frames of each case")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
+  app.add_option("--curves", curves, "draw only the curves of refinement, into this picture");
   return bench::run(app, argc, argv, [&] {
     std::vector<bench::Row> rows;
+    if (!curves.empty()) {
+      bench::draw_refinement(curves);
+      return rows;
+    }
     for (const std::string& scene : scenes) {
       for (const bench::HeldCase& held : bench::held_cases(folder)) {
         if (held.name.find(only) == std::string::npos) continue;
@@ -31,6 +45,10 @@ int main(int argc, char** argv) {
             PipelineSettings settings;
             settings.scene = scene;
             settings.fluid.cells = n;
+            settings.fluid.width = 1e-3 * width;
+            settings.fluid.theta = theta;
+            settings.fluid.substeps = substeps;
+            if (!follow.empty()) settings.box.follow = from_name<BoxFollows>(follow, "follow");
             settings.jets.trim_rate = trim;
             const auto measured = bench::measure_plumes(held, settings, 1e-3 * ms, frames);
             const std::string name = fmt::format("{}, {}, {}³, {} ms", scene, held.name, n, ms);

@@ -63,7 +63,8 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
                   std::string& hand, std::optional<double>& hand_size) {
   add_common(command, common);
   add_name(command, "--scene", scene,
-           "one-plume (default), two-plumes, three-plumes, four-plumes, or still-air");
+           "one-plume (default), two-plumes, three-plumes, four-plumes, ring, pulsing, wind, or "
+           "still-air");
   add_input_or_name(
       command, common.files, "--hand", hand, names_recording,
       "a recording (.hands.jsonl, or Leap JSON), scripted, study, leap://HOST:PORT, openxr, or "

@@ -156,9 +156,10 @@ class Observer final : public RunObserver {
 };
 
 /// @pre the observer has an instant.
-void draw_instant(const Observer& observer, const PipelineSettings& settings, const GridShape& grid,
+void draw_instant(const Observer& observer, const PipelineSettings& settings,
                   const std::string& path) {
   const WorldFrame& contact = observer.contact();
+  const GridShape& grid = contact.side.grid;
   SceneFigure figure;
   figure.nx = grid.nx;
   figure.nz = grid.nz;
@@ -287,7 +288,7 @@ struct Ending {
     const std::string& path = given.common.figure;
     if (path.empty()) return;
     if (observer.has_instant()) {
-      draw_instant(observer, settings, pipeline.world_stage().world().grid(), path);
+      draw_instant(observer, settings, path);
       written.push_back(path);
       return;
     }

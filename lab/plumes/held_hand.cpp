@@ -160,4 +160,27 @@ std::unique_ptr<HandSource> make_still_hand(HandSource& source, const Hold& hold
   return std::make_unique<HeldHand>(hand, std::vector<Vec3>());
 }
 
+std::unique_ptr<HandSource> make_finger(double x, double y, double height) {
+  HandFrame frame;
+  make_study_hand({})->sample(0.0, frame);
+  to_device(default_tracker_pose(), frame);
+  Hand hand = frame.hands.front();
+  constexpr int kEnds[][2] = {{kThumbMetacarpal, kThumbTip},
+                              {kMiddleProximal, kMiddleTip},
+                              {kRingProximal, kRingTip},
+                              {kLittleProximal, kLittleTip}};
+  for (const auto& [first, last] : kEnds) {
+    for (int j = first + 1; j <= last; ++j) {
+      const auto joint = static_cast<std::size_t>(j), end = static_cast<std::size_t>(first);
+      hand.position[joint] = hand.position[end];
+      hand.radius[joint] = hand.radius[end];
+    }
+  }
+  const Vec3 pad = 0.5 * (hand.position[kIndexDistal] + hand.position[kIndexTip]);
+  const Vec3 to = Vec3(x, y, height) - pad;
+  for (Vec3& p : hand.position) p += to;
+  to_tracker(hand);
+  return std::make_unique<HeldHand>(hand, std::vector<Vec3>());
+}
+
 }  // namespace prostm::bench

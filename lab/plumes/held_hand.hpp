@@ -25,4 +25,9 @@ std::unique_ptr<HandSource> make_held_hand(const std::string& recording, const H
 /// A hand of any source as it is at time 0, moved, tilted and held there.
 std::unique_ptr<HandSource> make_still_hand(HandSource& source, const Hold& hold);
 
+/// A hand of which only the index finger is stretched out, level, with its pad over (x, y) and its
+/// axis at `height`. The other fingers end at their knuckles and the thumb at its root, so that the
+/// finger alone is in the flow.
+std::unique_ptr<HandSource> make_finger(double x, double y, double height);
+
 }  // namespace prostm::bench

@@ -22,6 +22,21 @@ HeldCase held_study(const std::string& name, const Hold& hold) {
           JetPlace::Array};
 }
 
+/// [N]
+double force_around(const Vec2& axis, const TargetFrame& target) {
+  constexpr double kAround = 0.030;  // [m]
+  double force = 0.0;
+  for (const TargetField& patch : target.patches) {
+    for (std::size_t cell = 0; cell < patch.size(); ++cell) {
+      const Vec2 x = patch.position(cell);
+      const Vec3 p_D = patch.X_DP * Vec3(x.x(), x.y(), patch.height[cell]);
+      if (patch.skin[cell] == 0 || (p_D.head<2>() - axis).norm() > kAround) continue;
+      force += patch.cell * patch.cell * patch.pressure[cell];
+    }
+  }
+  return force;
+}
+
 Summary over_frames(const std::vector<FieldShape>& frames, const Quantity<FieldShape>& quantity) {
   Distribution out;
   for (const FieldShape& frame : frames) out.add(quantity.scale * value_of(quantity, frame));
@@ -49,6 +64,12 @@ std::vector<HeldCase> held_cases(const std::string& folder) {
                      return make_scripted_hand(still, s.track);
                    },
                    JetPlace::Array});
+  cases.push_back({"finger over a jet",
+                   [](const PipelineSettings& s) {
+                     const Vec2 jet = scene_from_name(s.scene).smoke.jets.front().centre;
+                     return make_finger(jet.x(), jet.y(), 0.2);
+                   },
+                   JetPlace::Array, true});
   if (folder.empty()) return cases;
   for (const char* name :
        {"flat-closed", "HandSplay-110fps", "rollAndPitchWithEntry", "flapping"}) {
@@ -76,6 +97,10 @@ Measured measure_plumes(const HeldCase& held, const PipelineSettings& base, doub
     if (step <= settle) continue;
     out.size = frame.stimulus->place.size;
     out.frames.push_back(result.shape);
+    if (held.has_pad) {
+      const Vec2 jet = scene_from_name(settings.scene).smoke.jets.front().centre;
+      out.pad.add(1e3 * force_around(jet, frame.target));
+    }
     out.pass += result.pass ? 1.0 / frames : 0.0;
     out.says = sentence(result);
   }
@@ -94,6 +119,8 @@ void add_rows(const std::string& name, const Measured& m, int maxima, std::vecto
   });
   add_share("frames with deep saddles",
             [](const FieldShape& s) { return s.saddle <= GateBounds::kSaddle; });
+  if (m.pad.count() > 0)
+    rows.push_back({name + ", force on the pad", "mN", m.pad.summary(), "", 0.0});
   for (const Quantity<FieldShape>& q : quantities<FieldShape>())
     rows.push_back({name + ", " + q.name, q.unit, over_frames(m.frames, q), "", 0.0});
 }

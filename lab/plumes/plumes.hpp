@@ -19,6 +19,7 @@ struct HeldCase {
   std::string name;
   std::function<std::unique_ptr<HandSource>(const PipelineSettings&)> make;
   JetPlace place = JetPlace::Hand;
+  bool has_pad = false;  ///< a finger's pad is over the scene's first jet
 };
 
 /// The study hand in sizes, left, aside, high and low; the scripted hand, open; and what `folder`
@@ -27,6 +28,7 @@ std::vector<HeldCase> held_cases(const std::string& folder);
 
 struct Measured {
   std::vector<FieldShape> frames;
+  Distribution pad;   ///< force on the skin within 30 mm of the first jet's axis [mN]
   double size = 1.0;  ///< of the scene's place
   double pass = 0.0;  ///< share of frames that the gate passes
   std::string says;   ///< the gate, of the last frame

@@ -16,8 +16,8 @@ def listed(prostm, *arguments):
 def test_every_setting_is_explained(prostm):
     rows = listed(prostm)
     groups = list(dict.fromkeys(row["group"] for row in rows))
-    assert groups == ["pipeline", "track", "scripted_hand", "study_hand", "fluid", "jets", "contact", "plan", "am", "emit",
-                      "safety", "simulated_array", "autd3", "stream"]
+    assert groups == ["pipeline", "track", "scripted_hand", "study_hand", "fluid", "box", "jets", "contact", "plan", "am",
+                      "emit", "safety", "simulated_array", "autd3", "stream"]
     names = [(row["group"], row["name"]) for row in rows]
     assert len(names) == len(set(names)) > 80
     for row in rows:

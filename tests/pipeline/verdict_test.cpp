@@ -209,6 +209,16 @@ TEST(Verdict, WhatIsUnusualIsToldWithItsRemedy) {
   }
 }
 
+// a small box that follows a finger cannot hold the whole hand
+TEST(Verdict, AHandMayReachOutOfABoxThatFollowsIt) {
+  RunSummary s = good();
+  s.contact_stats.joints_outside = 19'500;
+  PipelineSettings settings;
+  settings.box.follow = BoxFollows::Index;
+  EXPECT_THAT(verdict_of(s, settings, {}).sentences,
+              ElementsAre(StartsWith("The rates were held: "), "Nothing was unusual."));
+}
+
 TEST(Verdict, ARunWithoutContactSaysWhy) {
   const auto nothing_felt = [](auto change) {
     return said([&](RunSummary& s) {

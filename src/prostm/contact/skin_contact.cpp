@@ -64,6 +64,7 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
       has_weights_(settings.touch_palm != settings.touch_finger ||
                    settings.touch_finger != settings.touch_tip),
       grid_(grid),
+      anchor_(grid.p_DF),
       max_side_(2 * std::max({grid.nx, grid.ny, grid.nz})),
       rays_(grid) {
   require_bounds(settings);
@@ -78,6 +79,7 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
 ContactStats SkinContact::extract(const PressureSource& source, const HandRaster& raster,
                                   const HandFrame& hands, TargetFrame& out) noexcept {
   ContactStats stats;
+  grid_ = raster.grid;
   shapes_.clear();
   for (const Hand& hand : hands.hands) {
     shapes_.emplace_back(hand);
@@ -155,10 +157,10 @@ bool SkinContact::place_patch(std::span<const SeenSkin> visible, const Hand& han
                               TargetField& patch) const {
   const auto [mean, normal] = fit_plane(visible, hand);
 
-  // (C2) x axis: D's x projected; origin: the foot of F's origin
+  // (C2) x axis: D's x projected; origin: the foot of the anchor
   const Vec3 x = (Vec3::UnitX() - normal.x() * normal).normalized();
   patch.X_DP.linear() << x, normal.cross(x), normal;
-  patch.X_DP.translation() = grid_.p_DF + normal * normal.dot(mean - grid_.p_DF);
+  patch.X_DP.translation() = anchor_ + normal * normal.dot(mean - anchor_);
   patch.X_DP.makeAffine();
 
   // bounds of the visible skin, on multiples of the cell, with a margin that the slant of the rays

@@ -63,7 +63,8 @@ class SkinContact {
     return static_cast<std::size_t>(max_side_) * static_cast<std::size_t>(max_side_);
   }
 
-  /// @param raster the hands of `hands` on the grid.  @param hands in frame D; `out` takes over
+  /// @param raster the hands of `hands` on the constructor's grid, whose corner may have moved by
+  /// whole cells.  @param hands in frame D; `out` takes over
   /// their time.
   ContactStats extract(const PressureSource& source, const HandRaster& raster,
                        const HandFrame& hands, TargetFrame& out) noexcept;
@@ -92,6 +93,7 @@ class SkinContact {
   ContactSettings settings_;
   bool has_weights_;  // whether patches get weights
   GridShape grid_;
+  Vec3 anchor_;  // the corner of the constructor's grid, which stays
   int max_side_;
   boost::container::static_vector<HandShape, 2> shapes_;
   SkinRays rays_;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 
 namespace prostm {
@@ -54,5 +55,8 @@ struct GridShape {
   Vec3 node(int i, int j, int k) const { return p_DF + cell * Vec3(i, j, k); }
   bool operator==(const GridShape&) const = default;
 };
+
+/// Whole cells along x, y and z.
+using CellShift = std::array<int, 3>;
 
 }  // namespace prostm

@@ -47,7 +47,14 @@ inline constexpr std::array<std::string_view, 3> kNames<PressureMethod> = {"mult
 
 struct FluidSettings {
   int cells = 64;       ///< cells along each edge of the box; a multiple of 16, 32..160
-  double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred
+  double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred, until
+                        ///< move_box()
+  /// a step is so many of the fluid, each with its pressure solve; all but the last meet the hands
+  /// of the step before. Air passes a finger in less than a step of 20 ms.
+  int substeps = 1;
+  /// weight of the pressure at the end of a particle's path, (F17); the rest acts at its start.
+  /// 1: implicit. 0.6 nearly centred, which small things such as fingers need at steps of 20 ms.
+  double theta = 1.0;
   PressureMethod solver = PressureMethod::Multigrid;
   int cycles = 2;            ///< V-cycles a step
   int cg_iterations = 3;     ///< iterations a step of Mgpcg, a V-cycle each
@@ -74,7 +81,7 @@ struct FluidStats {
   /// estimated rms error of the pressure beside hands, from a solve that is not finished, over the
   /// rms pressure there (F16); 0 without hands
   double pressure_error = 0;
-  double max_speed = 0;  ///< [cells per step]
+  double max_speed = 0;  ///< [cells per sub-step]
   int solid_cells = 0;
   /// a non-finite (or absurd, above 10⁶ m/s) value came up: the state was set to rest
   bool reset = false;
@@ -95,6 +102,12 @@ class Fluid {
   /// Blows another way from the next step on. Allocates nothing unless there are more jets than
   /// ever before. @pre between steps; within the bounds that the constructor holds.
   void set_inflow(const SmokeInflow& inflow);
+
+  /// Moves the box by whole cells, and carries the flow over: what is new takes the values of the
+  /// nearest cell that there was. A box that moves by half of its edge or more begins anew at rest.
+  /// pressure(), fluid_cells() and smoke() are of the old place until meet(). Allocates nothing.
+  /// @pre before meet(), where the hands of the step before are taken away.
+  void move_box(const CellShift& by) noexcept;
 
   /// Advances by dt [s] with the hands of `raster` (made for grid()): section 3 of docs/design.md.
   /// Allocates nothing, throws nothing. A dt that is not a positive number, or a raster that is not

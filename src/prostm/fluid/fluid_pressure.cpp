@@ -30,6 +30,30 @@ FluidPressure::FluidPressure(const FluidPressureSettings& settings, const GridSh
   if (settings.time_constant == 0.0) return;
   smoothed_.assign(grid.cell_count(), 0.0F);
   was_fluid_.assign(grid.cell_count(), 0);
+  next_smoothed_ = smoothed_;
+  next_was_fluid_ = was_fluid_;
+}
+
+void FluidPressure::move_to(const Vec3& p_DF) {
+  const Vec3 cells = (p_DF - grid_.p_DF) / grid_.cell;
+  grid_.p_DF = p_DF;
+  if (smoothed_.empty() || cells.isZero()) return;
+  int by[3];
+  for (int a = 0; a < 3; ++a) by[a] = static_cast<int>(std::lround(cells[a]));
+  std::size_t c = 0;
+  for (int k = by[2]; k < by[2] + grid_.nz; ++k) {
+    for (int j = by[1]; j < by[1] + grid_.ny; ++j) {
+      for (int i = by[0]; i < by[0] + grid_.nx; ++i, ++c) {
+        const bool known =
+            i >= 0 && j >= 0 && k >= 0 && i < grid_.nx && j < grid_.ny && k < grid_.nz;
+        const std::size_t from = known ? grid_.cell_index(i, j, k) : 0;
+        next_smoothed_[c] = smoothed_[from];
+        next_was_fluid_[c] = known ? was_fluid_[from] : std::uint8_t{0};
+      }
+    }
+  }
+  smoothed_.swap(next_smoothed_);
+  was_fluid_.swap(next_was_fluid_);
 }
 
 void FluidPressure::take(std::span<const float> pressure, std::span<const std::uint8_t> fluid_cells,

@@ -30,6 +30,9 @@ class FluidPressure final : public PressureSource {
   /// @throws std::invalid_argument with a sentence that names the setting, its value and its bound.
   FluidPressure(const FluidPressureSettings& settings, const GridShape& grid);
 
+  /// Moves the grid to another corner [m], by whole cells. Cells that are new have no history.
+  void move_to(const Vec3& p_DF);
+
   /// Takes the present state of the air from Fluid::pressure() and Fluid::fluid_cells(); both are
   /// referred to until the next call. @pre cell_count() values each. @param dt time since the last
   /// call, for the smoothing [s].
@@ -46,8 +49,10 @@ class FluidPressure final : public PressureSource {
   GridShape grid_;
   std::span<const float> pressure_;      // one value a cell, the fluid's or smoothed over time
   std::span<const std::uint8_t> fluid_;  // cells whose pressure is known
-  std::vector<float> smoothed_;          // empty without smoothing, as is was_fluid_
-  std::vector<std::uint8_t> was_fluid_;  // cells that were fluid at the last take()
+  // empty without smoothing, all four
+  std::vector<float> smoothed_, next_smoothed_;  // the latter is scratch of move_to()
+  std::vector<std::uint8_t> was_fluid_,
+      next_was_fluid_;  // cells that were fluid at the last take()
 };
 
 }  // namespace prostm

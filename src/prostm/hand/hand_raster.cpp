@@ -207,9 +207,15 @@ HandRasteriser::HandRasteriser(const GridShape& grid, double band) : band_(band)
   for (std::vector<float>& component : raster_.velocity) component.assign(grid.cell_count(), 0.0F);
   raster_.swept.assign(grid.cell_count(), 0);
   solid_.assign(grid.cell_count(), 0);
-  middle_ = grid.p_DF + 0.5 * grid.cell * Vec3(grid.nx, grid.ny, grid.nz);
+  move_to(grid.p_DF);
   sub_poses_.resize(2 * kMaxSubPoses);
   node_ranges_.reserve(2);
+}
+
+void HandRasteriser::move_to(const Vec3& p_DF) noexcept {
+  GridShape& grid = raster_.grid;
+  grid.p_DF = p_DF;
+  middle_ = p_DF + 0.5 * grid.cell * Vec3(grid.nx, grid.ny, grid.nz);
 }
 
 void HandRasteriser::rasterise(const HandFrame& frame, WorkerPool& pool) noexcept {

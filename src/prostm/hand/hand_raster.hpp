@@ -45,6 +45,9 @@ class HandRasteriser {
   /// for an empty grid.
   HandRasteriser(const GridShape& grid, double band = 3.0);
 
+  /// Moves the grid to another corner [m]; hands are on it from the next rasterise() on.
+  void move_to(const Vec3& p_DF) noexcept;
+
   /// Fills `raster()` with the hands of `frame` (frame D). The motion since the previous call is
   /// sub-stepped so that no joint moves more than one cell between sub-poses (at most 16), and
   /// cells whose centre only sub-poses touch are marked `swept` with the hand's velocity there, so

@@ -121,6 +121,7 @@ void WorldStage::meet(std::int64_t step, double due, double dt, WorldFrame& out)
   filter_.apply(dt, out.hands);
   out.track_time = timer.lap();
 
+  rasteriser_.move_to(world_->grid().p_DF);
   rasteriser_.rasterise(out.hands, pool_);
   out.hand_time = timer.lap();
 
@@ -149,7 +150,7 @@ void WorldStage::settle() {
 }
 
 void WorldStage::view_from_side(SideView& out) const {
-  const GridShape& g = world_->grid();
+  const GridShape& g = out.grid = world_->grid();
   const std::size_t size = static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.nz);
   out.smoke.assign(size, 0.0F);
   out.hand.assign(size, 0);

@@ -25,6 +25,7 @@ namespace prostm {
 
 /// The box seen along y, for pictures: x fastest, then z.
 struct SideView {
+  GridShape grid;                  ///< where the box was
   std::vector<float> smoke;        ///< nx·nz, the densest along y, 0..1
   std::vector<std::uint8_t> hand;  ///< nx·nz, 1 where there is a hand
 };

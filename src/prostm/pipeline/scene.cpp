@@ -27,6 +27,28 @@ SmokeInflow wide_plume() {
   return {{SmokeJet{Vec2(0.0, 10.0_mm), 105_mm, 0.283}}, 0.04, 0.8e-4};
 }
 
+/// Six jets, between which air escapes from the middle; a closed ring of air would press there too.
+SmokeInflow ring_of_plumes() {
+  constexpr int kJets = 6;
+  SmokeInflow inflow{{}, 0.06, 0.5e-4, 0.10, 0.1};
+  for (int q = 0; q < kJets; ++q) {
+    const double angle = 2.0 * kPi * q / kJets;
+    inflow.jets.push_back(
+        {Vec2(35.0_mm * std::cos(angle), 8.0_mm + 35.0_mm * std::sin(angle)), 12_mm, 0.8});
+  }
+  return inflow;
+}
+
+/// Puffs through a tube, so that they reach the hand as they left the floor.
+SmokeInflow pulsing_plume() {
+  return {{SmokeJet{Vec2(0.0, 15.0_mm), 30_mm, 0.45}}, 0.06, 0.95e-4, 0.10, 0.1};
+}
+
+/// Smoke through the whole floor.
+SmokeInflow wind() {
+  return {{SmokeJet{Vec2::Zero(), 1.0, 0.285}}, 0.0, 0.8e-4};
+}
+
 /// Tuned on a flat closed hand whose skin is 0.2 m above the array, so that all press with the same
 /// force (docs/design.md, section 3.6).
 std::vector<Scene> make_scenes() {
@@ -43,6 +65,9 @@ std::vector<Scene> make_scenes() {
           {"two-plumes", "Two thin plumes", thin_plumes(two, 0.64), 0.16, {2, 0.0, kForce}},
           {"three-plumes", "Three thin plumes", thin_plumes(three, 0.60), 0.12, {3, 0.0, kForce}},
           {"four-plumes", "Four thin plumes", thin_plumes(four, 0.60), 0.11, {4, 64e-4, kForce}},
+          {"ring", "A ring of six plumes", ring_of_plumes(), 0.16, {}},
+          {"pulsing", "A pulsing plume", pulsing_plume(), 0.36, {}, {1.0, 0.9}},
+          {"wind", "Gusts of wind", wind(), 0.10, {}, {0.4, 0.4}},
           // ½ρv² of a palm at 0.65 m/s
           {"still-air", "Still air", {}, 0.25, {}}};
 }

@@ -9,6 +9,13 @@
 
 namespace prostm {
 
+/// How jets swell and fall: their speed is multiplied by 1 + depth sin(2π rate t), t from the
+/// start.
+struct ScenePulse {
+  double rate = 0.0;   ///< [Hz]
+  double depth = 0.0;  ///< 0 to 1; 0: steady
+};
+
 struct Scene {
   std::string_view name;   ///< in files and on the command line
   std::string_view label;  ///< for people
@@ -17,6 +24,7 @@ struct Scene {
   SmokeInflow smoke;
   double full_scale_pressure = 0.0;  ///< target pressure that maps to full output [Pa]
   Stimulus stimulus;
+  ScenePulse pulse = {};
 };
 
 /// In the order in which to show them.

@@ -108,6 +108,7 @@ std::vector<SettingsGroup> groups_of(Settings& s) {
           group_of("scripted_hand", s.scripted_hand),
           group_of("study_hand", s.study_hand),
           group_of("fluid", s.fluid),
+          group_of("box", s.box),
           group_of("jets", s.jets),
           group_of("contact", s.fluid_pressure, s.contact),
           group_of("plan", s.plan),

@@ -13,6 +13,7 @@
 #include "prostm/emit/emitter.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/pipeline/box_follow.hpp"
 #include "prostm/pipeline/jet_trim.hpp"
 #include "prostm/plan/method.hpp"
 #include "prostm/plan/planner.hpp"
@@ -43,6 +44,7 @@ struct PipelineSettings {
   ScriptedHandSettings scripted_hand;
   StudyHandSettings study_hand;
   FluidSettings fluid;
+  BoxSettings box;
   JetSettings jets;
   FluidPressureSettings fluid_pressure;  ///< in files with `contact`
   ContactSettings contact;

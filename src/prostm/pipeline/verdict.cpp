@@ -143,7 +143,8 @@ void judge_tracker(const TrackerStatus& tracker, std::vector<std::string>& out) 
   }
 }
 
-void judge_contact(const ContactStats& contact, double seconds, bool felt,
+/// @param whole the box stays where it is, so that a whole hand should be in it.
+void judge_contact(const ContactStats& contact, double seconds, bool felt, bool whole,
                    std::vector<std::string>& out) {
   const double outside = share(contact.joints_outside, contact.joints);
   constexpr const char* kRemedy = "hold it above the array, or check --tracker";
@@ -154,7 +155,7 @@ void judge_contact(const ContactStats& contact, double seconds, bool felt,
         "The hand never faced the array in the smoke's box, so nothing was felt: {}.", kRemedy));
   } else if (!felt) {
     out.emplace_back("No pressure reached the hand, so nothing was felt.");
-  } else if (seconds > kComesIn && outside > kMostOutside) {
+  } else if (whole && seconds > kComesIn && outside > kMostOutside) {
     out.push_back(
         fmt::format("{:.0f} % of the hand's joints were outside the smoke's box, where nothing is "
                     "felt: {}.",
@@ -274,8 +275,10 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   judge_faults(s, unusual);
   judge_safety(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
-  if (!tracker || tracker->frames > 0)
-    judge_contact(s.contact_stats, s.seconds, s.plans > 0, unusual);
+  if (!tracker || tracker->frames > 0) {
+    judge_contact(s.contact_stats, s.seconds, s.plans > 0,
+                  settings.box.follow == BoxFollows::Nothing, unusual);
+  }
   judge_output(s, unusual);
   if (unusual.empty() && verdict.held.value_or(true))
     verdict.sentences.emplace_back("Nothing was unusual.");

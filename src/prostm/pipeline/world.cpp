@@ -1,6 +1,10 @@
 #include "prostm/pipeline/world.hpp"
 
+#include <cmath>
+
+#include "prostm/core/units.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
+#include "prostm/pipeline/box_follow.hpp"
 #include "prostm/pipeline/scene.hpp"
 
 namespace prostm {
@@ -13,6 +17,7 @@ class Smoke final : public World {
         settings_(settings.jets),
         waits_for_hand_(settings_.place == JetPlace::Hand),
         fluid_(settings.fluid, scene_.smoke, pool),
+        follower_(settings.box, fluid_.grid()),
         pressure_(settings.fluid_pressure, fluid_.grid()),
         placed_(scene_.smoke),
         blown_(scene_.smoke),
@@ -21,8 +26,10 @@ class Smoke final : public World {
   const GridShape& grid() const override { return fluid_.grid(); }
   double full_scale_pressure() const override { return scene_.full_scale_pressure; }
   void prepare(double dt) noexcept override {
-    if (changed_) blow();
+    time_ += dt;
+    if (changed_ || scene_.pulse.depth > 0.0) blow();
     fluid_.prepare(dt);
+    fluid_.move_box(follower_.shift(hands_, fluid_.grid()));
   }
   void meet(const HandRaster& raster) noexcept override { fluid_.meet(raster); }
   WorldStats settle() noexcept override {
@@ -30,10 +37,12 @@ class Smoke final : public World {
     return {stats.divergence_rms, stats.pressure_error, stats.reset};
   }
   const PressureSource& pressure(double dt) noexcept override {
+    pressure_.move_to(fluid_.grid().p_DF);
     pressure_.take(fluid_.pressure(), fluid_.fluid_cells(), dt);
     return pressure_;
   }
   void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept override {
+    hands_ = hands;
     if (waits_for_hand_ && !hands.hands.empty()) {
       blow_at(place_under(palm_of(hands.hands.front())));
       waits_for_hand_ = false;
@@ -41,8 +50,7 @@ class Smoke final : public World {
     changed_ = trim_.update(target, placed_.jets, dt) || changed_;
   }
   void go_on_from(const World& other) override {
-    const Fluid* before = other.fluid();
-    if (before != nullptr && before->grid() == grid()) fluid_.copy_state(*before);
+    if (other.fluid() != nullptr) go_on_from(*other.fluid());
     const auto* smoke = dynamic_cast<const Smoke*>(&other);
     if (smoke == nullptr || &smoke->scene_ != &scene_) return;
     // a place and gains that were found stay, whatever else was changed
@@ -50,6 +58,7 @@ class Smoke final : public World {
       waits_for_hand_ = smoke->waits_for_hand_;
       blow_at(smoke->place_);
     }
+    time_ = smoke->time_;
     if (settings_.trim_rate > 0.0) trim_.set_gains(smoke->trim_.gains());
     changed_ = true;
   }
@@ -61,15 +70,30 @@ class Smoke final : public World {
   }
 
  private:
+  /// Takes over the air of the same grid, wherever it is.
+  void go_on_from(const Fluid& before) {
+    GridShape there = fluid_.grid();
+    there.p_DF = before.grid().p_DF;
+    if (!(there == before.grid())) return;
+    const Vec3 cells = (there.p_DF - fluid_.grid().p_DF) / there.cell;
+    CellShift by;
+    for (int a = 0; a < 3; ++a)
+      by[static_cast<std::size_t>(a)] = static_cast<int>(std::lround(cells[a]));
+    fluid_.move_box(by);
+    fluid_.copy_state(before);
+  }
   void blow_at(const ScenePlace& place) {
     place_ = place;
     move_to(place, scene_.smoke, placed_);
     changed_ = true;
   }
-  /// Takes over a new place and new gains.
+  /// Takes over a new place, new gains and the pulse.
   void blow() {
+    const ScenePulse& pulse = scene_.pulse;
+    const double swell = 1.0 + pulse.depth * std::sin(2.0 * kPi * pulse.rate * time_);
     blown_ = placed_;
-    for (std::size_t q = 0; q < blown_.jets.size(); ++q) blown_.jets[q].speed *= trim_.gains()[q];
+    for (std::size_t q = 0; q < blown_.jets.size(); ++q)
+      blown_.jets[q].speed *= swell * trim_.gains()[q];
     fluid_.set_inflow(blown_);
     changed_ = false;
   }
@@ -79,9 +103,12 @@ class Smoke final : public World {
   bool waits_for_hand_;  // to blow under it
   ScenePlace place_;
   Fluid fluid_;
+  BoxFollower follower_;
+  HandFrame hands_;  // of the last targets
   FluidPressure pressure_;
   SmokeInflow placed_, blown_;  // under the hand, and with the trim's gains
   JetTrim trim_;
+  double time_ = 0.0;     // since the scene began [s]
   bool changed_ = false;  // since the fluid was told
 };
 

@@ -27,7 +27,8 @@ struct WorldStats {
 class World {
  public:
   virtual ~World() = default;
-  /// On which hands are rasterised and their skin is looked for.
+  /// On which hands are rasterised and their skin is looked for. Its corner may move by whole cells
+  /// in prepare(), and nothing else of it ever changes.
   virtual const GridShape& grid() const = 0;
   /// The pressure of a target that maps to full output [Pa].
   virtual double full_scale_pressure() const = 0;

@@ -12,6 +12,7 @@ export class ArrayModel {
   private readonly can = new MeshStandardMaterial({ roughness: 0.45, metalness: 0.55 });
   private readonly face = new MeshStandardMaterial({ roughness: 0.9, metalness: 0.2 });
   private readonly edges = new LineBasicMaterial({ transparent: true, opacity: 0.35, depthWrite: false });
+  private readonly box = new LineSegments(new BufferGeometry(), this.edges);
   private readonly parts = new Group();
   private readonly marks = new Group();
   private readonly plumb = new Group();
@@ -26,7 +27,7 @@ export class ArrayModel {
     this.plumbLine.setAttribute("position", new Float32BufferAttribute([0, 0, 0, 0, 0, 1], 3));
     this.plumb.add(ring, new Line(this.plumbLine, new LineBasicMaterial({ color: "#e69f00" })));
     this.plumb.visible = false;
-    this.group.add(this.parts, this.marks, this.plumb);
+    this.group.add(this.box, this.parts, this.marks, this.plumb);
   }
 
   set(hello: Hello): void {
@@ -34,10 +35,13 @@ export class ArrayModel {
     const at = hello.array.transducers_mm.map(([x, y, z]) => new Vector3(x, y, z).divideScalar(1000));
     if (at.length > 0) this.addTransducers(at);
     const { origin, edge } = hello.box_mm;
-    const box = new LineSegments(new EdgesGeometry(new BoxGeometry(edge / 1000, edge / 1000, edge / 1000)), this.edges);
-    box.position.set(origin[0] + edge / 2, origin[1] + edge / 2, origin[2] + edge / 2).divideScalar(1000);
-    this.parts.add(box);
+    this.box.geometry.dispose();
+    this.box.geometry = new EdgesGeometry(new BoxGeometry(edge / 1000, edge / 1000, edge / 1000));
+    this.placeBox(new Vector3(...origin).divideScalar(1000), edge / 1000);
   }
+
+  /// The box of the smoke may follow a hand. @param corner the lowest of each coordinate [m].  @param edge [m].
+  placeBox(corner: Vector3, edge: number): void { this.box.position.copy(corner).addScalar(edge / 2); }
 
   private addTransducers(at: Vector3[]): void {
     // as wide as their distance allows, at most the 10 mm that they are

@@ -34,7 +34,7 @@ export class Ruler {
   private readonly accent = new LineBasicMaterial({ transparent: true, depthWrite: false });
   private readonly upright = new LineSegments(new BufferGeometry(), this.material);
   private readonly palm = new LineSegments(new BufferGeometry(), this.accent);
-  private low = new Vector3();
+  private readonly low = new Vector3();
   private edge = 0; // [m]
   private palmHeight: number | null = null; // [m]
 
@@ -45,9 +45,15 @@ export class Ruler {
   }
 
   set(hello: Hello): void {
-    this.low = new Vector3(...hello.box_mm.origin).divideScalar(1000);
-    this.edge = hello.box_mm.edge / 1000;
-    const top = this.low.z + this.edge;
+    this.placeBox(new Vector3(...hello.box_mm.origin).divideScalar(1000), hello.box_mm.edge / 1000);
+  }
+
+  /// The box of the smoke may follow a hand. @param corner the lowest of each coordinate [m].  @param edge [m].
+  placeBox(corner: Vector3, edge: number): void {
+    if (this.low.equals(corner) && this.edge === edge) return;
+    this.low.copy(corner);
+    this.edge = edge;
+    const top = corner.z + edge;
     const points = [0, 0, 0, 0, 0, top];
     for (let z = 0; z <= top + 1e-9; z += kTick) points.push(0, 0, z, -kTickLength, 0, z);
     const { geometry } = this.upright;

@@ -121,7 +121,11 @@ export class View {
     this.ruler.setHand(frame.hands[0]);
     this.field = frame.field;
     this.paths.set(frame.plan);
-    if (frame.smoke !== null && frame.smokeSequence !== this.smokeSequence) this.smoke.set(frame.smoke);
+    if (frame.smoke !== null && frame.smokeSequence !== this.smokeSequence) {
+      this.smoke.set(frame.smoke);
+      const corner = new Vector3(...frame.smoke.corner);
+      for (const part of [this.array, this.ruler]) part.placeBox(corner, frame.smoke.edge);
+    }
     if (frame.fieldSequence !== this.fieldSequence) this.maps.set(frame.field);
     this.smokeSequence = frame.smokeSequence;
     this.fieldSequence = frame.fieldSequence;

@@ -39,6 +39,15 @@ describe("the ruler", () => {
     const place = at(eye(2.5), 1500, "0");
     expect([place.x, place.y, place.z]).toEqual([expect.closeTo(-0.18), expect.closeTo(0.18), 0]);
   });
+  it("goes with a box that follows a hand", () => {
+    const moved = new Ruler();
+    moved.set({ box_mm: { origin: [-80, -80, 0], edge: 160 } } as unknown as Hello);
+    moved.placeBox(new Vector3(0.02, 0.04, 0.09), 0.16);
+    const labels = moved.update(eye(2.5), 1500);
+    expect(labels.map((label) => label.text)).toEqual(["0", "100", "200 mm", "x · 160 mm", "y · 160 mm"]);
+    expect(labels[3]!.at.z).toBeCloseTo(0.09);
+    expect(labels[3]!.at.x).toBeCloseTo(0.10);
+  });
   it("stands at the left of a palm that is seen from below, too", () => {
     const camera = eye(0.86, -18, -34, 0.46);
     expect(at(camera, 375, "200").project(camera).x).toBeLessThan(-0.5);

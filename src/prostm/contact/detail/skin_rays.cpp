@@ -58,6 +58,7 @@ SkinRays::SkinRays(const GridShape& grid) : grid_(grid) {
 
 void SkinRays::set(const HandRaster& raster) noexcept {
   raster_ = &raster;
+  grid_ = raster.grid;
   find_lowest_nodes();
   find_lowest_cells();
   first_ = Vec3(box_.lower[0], box_.lower[1], box_.lower[2]);

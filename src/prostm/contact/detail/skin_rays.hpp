@@ -23,7 +23,7 @@ class SkinRays {
   explicit SkinRays(const GridShape& grid);
 
   /// Refers to `raster` from now on; call again when it changes. Allocates nothing.
-  /// @pre raster.grid is the grid of the constructor.
+  /// @pre raster.grid is the grid of the constructor, but for its corner.
   void set(const HandRaster& raster) noexcept;
 
   /// Box of all cells that may have a node inside a hand.

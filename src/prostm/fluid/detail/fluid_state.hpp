@@ -21,6 +21,7 @@ struct Fluid::State {
 
   /// Sets everything to rest, without smoke.
   void reset();
+  void move_box(const CellShift& by);
 
   // a step, see Fluid
   void prepare(double step_dt);
@@ -37,6 +38,9 @@ struct Fluid::State {
   bool check();
   void measure();
 
+  void finish_substep();
+  void extend_into_hands();
+  void press_early();
   void diffuse();
   void confine_vorticity();
   void push_swept(const HandRaster& raster);
@@ -50,6 +54,8 @@ struct Fluid::State {
   FluidSettings settings;
   WorkerPool& pool;
   GridShape grid;
+  Vec3 home;             // grid.p_DF before the box moved
+  CellShift shift = {};  // since then
   fluid::PaddedGrid padded;
   SmokeInflow inflow;  // at the settings' speed
   fluid::Surroundings surroundings;
@@ -62,7 +68,9 @@ struct Fluid::State {
   std::optional<fluid::ConjugateGradients> conjugate_gradients;  // where the settings ask for them
 
   // the present step
-  double dt = 0.0;                 // [s]
+  double dt = 0.0;                 // of a sub-step [s]
+  double early = 0.0;              // share of the pressure that acts early
+  double fastest = 0.0;            // of the last sub-step [m/s]
   bool usable = false;             // false: the state is to be reset
   double divergence_before = 0.0;  // Σ of squares, before the projection
   FluidStats stats;
@@ -77,7 +85,7 @@ struct Fluid::State {
   };
   std::vector<PlaneSums> sums;  // one per plane, so that totals do not depend on threads
   CellBox marked;               // box in which fluid_cells may be 0
-  // height of the lowest hand of the last step above the floor [m]
+  // height of the lowest hand of the last step above the array [m]
   double lowest_hand = std::numeric_limits<double>::infinity();
 
   // results for readers, without padding

@@ -216,7 +216,7 @@ double lowest_of(const HandRaster& raster) {
     for (int j = box.lower[1]; j <= box.upper[1]; ++j) {
       const float* row = raster.node_distance.data() + raster.grid.node_index(0, j, k);
       if (std::any_of(row + box.lower[0], row + box.upper[0] + 1, [](float d) { return d < 0.0F; }))
-        return k * raster.grid.cell;
+        return raster.grid.node(0, 0, k).z();
     }
   }
   return std::numeric_limits<double>::infinity();

@@ -60,7 +60,7 @@ class Obstacle {
   int closed_cells_ = 0;
 };
 
-/// Returns the height of the lowest node in a hand above the floor [m]; infinite without hands.
+/// Returns the height of the lowest node in a hand above the array [m]; infinite without hands.
 double lowest_of(const HandRaster& raster);
 
 /// True if every distance and velocity in the raster's box is a finite number.

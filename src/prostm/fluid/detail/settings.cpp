@@ -10,7 +10,12 @@ template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   v.field({"cells", "", 32, 160, "cells along each edge of the box, a multiple of 16", 16},
           s.cells);
-  v.field({"width", "m", 0.05, 5, "edge of the box, which stands on the array"}, s.width);
+  v.field({"width", "m", 0.05, 5,
+           "edge of the box, which stands on the array unless [box] follow moves it"},
+          s.width);
+  v.field({"substeps", "", 1, 16, "steps of the fluid in a step of the world"}, s.substeps);
+  v.field({"theta", "", 0.6, 1, "weight of the pressure at the end of a path; 1: implicit"},
+          s.theta);
   v.field({.name = "solver", .help = "solver of the pressure"}, s.solver);
   v.field({"cycles", "", 1, 100, "V-cycles a step"}, s.cycles);
   v.field({"cg_iterations", "", 1, 100, "iterations a step of mgpcg"}, s.cg_iterations);

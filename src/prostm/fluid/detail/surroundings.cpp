@@ -59,8 +59,13 @@ void Surroundings::set_inflow(const SmokeInflow& inflow) {
   }
 }
 
+void Surroundings::place(const GridShape& grid, const SmokeInflow& inflow) {
+  shape_ = grid;
+  set_inflow(inflow);
+}
+
 void Surroundings::guide(double dt, double ceiling, Field velocity[3]) const {
-  const double height = std::min(guide_height_, ceiling);
+  const double height = std::min(guide_height_, ceiling) - shape_.p_DF.z();
   if (height <= 0.0) return;
   const auto hold = static_cast<float>(1.0 - std::exp(-dt / guide_time_));
   // faces of w are at k h, those of u and v at (k + ½) h

@@ -23,7 +23,11 @@ class Surroundings {
   /// Blows another way from now on.
   void set_inflow(const SmokeInflow& inflow);
 
-  /// Holds the jets in the tube of (F14) for a step of dt [s], up to `ceiling` at most [m].
+  /// The box is elsewhere now.
+  void place(const GridShape& grid, const SmokeInflow& inflow);
+
+  /// Holds the jets in the tube of (F14) for a step of dt [s], up to the height `ceiling` above the
+  /// array at most [m].
   void guide(double dt, double ceiling, Field velocity[3]) const;
 
   /// Sets the velocity of the floor's faces.

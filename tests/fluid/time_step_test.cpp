@@ -1,0 +1,123 @@
+/// The error of a step of 20 ms on small things, and the two settings against it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analytic_raster.hpp"
+#include "prostm/fluid/fluid.hpp"
+#include "support/heap_guard.hpp"
+
+namespace prostm {
+namespace {
+
+SmokeInflow jet() {
+  SmokeInflow inflow;
+  inflow.jets = {{Vec2(0.003, -0.002), 0.019, 0.6}};
+  inflow.vent_speed = 0.06;
+  inflow.viscosity = 0.95e-4;
+  return inflow;
+}
+
+FluidSettings small(double theta, int substeps) {
+  FluidSettings settings;
+  settings.cells = 48;
+  settings.width = 0.12;
+  settings.theta = theta;
+  settings.substeps = substeps;
+  return settings;
+}
+
+/// A finger across the jet, as wide as a pad.
+HandRaster finger(const GridShape& grid) {
+  return test::shape_raster(grid, [](const Vec3& p) {
+    const Vec3 q(p.x(), std::max(p.y() - 0.003, 0.0), p.z() - 0.071);
+    return q.norm() - 0.0076;
+  });
+}
+
+/// ∫ p over the cells below the finger [N].
+double force_on_finger(const Fluid& fluid) {
+  const GridShape& g = fluid.grid();
+  double force = 0.0;
+  for (int j = 0; j < g.ny; ++j) {
+    for (int i = 0; i < g.nx; ++i) {
+      const Vec3 p = g.cell_centre(i, j, 0);
+      const double y = std::max(p.y() - 0.003, 0.0);
+      if (p.x() * p.x() + y * y > 0.0076 * 0.0076 || p.y() < -0.03) continue;
+      const int k = static_cast<int>(0.06 / g.cell);
+      force += g.cell * g.cell * static_cast<double>(fluid.pressure()[g.cell_index(i, j, k)]);
+    }
+  }
+  return force;
+}
+
+double settled_force(double theta, int substeps) {
+  WorkerPool pool(2);
+  Fluid fluid(small(theta, substeps), jet(), pool);
+  const HandRaster raster = finger(fluid.grid());
+  double force = 0.0;
+  for (int step = 0; step < 60; ++step) {
+    fluid.step(0.02, raster);
+    if (step >= 50) force += 0.1 * force_on_finger(fluid);
+  }
+  return force;
+}
+
+TEST(TimeStep, ThetaAndSubstepsTakeTheSplittingErrorAway) {
+  const double exact = settled_force(0.6, 4);
+  EXPECT_GT(exact, 1e-5);
+  const double implicit = std::abs(settled_force(1.0, 1) / exact - 1.0),
+               halved = std::abs(settled_force(1.0, 2) / exact - 1.0),
+               centred = std::abs(settled_force(0.6, 1) / exact - 1.0);
+  EXPECT_LT(halved, 0.5 * implicit);
+  EXPECT_LT(centred, 0.1 * implicit);
+  EXPECT_LT(centred, 0.03);
+}
+
+// sub-steps among a still finger are steps
+TEST(TimeStep, SubstepsAreSteps) {
+  WorkerPool pool(2);
+  for (const double theta : {1.0, 0.6}) {
+    Fluid steps(small(theta, 1), jet(), pool), halves(small(theta, 2), jet(), pool);
+    const HandRaster raster = finger(steps.grid());
+    // the first sub-step meets nothing yet
+    halves.step(0.02, raster);
+    steps.step(0.01, test::empty_raster(steps.grid()));
+    steps.step(0.01, raster);
+    for (int step = 0; step < 10; ++step) {
+      {
+        const test::HeapGuard guard;
+        halves.step(0.02, raster);
+        EXPECT_EQ(guard.allocations(), 0U);
+      }
+      for (int half = 0; half < 2; ++half) steps.step(0.01, raster);
+      ASSERT_TRUE(
+          std::equal(halves.pressure().begin(), halves.pressure().end(), steps.pressure().begin()));
+    }
+  }
+}
+
+// where the centred form would not be stable it becomes implicit
+TEST(TimeStep, ThetaIsStableAtAnySpeed) {
+  WorkerPool pool(2);
+  for (const double speed : {0.5, 1.0, 1.5, 2.0, 3.0}) {
+    FluidSettings settings = small(0.6, 1);
+    settings.jet_speed = speed;
+    Fluid fluid(settings, jet(), pool);
+    const HandRaster raster = finger(fluid.grid());
+    double most = 0.0;
+    for (int step = 0; step < 150; ++step) {
+      ASSERT_FALSE(fluid.step(0.02, raster).reset);
+      if (step < 50) continue;
+      for (const float p : fluid.pressure())
+        most = std::max(most, std::abs(static_cast<double>(p)));
+    }
+    const double u = 0.6 * speed;
+    EXPECT_LT(most, 2.0 * 0.5 * settings.density * u * u) << "the pressure where a jet is stopped";
+  }
+}
+
+}  // namespace
+}  // namespace prostm
