@@ -1,16 +1,27 @@
 #pragma once
 /// The fluid's pressure on skin (C4).
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "prostm/contact/pressure_source.hpp"
+#include "prostm/core/names.hpp"
 #include "prostm/core/settings.hpp"
 
 namespace prostm {
 
+/// The part of the pressure that is felt: all of it, that of the smoke that blows, or that of the
+/// hands' own movement, which the same hands would feel in air that nothing blows.
+enum class PressurePart : std::uint8_t { All, Smoke, Movement };
+template <>
+inline constexpr std::array<std::string_view, 3> kNames<PressurePart> = {"all", "smoke",
+                                                                         "movement"};
+
 struct FluidPressureSettings {
+  PressurePart part = PressurePart::All;  ///< for whoever owns the fluid
   /// the pressure is read this far outside the skin, towards the array [m]; a length, so that
   /// finer cells do not move it
   double offset = 0.005625;

@@ -9,8 +9,8 @@
 
 namespace prostm {
 
-/// The point of the first hand that the box of the smoke follows; nothing: it stays over the array's
-/// centre.
+/// The point of the first hand that the box of the smoke follows; nothing: it stays over the
+/// array's centre.
 enum class BoxFollows : std::uint8_t { Nothing, Palm, Index };
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<BoxFollows> = {"nothing", "palm", "index"};

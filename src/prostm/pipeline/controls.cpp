@@ -33,6 +33,7 @@ std::vector<ControlChoice> scene_choices() {
 
 const std::vector<ControlChoice> kScenes = scene_choices();
 const auto kJetPlaces = choices_of<JetPlace, 2>({"Over the array", "Under the hand"});
+const auto kParts = choices_of<PressurePart, 3>({"All", "Smoke alone", "Movement alone"});
 const auto kMethods = choices_of<Method, 2>({"PRO-STM", "AM"});
 const auto kPresets = choices_of<Preset, 4>({"Paper", "Paper, made valid", "Best", "Fast"});
 const auto kSwitches = choices_of<SwitchAt, 2>({"At lap ends", "At once"});
@@ -169,6 +170,13 @@ std::vector<RunControl> make_controls() {
       [](const S& s) { return s.pipeline.fluid.buoyancy; },
       [](S& s, double v) { s.pipeline.fluid.buoyancy = v; }, always,
       "How strongly undiluted smoke rises.");
+  choice(
+      "Smoke", "pressure_of", "Pressure of", kParts,
+      [](const S& s) { return static_cast<double>(s.pipeline.fluid_pressure.part); },
+      [](S& s, double v) { s.pipeline.fluid_pressure.part = static_cast<PressurePart>(v); }, always,
+      "All that the air presses, what the emitter's smoke adds to it, or what the hand's own "
+      "movement "
+      "makes in still air. A part takes twice the smoke's time.");
   number(
       "Smoke", "grid", "Grid", "cells", kLeastGrid, kMostGrid, kGridStep,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },

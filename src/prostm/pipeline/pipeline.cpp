@@ -35,7 +35,7 @@ void put_back(double time, HandFrame& frame) {
 
 /// Whether the world's stage is built from the same.
 bool same_world(const PipelineSettings& a, const PipelineSettings& b) {
-  return a.track == b.track && a.fluid == b.fluid && a.jets == b.jets &&
+  return a.track == b.track && a.fluid == b.fluid && a.box == b.box && a.jets == b.jets &&
          a.fluid_pressure == b.fluid_pressure && a.contact == b.contact && a.scene == b.scene;
 }
 

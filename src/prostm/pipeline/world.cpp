@@ -1,6 +1,8 @@
 #include "prostm/pipeline/world.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "prostm/core/units.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
@@ -21,24 +23,38 @@ class Smoke final : public World {
         pressure_(settings.fluid_pressure, fluid_.grid()),
         placed_(scene_.smoke),
         blown_(scene_.smoke),
-        trim_(settings.jets, scene_.smoke.jets.size()) {}
+        trim_(settings.jets, scene_.smoke.jets.size()),
+        part_(settings.fluid_pressure.part) {
+    if (part_ == PressurePart::All) return;
+    still_air_.emplace(settings.fluid, SmokeInflow(), pool);
+    part_pressure_.resize(grid().cell_count());
+    changed_ = true;
+  }
 
   const GridShape& grid() const override { return fluid_.grid(); }
   double full_scale_pressure() const override { return scene_.full_scale_pressure; }
   void prepare(double dt) noexcept override {
     time_ += dt;
     if (changed_ || scene_.pulse.depth > 0.0) blow();
+    const CellShift shift = follower_.shift(hands_, fluid_.grid());
     fluid_.prepare(dt);
-    fluid_.move_box(follower_.shift(hands_, fluid_.grid()));
+    fluid_.move_box(shift);
+    if (!still_air_) return;
+    still_air_->prepare(dt);
+    still_air_->move_box(shift);
   }
-  void meet(const HandRaster& raster) noexcept override { fluid_.meet(raster); }
+  void meet(const HandRaster& raster) noexcept override {
+    fluid_.meet(raster);
+    if (still_air_) still_air_->meet(raster);
+  }
   WorldStats settle() noexcept override {
     const FluidStats stats = fluid_.settle();
-    return {stats.divergence_rms, stats.pressure_error, stats.reset};
+    const bool reset = still_air_ && still_air_->settle().reset;
+    return {stats.divergence_rms, stats.pressure_error, stats.reset || reset};
   }
   const PressureSource& pressure(double dt) noexcept override {
     pressure_.move_to(fluid_.grid().p_DF);
-    pressure_.take(fluid_.pressure(), fluid_.fluid_cells(), dt);
+    pressure_.take(felt_part(), fluid_.fluid_cells(), dt);
     return pressure_;
   }
   void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept override {
@@ -52,7 +68,10 @@ class Smoke final : public World {
   void go_on_from(const World& other) override {
     if (other.fluid() != nullptr) go_on_from(*other.fluid());
     const auto* smoke = dynamic_cast<const Smoke*>(&other);
-    if (smoke == nullptr || &smoke->scene_ != &scene_) return;
+    if (smoke == nullptr) return;
+    if (still_air_ && smoke->still_air_ && smoke->still_air_->grid() == still_air_->grid())
+      still_air_->copy_state(*smoke->still_air_);
+    if (&smoke->scene_ != &scene_) return;
     // a place and gains that were found stay, whatever else was changed
     if (smoke->settings_.place == settings_.place) {
       waits_for_hand_ = smoke->waits_for_hand_;
@@ -81,6 +100,16 @@ class Smoke final : public World {
       by[static_cast<std::size_t>(a)] = static_cast<int>(std::lround(cells[a]));
     fluid_.move_box(by);
     fluid_.copy_state(before);
+    if (still_air_) still_air_->move_box(by);
+  }
+  /// The part of the pressure that the settings ask for [Pa].
+  std::span<const float> felt_part() {
+    if (!still_air_) return fluid_.pressure();
+    const std::span<const float> all = fluid_.pressure(), movement = still_air_->pressure();
+    if (part_ == PressurePart::Movement) return movement;
+    std::transform(all.begin(), all.end(), movement.begin(), part_pressure_.begin(),
+                   std::minus<>());
+    return part_pressure_;
   }
   void blow_at(const ScenePlace& place) {
     place_ = place;
@@ -95,6 +124,7 @@ class Smoke final : public World {
     for (std::size_t q = 0; q < blown_.jets.size(); ++q)
       blown_.jets[q].speed *= swell * trim_.gains()[q];
     fluid_.set_inflow(blown_);
+    if (still_air_) still_air_->set_inflow({{}, 0.0, blown_.viscosity});
     changed_ = false;
   }
 
@@ -108,8 +138,11 @@ class Smoke final : public World {
   FluidPressure pressure_;
   SmokeInflow placed_, blown_;  // under the hand, and with the trim's gains
   JetTrim trim_;
-  double time_ = 0.0;     // since the scene began [s]
-  bool changed_ = false;  // since the fluid was told
+  PressurePart part_;
+  std::optional<Fluid> still_air_;    // among the same hands, unless all of the pressure is felt
+  std::vector<float> part_pressure_;  // the smoke's, a value a cell [Pa]
+  double time_ = 0.0;                 // since the scene began [s]
+  bool changed_ = false;              // since the fluid was told
 };
 
 }  // namespace
