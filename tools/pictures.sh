@@ -20,4 +20,5 @@ done
   --bending-figure "$root/docs/pictures/bending.png"
 "$root/build/release/am_bench" --frames 2 --figure "$root/docs/pictures/am.png" one-plume.h5 four-plumes.h5
 "$root/build/release/skin_lab" --figures "$root/docs/pictures"
+"$root/build/release/plumes_lab" --curves "$root/docs/pictures/refinement.png"
 "$root/build/release/methods_lab" --frames 1 --figure "$root/docs/pictures/methods.png"
