@@ -213,6 +213,16 @@ def test_in_still_air_the_hand_feels_its_own_movement(prostm):
 
 
 @pytest.mark.long
+def test_the_setting_of_the_am_method_s_paper(prostm):
+    done = prostm("run", "--method", "am", "--settings", ROOT / "data/barreiro-2019.toml", "--stepped", "--seconds", "0.2",
+                  "--json", "-")
+    summary = json.loads(done.stdout)
+    assert summary["world_steps"] == 18 and summary["plans"] + summary["empty_updates"] == 6
+    fluid = summary["settings"]["fluid"]
+    assert (fluid["solver"], fluid["hand"], fluid["width"] / fluid["cells"]) == ("jacobi", "voxels", pytest.approx(0.005))
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("array", ["autd3", "plate.json"])
 def test_run_plays_any_array(prostm, tmp_path, array):
     (tmp_path / "plate.json").write_text(json.dumps(PLATE))

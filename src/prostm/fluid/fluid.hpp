@@ -45,6 +45,12 @@ template <>
 inline constexpr std::array<std::string_view, 3> kNames<PressureMethod> = {"multigrid", "jacobi",
                                                                            "mgpcg"};
 
+/// Hands in the grid: by the open fraction of each face (F4), or as whole cells whose centre is in
+/// a hand, as in ref. [4].
+enum class HandFaces : std::uint8_t { Fractions, Voxels };
+template <>
+inline constexpr std::array<std::string_view, 2> kNames<HandFaces> = {"fractions", "voxels"};
+
 struct FluidSettings {
   int cells = 64;       ///< cells along each edge of the box; a multiple of 16, 32..160
   double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred, until
@@ -63,6 +69,7 @@ struct FluidSettings {
   /// factor on the speed of the scene's flow, 0 to 3: jets, vent, viscosity and guide alike, so
   /// that the flow stays similar and its pressure goes with the square
   double jet_speed = 1.0;
+  HandFaces hand = HandFaces::Fractions;
   double buoyancy = 0.0;     ///< upward acceleration of undiluted smoke [m/s²]
   double vorticity = 0.0;    ///< ε of vorticity confinement [1/s]; 0 = off
   double density = 1.2;      ///< density ρ of the air [kg/m³]

@@ -53,7 +53,7 @@ Fluid::State::State(const FluidSettings& s, const SmokeInflow& from, WorkerPool&
       surroundings(grid, inflow),
       velocity{Field(padded), Field(padded), Field(padded)},
       smoke(padded),
-      obstacle(s.cells, workers),
+      obstacle(s.cells, workers, s.hand),
       solver(s.cells, workers, fluid::fast_pressure_kernels()),
       next_velocity{Field(padded), Field(padded), Field(padded)},
       next_smoke(padded),
@@ -306,17 +306,12 @@ void Fluid::State::mark_fluid_cells(const HandRaster& raster) {
     }
   }
   marked = raster.box;
-  const auto row = static_cast<std::size_t>(grid.nx + 1),
-             plane = row * static_cast<std::size_t>(grid.ny + 1);
   for (int k = marked.lower[2]; k < marked.upper[2]; ++k) {
     for (int j = marked.lower[1]; j < marked.upper[1]; ++j) {
       if (solver.fine().span(j, k).empty()) continue;
       for (int i = marked.lower[0]; i < marked.upper[0]; ++i) {
         const Index c = padded.index(i, j, k);
-        const float* d = raster.node_distance.data() + grid.node_index(i, j, k);
-        const float eight = ((d[0] + d[1]) + (d[row] + d[row + 1])) +
-                            ((d[plane] + d[plane + 1]) + (d[plane + row] + d[plane + row + 1]));
-        row_of(j, k)[i] = eight > 0.0F && !obstacle.closed(c) ? 1 : 0;
+        row_of(j, k)[i] = fluid::is_in_hand(raster, i, j, k) || obstacle.closed(c) ? 0 : 1;
         if (obstacle.closed(c)) smoke[c] = 0.0F;
       }
     }

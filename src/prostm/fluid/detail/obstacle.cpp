@@ -7,6 +7,16 @@
 namespace prostm::fluid {
 namespace {
 
+/// 0 for a face beside a cell in a hand, else 1.
+float open_between_voxels(const HandRaster& raster, int axis, int i, int j, int k) {
+  const int above[3] = {i, j, k}, n[3] = {raster.grid.nx, raster.grid.ny, raster.grid.nz};
+  int below[3] = {i, j, k};
+  --below[axis];
+  const bool is_in = (above[axis] < n[axis] && is_in_hand(raster, i, j, k)) ||
+                     (below[axis] >= 0 && is_in_hand(raster, below[0], below[1], below[2]));
+  return is_in ? 0.0F : 1.0F;
+}
+
 /// Fraction of a triangle where a linear function with these corner values is positive.
 float open_fraction(float a, float b, float c) {
   const int positive = (a > 0.0F) + (b > 0.0F) + (c > 0.0F);
@@ -53,9 +63,10 @@ bool is_finite(const HandRaster& raster) {
   return true;
 }
 
-Obstacle::Obstacle(int n, WorkerPool& pool)
+Obstacle::Obstacle(int n, WorkerPool& pool, HandFaces faces)
     : grid_{n},
       pool_(pool),
+      faces_(faces),
       wall_{Field(grid_), Field(grid_), Field(grid_)},
       state_(grid_, kReached),
       stack_(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) *
@@ -103,7 +114,9 @@ void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) 
       float* wall = wall_[axis].data() + grid_.index(0, j, k);
       const float* phi = raster.node_distance.data() + g.node_index(0, j, k);
       for (int i = box_.lower[0]; i < box_.upper[0] + (axis == 0); ++i) {
-        open[i] = open_fraction(phi[i], phi[i + s], phi[i + s + t], phi[i + t]);
+        open[i] = faces_ == HandFaces::Voxels
+                      ? open_between_voxels(raster, axis, i, j, k)
+                      : open_fraction(phi[i], phi[i + s], phi[i + s + t], phi[i + t]);
         if (open[i] == 1.0F) continue;
         // the wall moves with the mean of the two cells beside it, or with the one inside the grid
         const int position = axis == 0 ? i : axis == 1 ? j : k;

@@ -7,6 +7,7 @@
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/detail/padded_grid.hpp"
 #include "prostm/fluid/detail/pressure_level.hpp"
+#include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
 
 namespace prostm::fluid {
@@ -21,7 +22,7 @@ float open_fraction(float a, float b, float c, float d);
 /// a pocket that no open face joins to the outside: its equations would have no solution.
 class Obstacle {
  public:
-  Obstacle(int n, WorkerPool& pool);
+  Obstacle(int n, WorkerPool& pool, HandFaces faces = HandFaces::Fractions);
 
   /// Sets `level`'s fractions, spans and diagonals, and the walls' velocities. @pre the raster is
   /// of this grid and finite.
@@ -53,12 +54,23 @@ class Obstacle {
 
   PaddedGrid grid_;
   WorkerPool& pool_;
+  HandFaces faces_;
   Field wall_[3];
   PaddedField<std::uint8_t> state_;  // kReached outside the box
   std::vector<Index> stack_;         // room for all cells
   CellBox box_;
   int closed_cells_ = 0;
 };
+
+/// Whether a cell's centre is in a hand, by the mean distance of its nodes.
+inline bool is_in_hand(const HandRaster& raster, int i, int j, int k) {
+  const auto row = static_cast<std::size_t>(raster.grid.nx + 1),
+             plane = row * static_cast<std::size_t>(raster.grid.ny + 1);
+  const float* d = raster.node_distance.data() + raster.grid.node_index(i, j, k);
+  const float eight = ((d[0] + d[1]) + (d[row] + d[row + 1])) +
+                      ((d[plane] + d[plane + 1]) + (d[plane + row] + d[plane + row + 1]));
+  return eight <= 0.0F;
+}
 
 /// Returns the height of the lowest node in a hand above the array [m]; infinite without hands.
 double lowest_of(const HandRaster& raster);

@@ -24,6 +24,8 @@ void list(Settings& s, Visitor& v) {
   v.field({.name = "jacobi_warm", .help = "whether sweeps start from the last pressure"},
           s.jacobi_warm);
   v.field({"jet_speed", "", 0, 3, "factor on the speed of the scene's flow"}, s.jet_speed);
+  v.field({.name = "hand", .help = "how hands cut the grid: fractions of faces, or whole voxels"},
+          s.hand);
   v.field({"buoyancy", "m/s²", 0, 100, "upward acceleration of undiluted smoke"}, s.buoyancy);
   v.field({"vorticity", "1/s", 0, 100, "strength of vorticity confinement; 0: none"}, s.vorticity);
   v.field({"density", "kg/m³", 0.01, 2000, "density of the air"}, s.density);
