@@ -108,9 +108,9 @@ TEST(TimeStep, ThetaIsStableAtAnySpeed) {
     Fluid fluid(settings, jet(), pool);
     const HandRaster raster = finger(fluid.grid());
     double most = 0.0;
-    for (int step = 0; step < 150; ++step) {
+    for (int step = 0; step < 80; ++step) {
       ASSERT_FALSE(fluid.step(0.02, raster).reset);
-      if (step < 50) continue;
+      if (step < 30) continue;
       for (const float p : fluid.pressure())
         most = std::max(most, std::abs(static_cast<double>(p)));
     }
