@@ -131,7 +131,8 @@ class Fluid {
   FluidStats settle() noexcept;
 
   /// Fluid pressure at cell centres [Pa], 0 in cells without fluid; cell_count() values, index as
-  /// in GridShape.
+  /// in GridShape. With sub-steps or theta < 1 it is the mean of what acts over the step: the last
+  /// solve alone would swing from step to step about it.
   std::span<const float> pressure() const;
   /// 1 for cells whose centre is in the fluid (not inside a hand).
   std::span<const std::uint8_t> fluid_cells() const;

@@ -55,6 +55,7 @@ Fluid::State::State(const FluidSettings& s, const SmokeInflow& from, WorkerPool&
       smoke(padded),
       obstacle(s.cells, workers, s.hand),
       solver(s.cells, workers, fluid::fast_pressure_kernels()),
+      acting(padded),
       next_velocity{Field(padded), Field(padded), Field(padded)},
       next_smoke(padded),
       centre{Field(padded), Field(padded), Field(padded)},
@@ -77,7 +78,8 @@ void Fluid::State::reset() {
   std::fill(pressure_out.begin(), pressure_out.end(), 0.0F);
   std::fill(smoke_out.begin(), smoke_out.end(), 0.0F);
   surroundings.set_floor(velocity[2]);  // the jets blow from the first step on
-  fastest = 0.0;
+  acting.fill(0.0F);
+  fastest = early = 0.0;
 }
 
 void Fluid::State::move_box(const CellShift& by) {
@@ -94,6 +96,7 @@ void Fluid::State::move_box(const CellShift& by) {
   for (int axis = 0; axis < 3; ++axis) fluid::carry_over(padded, by, axis, velocity[axis]);
   fluid::carry_over(padded, by, 3, smoke);
   fluid::carry_over(padded, by, 3, solver.pressure());
+  fluid::carry_over(padded, by, 3, acting);
   surroundings.set_floor(velocity[2]);
 }
 
@@ -107,6 +110,7 @@ void Fluid::State::prepare(double step_dt) {
   dt = step_dt / settings.substeps;
   stats = {};
   usable = std::isfinite(dt) && dt > 0.0;
+  if (is_split()) acting.fill(0.0F);
   for (int sub = 1; sub <= settings.substeps && usable; ++sub) {
     advect();
     add_forces();
@@ -128,6 +132,20 @@ void Fluid::State::meet(const HandRaster& raster) {
   }
   if (!usable) reset();
   stats.total += total.seconds();
+}
+
+/// Whether pressures of several times act in one step.
+bool Fluid::State::is_split() const {
+  return settings.substeps > 1 || settings.theta < 1.0;
+}
+
+/// Adds the present pressure to the mean of those that act over the step.
+void Fluid::State::let_act(double share) {
+  const auto weight = static_cast<float>(share / settings.substeps);
+  over_planes([&](int k0, int k1) {
+    for (Index c = padded.index(0, 0, k0); c < padded.index(0, 0, k1); ++c)
+      acting[c] += weight * solver.pressure()[c];
+  });
 }
 
 /// Ends a sub-step among the hands of the step before.
@@ -211,6 +229,7 @@ void Fluid::State::press_early() {
     }
   });
   extend_into_hands();
+  let_act(early);
 }
 
 /// (F13), in as many passes as keep it stable.
@@ -347,6 +366,7 @@ void Fluid::State::solve() {
       solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
   }
   stats.pressure_error = solver.convergence().error();
+  if (is_split()) let_act(1.0 - early);
 }
 
 void Fluid::State::project() {
@@ -388,13 +408,14 @@ bool Fluid::State::check() {
 /// Copies the results for readers; false if a pressure is NaN or absurd.
 bool Fluid::State::publish() {
   const int n = padded.n;
+  const Field& felt = is_split() ? acting : solver.pressure();
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
       std::int32_t& largest = sums[static_cast<std::size_t>(k)].largest;
       largest = 0;
       for (int j = 0; j < n; ++j) {
         const Index c = padded.index(0, j, k);
-        const float* pressure = solver.pressure().data() + c;
+        const float* pressure = felt.data() + c;
         largest = std::max(largest, largest_bits(pressure, pressure + n));
         std::copy_n(pressure, n, pressure_out.data() + grid.cell_index(0, j, k));
         std::copy_n(smoke.data() + c, n, smoke_out.data() + grid.cell_index(0, j, k));

@@ -40,6 +40,8 @@ struct Fluid::State {
 
   void finish_substep();
   void extend_into_hands();
+  bool is_split() const;
+  void let_act(double share);
   void press_early();
   void diffuse();
   void confine_vorticity();
@@ -65,6 +67,7 @@ struct Fluid::State {
   fluid::Field smoke;        // at cells, 0..1; the halo holds smoke that would flow in
   fluid::Obstacle obstacle;
   fluid::PressureSolver solver;
+  fluid::Field acting;  // mean pressure over a step that is split; unused else [Pa]
   std::optional<fluid::ConjugateGradients> conjugate_gradients;  // where the settings ask for them
 
   // the present step
