@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "prostm/core/random.hpp"
 #include "prostm/pipeline/pipeline.hpp"
@@ -47,6 +49,18 @@ TEST(BoxFollower, KeepsThePointInTheMiddle) {
     // it stays there, also while the hand trembles
     ASSERT_EQ(follower.shift(hand_at(p), now), CellShift{});
   }
+}
+
+// trackers may list two hands in any order
+TEST(BoxFollower, StaysWithTheNearestOfTwoHands) {
+  const GridShape home = box(0.2);
+  const BoxFollower follower({BoxFollows::Palm}, home);
+  const HandFrame left = hand_at(Vec3(-0.15, 0.0, 0.2)), right = hand_at(Vec3(0.05, 0.0, 0.2));
+  HandFrame both = left, swapped = right;
+  both.hands.push_back(right.hands.front());
+  swapped.hands.push_back(left.hands.front());
+  EXPECT_EQ(follower.shift(both, home), follower.shift(right, home));
+  EXPECT_EQ(follower.shift(swapped, home), follower.shift(right, home));
 }
 
 TEST(BoxFollower, MovesNothingWithoutAPlace) {

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "prostm/pipeline/pipeline.hpp"

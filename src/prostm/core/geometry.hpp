@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace prostm {
@@ -58,5 +59,13 @@ struct GridShape {
 
 /// Whole cells along x, y and z.
 using CellShift = std::array<int, 3>;
+
+/// The cells by which a vector goes, rounded.
+inline CellShift whole_cells(const Vec3& vector, double cell) {
+  CellShift cells;
+  for (int a = 0; a < 3; ++a)
+    cells[static_cast<std::size_t>(a)] = static_cast<int>(std::lround(vector[a] / cell));
+  return cells;
+}
 
 }  // namespace prostm

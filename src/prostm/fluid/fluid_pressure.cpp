@@ -36,11 +36,9 @@ FluidPressure::FluidPressure(const FluidPressureSettings& settings, const GridSh
 }
 
 void FluidPressure::move_to(const Vec3& p_DF) {
-  const Vec3 cells = (p_DF - grid_.p_DF) / grid_.cell;
+  const CellShift by = whole_cells(p_DF - grid_.p_DF, grid_.cell);
   grid_.p_DF = p_DF;
-  if (smoothed_.empty() || cells.isZero()) return;
-  int by[3];
-  for (int a = 0; a < 3; ++a) by[a] = static_cast<int>(std::lround(cells[a]));
+  if (smoothed_.empty() || by == CellShift{}) return;
   std::size_t c = 0;
   for (int k = by[2]; k < by[2] + grid_.nz; ++k) {
     for (int j = by[1]; j < by[1] + grid_.ny; ++j) {

@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, 3> kNames<PressurePart> = {"all", 
                                                                          "movement"};
 
 struct FluidPressureSettings {
-  PressurePart part = PressurePart::All;  ///< for whoever owns the fluid
+  PressurePart part = PressurePart::All;  ///< read by the world, which computes parts
   /// the pressure is read this far outside the skin, towards the array [m]; a length, so that
   /// finer cells do not move it
   double offset = 0.005625;

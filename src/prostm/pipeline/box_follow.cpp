@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace prostm {
 namespace {
@@ -26,22 +27,26 @@ CellShift BoxFollower::shift(const HandFrame& hands, const GridShape& now) const
   Vec3 wanted = home_.p_DF;
   double slack = 0.0;  // a box that follows nothing goes home
   if (settings_.follow != BoxFollows::Nothing) {
-    if (hands.hands.empty()) return {};
-    const Vec3 point =
-        hands.hands.front().position[settings_.follow == BoxFollows::Palm ? kPalm : kIndexTip];
-    // not by allFinite(), which traps
-    if (!std::isfinite(point.x()) || !std::isfinite(point.y()) || !std::isfinite(point.z()))
-      return {};
-    wanted = point.cwiseMax(-kReach).cwiseMin(kReach) - edge * Vec3(0.5, 0.5, 2.0 / 3.0);
+    const Vec3 middle = edge * Vec3(0.5, 0.5, 2.0 / 3.0);
+    const auto joint = settings_.follow == BoxFollows::Palm ? kPalm : kIndexTip;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Hand& hand : hands.hands) {
+      const Vec3& p = hand.position[joint];
+      // not by allFinite(), which traps
+      if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(p.z())) continue;
+      const Vec3 corner = p.cwiseMax(-kReach).cwiseMin(kReach) - middle;
+      const double away = (corner - now.p_DF).norm();
+      if (away >= nearest) continue;
+      nearest = away;
+      wanted = corner;
+    }
+    if (std::isinf(nearest)) return {};
     wanted.z() = std::clamp(wanted.z(), home_.p_DF.z(), home_.p_DF.z() + kHighestFloor);
     slack = kSlack * edge;
   }
   const Vec3 off = wanted - now.p_DF;
   if ((off.array().abs() <= slack).all()) return {};
-  CellShift cells;
-  for (int a = 0; a < 3; ++a)
-    cells[static_cast<std::size_t>(a)] = static_cast<int>(std::lround(off[a] / now.cell));
-  return cells;
+  return whole_cells(off, now.cell);
 }
 
 }  // namespace prostm

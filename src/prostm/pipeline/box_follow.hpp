@@ -9,8 +9,8 @@
 
 namespace prostm {
 
-/// The point of the first hand that the box of the smoke follows; nothing: it stays over the
-/// array's centre.
+/// The point that the box of the smoke follows, of the hand that is nearest to it; nothing: it
+/// stays over the array's centre.
 enum class BoxFollows : std::uint8_t { Nothing, Palm, Index };
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<BoxFollows> = {"nothing", "palm", "index"};
@@ -25,8 +25,8 @@ struct BoxSettings {
 
 /// Keeps the point in the middle of the box, and at two thirds of its height, since what presses on
 /// a hand comes from below. The box moves by whole cells, and only when the point is more than
-/// kSlack of an edge away. Its floor stays between the array and kHighestFloor, up to which jets
-/// are as they left the array.
+/// kSlack of an edge away. Its floor stays between the array and kHighestFloor, up to which guided
+/// jets are as they left the array, and wide ones nearly.
 class BoxFollower {
  public:
   /// @param home the box over the array.

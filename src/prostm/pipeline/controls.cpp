@@ -174,9 +174,8 @@ std::vector<RunControl> make_controls() {
       "Smoke", "pressure_of", "Pressure of", kParts,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid_pressure.part); },
       [](S& s, double v) { s.pipeline.fluid_pressure.part = static_cast<PressurePart>(v); }, always,
-      "All that the air presses, what the emitter's smoke adds to it, or what the hand's own "
-      "movement "
-      "makes in still air. A part takes twice the smoke's time.");
+      "All of the air's pressure, the smoke's share of it, or that of the hand's own movement in "
+      "still air. A part takes twice the smoke's time.");
   number(
       "Smoke", "grid", "Grid", "cells", kLeastGrid, kMostGrid, kGridStep,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },

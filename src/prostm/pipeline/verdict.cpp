@@ -143,8 +143,7 @@ void judge_tracker(const TrackerStatus& tracker, std::vector<std::string>& out) 
   }
 }
 
-/// @param whole the box stays where it is, so that a whole hand should be in it.
-void judge_contact(const ContactStats& contact, double seconds, bool felt, bool whole,
+void judge_contact(const ContactStats& contact, double seconds, bool felt, BoxFollows follows,
                    std::vector<std::string>& out) {
   const double outside = share(contact.joints_outside, contact.joints);
   constexpr const char* kRemedy = "hold it above the array, or check --tracker";
@@ -155,7 +154,8 @@ void judge_contact(const ContactStats& contact, double seconds, bool felt, bool 
         "The hand never faced the array in the smoke's box, so nothing was felt: {}.", kRemedy));
   } else if (!felt) {
     out.emplace_back("No pressure reached the hand, so nothing was felt.");
-  } else if (whole && seconds > kComesIn && outside > kMostOutside) {
+  } else if (follows == BoxFollows::Nothing && seconds > kComesIn && outside > kMostOutside) {
+    // a box that follows one point need not hold the whole hand
     out.push_back(
         fmt::format("{:.0f} % of the hand's joints were outside the smoke's box, where nothing is "
                     "felt: {}.",
@@ -276,8 +276,7 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   judge_safety(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
   if (!tracker || tracker->frames > 0) {
-    judge_contact(s.contact_stats, s.seconds, s.plans > 0,
-                  settings.box.follow == BoxFollows::Nothing, unusual);
+    judge_contact(s.contact_stats, s.seconds, s.plans > 0, settings.box.follow, unusual);
   }
   judge_output(s, unusual);
   if (unusual.empty() && verdict.held.value_or(true))

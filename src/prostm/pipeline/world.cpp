@@ -94,10 +94,7 @@ class Smoke final : public World {
     GridShape there = fluid_.grid();
     there.p_DF = before.grid().p_DF;
     if (!(there == before.grid())) return;
-    const Vec3 cells = (there.p_DF - fluid_.grid().p_DF) / there.cell;
-    CellShift by;
-    for (int a = 0; a < 3; ++a)
-      by[static_cast<std::size_t>(a)] = static_cast<int>(std::lround(cells[a]));
+    const CellShift by = whole_cells(there.p_DF - fluid_.grid().p_DF, there.cell);
     fluid_.move_box(by);
     fluid_.copy_state(before);
     if (still_air_) still_air_->move_box(by);
