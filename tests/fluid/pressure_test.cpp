@@ -299,24 +299,21 @@ TEST(Advection, VectorKernelsAgreeWithPlainOnes) {
     Field field(grid);
     fill_random(grid, field, random);
     const AdvectionKernels* kernels[2] = {&scalar_advection_kernels(), &fast_advection_kernels()};
-    std::vector<Field> moved[2], out[2];
+    Displacements moved[2] = {Displacements(grid), Displacements(grid)};
+    const float* const from[3] = {u[0].data(), u[1].data(), u[2].data()};
+    for (int kind = 0; kind < 2; ++kind) kernels[kind]->trace(grid, from, moved[kind], 0, n);
+    std::vector<Field> out[2];
     for (int kind = 0; kind < 2; ++kind) {
-      for (int a = 0; a < 3; ++a) moved[kind].emplace_back(grid);
-      const float* const from[3] = {u[0].data(), u[1].data(), u[2].data()};
-      float* const to[3] = {moved[kind][0].data(), moved[kind][1].data(), moved[kind][2].data()};
-      kernels[kind]->trace(grid, from, to, 0, n);
-      // the same displacement for both: in rough fields a rounding error in it moves the sample
-      const float* const d[3] = {moved[0][0].data(), moved[0][1].data(), moved[0][2].data()};
       for (int axis = -1; axis < 3; ++axis) {
         const Placement place = axis < 0 ? centre_placement(n) : face_placement(n, axis);
         out[kind].emplace_back(grid);
-        kernels[kind]->sample(grid, place, d, field.data(), out[kind].back().data(), 0,
+        // the same displacement for both: in rough fields a rounding error in it moves the sample
+        kernels[kind]->sample(grid, place, moved[1], field.data(), out[kind].back().data(), 0,
                               axis == 2 ? n + 1 : n);
       }
     }
     for (int a = 0; a < 3; ++a) {
-      EXPECT_LT(largest_difference(grid, moved[0][static_cast<std::size_t>(a)],
-                                   moved[1][static_cast<std::size_t>(a)], n),
+      EXPECT_LT(largest_difference(grid, moved[0].at[a], moved[1].at[a], n),
                 1e-5 * (1.0 + speed * speed));
     }
     for (std::size_t f = 0; f < 4; ++f) {
@@ -329,7 +326,7 @@ TEST(Advection, CarriesALinearFieldExactly) {
   constexpr int n = 32;
   const PaddedGrid grid{n};
   Field u[3] = {Field(grid, 1.3F), Field(grid, -0.4F), Field(grid, 2.2F)};
-  Field moved[3] = {Field(grid), Field(grid), Field(grid)};
+  Displacements moved(grid);
   Field in(grid), out(grid);
   const auto linear = [](double x, double y, double z) { return 0.1 * x - 0.2 * y + 0.05 * z; };
   for (int k = -1; k <= n; ++k) {
@@ -338,10 +335,8 @@ TEST(Advection, CarriesALinearFieldExactly) {
     }
   }
   const float* const from[3] = {u[0].data(), u[1].data(), u[2].data()};
-  float* const to[3] = {moved[0].data(), moved[1].data(), moved[2].data()};
-  fast_advection_kernels().trace(grid, from, to, 0, n);
-  const float* const d[3] = {moved[0].data(), moved[1].data(), moved[2].data()};
-  fast_advection_kernels().sample(grid, centre_placement(n), d, in.data(), out.data(), 0, n);
+  fast_advection_kernels().trace(grid, from, moved, 0, n);
+  fast_advection_kernels().sample(grid, centre_placement(n), moved, in.data(), out.data(), 0, n);
   for (int k = 4; k < n - 4; ++k) {
     for (int j = 4; j < n - 4; ++j) {
       for (int i = 4; i < n - 4; ++i) {

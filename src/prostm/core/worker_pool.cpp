@@ -1,5 +1,6 @@
 #include "prostm/core/worker_pool.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -11,7 +12,7 @@ namespace prostm {
 namespace {
 
 constexpr int kSpins = 4000;  // tens of microseconds
-constexpr int kSizeShift = 20, kRegionShift = 40;
+constexpr int kEndShift = 20, kRegionShift = 40;
 constexpr std::uint64_t kIndexMask = 0xfffff, kRegionMask = 0xffffff;
 
 void relax() {
@@ -24,12 +25,13 @@ void relax() {
 
 }  // namespace
 
-WorkerPool::WorkerPool(int threads) {
+WorkerPool::WorkerPool(int threads)
+    : parts_(static_cast<std::size_t>(std::clamp(threads, 1, static_cast<int>(kIndexMask)))) {
   if (threads < 1) {
     throw std::invalid_argument("threads = " + std::to_string(threads) + " must be at least 1");
   }
-  for (int i = 1; i < threads; ++i) {
-    workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+  for (std::size_t self = 1; self < parts_.size(); ++self) {
+    workers_.emplace_back([this, self](const std::stop_token& stop) { work(stop, self); });
   }
 }
 
@@ -44,20 +46,24 @@ void WorkerPool::run_erased(int n, Call call, void* context) {
     for (int i = 0; i < n; ++i) call(context, i);
     return;
   }
-  // publish the region; pending_ first, since the ticket lets workers in
+  // publish the region; pending_ first, since the tickets let workers in
   const std::uint64_t region = (region_.load(std::memory_order_relaxed) + 1) & kRegionMask;
   call_.store(call, std::memory_order_relaxed);
   context_.store(context, std::memory_order_relaxed);
   pending_.store(n, std::memory_order_relaxed);
-  ticket_.store(region << kRegionShift | static_cast<std::uint64_t>(n) << kSizeShift,
-                std::memory_order_release);
+  const auto size = static_cast<std::uint64_t>(n), count = std::uint64_t{parts_.size()};
+  for (std::uint64_t part = 0; part < count; ++part) {
+    const std::uint64_t begin = size * part / count, end = size * (part + 1) / count;
+    parts_[part].ticket.store(region << kRegionShift | end << kEndShift | begin,
+                              std::memory_order_release);
+  }
   {
     const std::lock_guard lock(mutex_);
     region_.store(region, std::memory_order_release);
   }
   wake_.notify_all();
 
-  drain(region);
+  drain(region, 0);
 
   // wait for what the workers took; they are running, so this is short unless one lost its core
   for (int spins = 0; pending_.load(std::memory_order_acquire) != 0;) {
@@ -70,21 +76,24 @@ void WorkerPool::run_erased(int n, Call call, void* context) {
   }
 }
 
-void WorkerPool::drain(std::uint64_t region) {
-  for (;;) {
-    std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-    do {
-      const std::uint64_t index = ticket & kIndexMask, size = ticket >> kSizeShift & kIndexMask;
-      if (ticket >> kRegionShift != region || index >= size) return;
-    } while (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel,
-                                            std::memory_order_acquire));
-    const Call call = call_.load(std::memory_order_relaxed);
-    call(context_.load(std::memory_order_relaxed), static_cast<int>(ticket & kIndexMask));
-    pending_.fetch_sub(1, std::memory_order_acq_rel);
+void WorkerPool::drain(std::uint64_t region, std::size_t self) {
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    std::atomic<std::uint64_t>& ticket = parts_[(self + part) % parts_.size()].ticket;
+    std::uint64_t seen = ticket.load(std::memory_order_acquire);
+    while (seen >> kRegionShift == region &&
+           (seen & kIndexMask) < (seen >> kEndShift & kIndexMask)) {
+      if (!ticket.compare_exchange_weak(seen, seen + 1, std::memory_order_acq_rel,
+                                        std::memory_order_acquire))
+        continue;
+      const Call call = call_.load(std::memory_order_relaxed);
+      call(context_.load(std::memory_order_relaxed), static_cast<int>(seen & kIndexMask));
+      pending_.fetch_sub(1, std::memory_order_acq_rel);
+      seen = ticket.load(std::memory_order_acquire);
+    }
   }
 }
 
-void WorkerPool::work(const std::stop_token& stop) {
+void WorkerPool::work(const std::stop_token& stop, std::size_t self) {
   std::uint64_t seen = 0;
   while (!stop.stop_requested()) {
     for (int spins = 0; spins < kSpins && region_.load(std::memory_order_acquire) == seen; ++spins)
@@ -94,7 +103,7 @@ void WorkerPool::work(const std::stop_token& stop) {
       wake_.wait(lock, stop, [&] { return region_.load(std::memory_order_acquire) != seen; });
     }
     seen = region_.load(std::memory_order_acquire);
-    drain(seen);
+    drain(seen, self);
   }
 }
 

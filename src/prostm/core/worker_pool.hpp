@@ -12,9 +12,11 @@
 namespace prostm {
 
 /// `run(n, f)` calls f(0) … f(n−1), each once, on the caller and `threads − 1` workers, and returns
-/// when all are done. Which thread runs which index is not fixed, so f must write to places that
-/// depend on the index alone; then results do not depend on the number of threads. One region at a
-/// time, from one thread; regions do not nest.
+/// when all are done. Each thread begins with its own part of the indices, the same one in every
+/// region, so that it finds in its cache what it wrote in the last one; then it helps the others.
+/// So which thread runs which index is not fixed, and f must write to places that depend on the
+/// index alone; then results do not depend on the number of threads. One region at a time, from one
+/// thread; regions do not nest.
 ///
 /// A worker spins for a bounded time after a region (the next one usually follows at once), then
 /// sleeps: a machine with more runnable threads than cores never waits for a spinning one longer
@@ -42,13 +44,16 @@ class WorkerPool {
  private:
   using Call = void (*)(void*, int);
   void run_erased(int n, Call call, void* context);
-  void work(const std::stop_token& stop);
-  void drain(std::uint64_t region);
+  void work(const std::stop_token& stop, std::size_t self);
+  void drain(std::uint64_t region, std::size_t self);
 
-  // A region's indices are handed out from one word: region number (24 bits), size (20), next index
-  // (20). A worker that wakes late compares the whole word, so it can never take an index of
-  // another region.
-  std::atomic<std::uint64_t> ticket_{0};
+  // A thread's part of a region is handed out from one word: region number (24 bits), end (20),
+  // next index (20). A worker that wakes late compares the whole word, so it can never take an
+  // index of another region.
+  struct alignas(64) Part {
+    std::atomic<std::uint64_t> ticket{0};
+  };
+  std::vector<Part> parts_;      // the caller's first
   std::atomic<int> pending_{0};  // indices of this region not yet finished
   std::atomic<Call> call_{nullptr};
   std::atomic<void*> context_{nullptr};

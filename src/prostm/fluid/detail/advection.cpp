@@ -5,8 +5,8 @@
 namespace prostm::fluid {
 namespace {
 
-void trace(const PaddedGrid& grid, const float* const velocity[3], float* const displacement[3],
-           int k0, int k1) {
+void trace(const PaddedGrid& grid, const float* const velocity[3], Displacements& moved, int k0,
+           int k1) {
   const auto last = static_cast<float>(grid.n - 1);
   for (int k = k0; k < k1; ++k) {
     for (int j = 0; j < grid.n; ++j) {
@@ -15,14 +15,14 @@ void trace(const PaddedGrid& grid, const float* const velocity[3], float* const 
         const float x = std::clamp(static_cast<float>(i) - 0.5F * velocity[0][c], 0.0F, last);
         const float y = std::clamp(static_cast<float>(j) - 0.5F * velocity[1][c], 0.0F, last);
         const float z = std::clamp(static_cast<float>(k) - 0.5F * velocity[2][c], 0.0F, last);
-        for (int a = 0; a < 3; ++a) displacement[a][c] = trilinear(grid, velocity[a], x, y, z);
+        for (int a = 0; a < 3; ++a) moved.at[a][c] = trilinear(grid, velocity[a], x, y, z);
       }
     }
   }
-  for (int a = 0; a < 3; ++a) extend_plane(grid, displacement[a], k0, k1);
+  for (int a = 0; a < 3; ++a) extend_plane(grid, moved.at[a].data(), k0, k1);
 }
 
-void sample(const PaddedGrid& grid, const Placement& place, const float* const displacement[3],
+void sample(const PaddedGrid& grid, const Placement& place, const Displacements& moved,
             const float* in, float* out, int k0, int k1) {
   const Index back = place.axis < 0 ? 0 : grid.stride(place.axis);
   for (int k = k0; k < k1; ++k) {
@@ -32,7 +32,7 @@ void sample(const PaddedGrid& grid, const Placement& place, const float* const d
         const float here[3] = {static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)};
         float from[3];
         for (int a = 0; a < 3; ++a) {
-          const float d = 0.5F * (displacement[a][c - back] + displacement[a][c]);
+          const float d = 0.5F * (moved.at[a][c - back] + moved.at[a][c]);
           from[a] = std::clamp(here[a] - d, place.lower[a], place.upper[a]);
         }
         out[c] = trilinear(grid, in, from[0], from[1], from[2]);
@@ -41,7 +41,17 @@ void sample(const PaddedGrid& grid, const Placement& place, const float* const d
   }
 }
 
+/// Blocks of the narrowest vector, of 4 floats.
+std::size_t block_count(const PaddedGrid& grid) {
+  constexpr int kLeastLanes = 4;
+  return static_cast<std::size_t>(grid.n * ((grid.n + kBlockRows - 1) / kBlockRows)) *
+         static_cast<std::size_t>(grid.width() / kLeastLanes);
+}
+
 }  // namespace
+
+Displacements::Displacements(const PaddedGrid& grid)
+    : at{Field(grid), Field(grid), Field(grid)}, ranges(block_count(grid)) {}
 
 Placement face_placement(int n, int axis) {
   Placement place;

@@ -2,6 +2,8 @@
 /// Semi-Lagrangian advection: one backtrace per cell, shared by all fields; kernels written plain
 /// and with vectors.
 
+#include <vector>
+
 #include "prostm/fluid/detail/padded_grid.hpp"
 
 namespace prostm::fluid {
@@ -18,15 +20,31 @@ Placement face_placement(int n, int axis);
 /// For cell centres whose halo holds the values outside: smoke.
 Placement centre_placement(int n);
 
+/// Least and greatest −d of some cells, per axis, and one value more: a vector each.
+struct ShiftRange {
+  alignas(16) float low[4] = {0, 0, 0, 0};
+  alignas(16) float high[4] = {0, 0, 0, 0};
+};
+
+constexpr int kBlockRows = 4;
+
+/// Displacements d of the particles that arrive at the cells, and their ranges in blocks of
+/// kBlockRows rows of one vector, which only the vector kernels write and read.
+struct Displacements {
+  explicit Displacements(const PaddedGrid& grid);
+  Field at[3];
+  std::vector<ShiftRange> ranges;
+};
+
 /// Velocities and displacements here are in cells per step; planes [k0, k1) are written.
 struct AdvectionKernels {
   /// Computes the displacement of the particle that arrives at each cell centre, by the midpoint
   /// rule (F2): the velocity half a step back along the cell's own, trilinear between the
   /// cell-centred velocities. Fills the halo of its own rows in x and y.
-  void (*trace)(const PaddedGrid& grid, const float* const velocity[3],
-                float* const displacement[3], int k0, int k1);
+  void (*trace)(const PaddedGrid& grid, const float* const velocity[3], Displacements& moved,
+                int k0, int k1);
   /// out(x) = in(x − d), trilinear (F3); d at a face is the mean of the two cells beside it.
-  void (*sample)(const PaddedGrid& grid, const Placement& place, const float* const displacement[3],
+  void (*sample)(const PaddedGrid& grid, const Placement& place, const Displacements& moved,
                  const float* in, float* out, int k0, int k1);
 };
 

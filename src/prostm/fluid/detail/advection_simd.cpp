@@ -5,9 +5,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Trilinear interpolation without gathers. Neighbouring cells come from neighbouring places: a tile
-// of a few rows of one vector takes its values from a small block of shifted rows. Each row in the
-// block is loaded once, contiguous, and weighted with the hat function max(0, 1 − |s − t|) of its
+// Trilinear interpolation without gathers. Neighbouring cells come from neighbouring places: a
+// block of a few rows of one vector takes its values from a small box of shifted rows. Each shifted
+// row is loaded once, contiguous, and weighted with the hat function max(0, 1 − |s − t|) of its
 // shift t and the lane's own shift s, which is the trilinear weight where the row is one of the
 // lane's eight corners and 0 where it is not.
 HWY_BEFORE_NAMESPACE();
@@ -19,35 +19,104 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-constexpr int kTileRows = 4;
 constexpr int kMaxLanes = 16;
 constexpr int kMaxTaps = 96;  // with more shifted rows, lane by lane is cheaper
 
-/// Shifts −d of a tile's lanes, clamped so that lane + shift stays in the field's range.
-struct Tile {
-  int i = 0, j = 0, k = 0, rows = 0;
-  alignas(64) float shift[3][kTileRows][kMaxLanes];
-  int first[3] = {0, 0, 0}, last[3] = {0, 0, 0};  // shifts of the block, inclusive
-
-  int taps() const {
-    return (last[0] - first[0] + 1) * (last[1] - first[1] + 1) * (last[2] - first[2] + 1);
-  }
+/// A field of places, the displacements there, and how much of d[c − back] + d[c] they are.
+struct Particles {
+  const Placement& place;
+  const float* const* displacement;
+  float factor;
+  Index back;
 };
 
-/// Returns the shifts clamped so that position + shift is from `lower` to `upper`.
-HWY_INLINE V clamp_shift(V shift, V position, float lower, float upper) {
-  const D d;
-  const V low = hn::Sub(hn::Set(d, lower), position), high = hn::Sub(hn::Set(d, upper), position);
-  return hn::Min(hn::Max(shift, low), high);
+/// A few rows of one vector, from which lane shifts −d go to whole shifts `first` to `last`.
+struct Block {
+  int i = 0, j = 0, k = 0, rows = 0;
+  alignas(16) std::int32_t first[4] = {0, 0, 0, 0};
+  alignas(16) std::int32_t last[4] = {0, 0, 0, 0};
+  bool clamped = false;  // a lane may leave the field's range
+
+  int taps(int axis) const { return last[axis] - first[axis] + 1; }
+};
+
+Index lanes() {
+  return static_cast<Index>(hn::Lanes(D()));
 }
 
-/// Sets the range of whole shifts that the tile's lanes need along an axis.
-HWY_INLINE void set_range(Tile& tile, int axis, V low, V high, float upper_shift) {
+/// Index of the range of the block that holds cell (i, j, k).
+HWY_INLINE std::size_t range_index(const PaddedGrid& grid, Index i, Index j, Index k) {
+  const Index across = grid.width() / lanes(), up = (grid.n + kBlockRows - 1) / kBlockRows;
+  return static_cast<std::size_t>((k * up + j / kBlockRows) * across + i / lanes());
+}
+
+/// The range of the shifts −factor·d in a block.
+HWY_INLINE ShiftRange range_of(const PaddedGrid& grid, const Block& block,
+                               const float* const d_of[3], float factor) {
   const D d;
-  const float least = hn::GetLane(hn::MinOfLanes(d, hn::Floor(low)));
-  const float most = hn::GetLane(hn::MaxOfLanes(d, hn::Floor(high))) + 1.0F;
-  tile.first[axis] = static_cast<int>(least);
-  tile.last[axis] = static_cast<int>(std::min(most, std::max(upper_shift, least)));
+  ShiftRange range;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* from = d_of[axis] + grid.index(block.i, block.j, block.k);
+    V low = hn::LoadU(d, from), high = low;
+    for (int r = 1; r < block.rows; ++r) {
+      const V v = hn::LoadU(d, from + r * grid.row());
+      low = hn::Min(low, v);
+      high = hn::Max(high, v);
+    }
+    range.low[axis] = -factor * hn::GetLane(hn::MaxOfLanes(d, high));
+    range.high[axis] = -factor * hn::GetLane(hn::MinOfLanes(d, low));
+  }
+  return range;
+}
+
+/// The whole shifts from the least to the greatest of two ranges.
+HWY_INLINE void set_shifts(const ShiftRange& a, const ShiftRange& b, Block& block) {
+  const hn::CappedTag<float, 4> d;
+  const hn::RebindToSigned<decltype(d)> whole;
+  for (std::size_t axis = 0; axis < 4; axis += hn::Lanes(d)) {
+    const auto low = hn::Min(hn::Load(d, a.low + axis), hn::Load(d, b.low + axis));
+    const auto high = hn::Max(hn::Load(d, a.high + axis), hn::Load(d, b.high + axis));
+    hn::Store(hn::ConvertTo(whole, hn::Floor(low)), whole, block.first + axis);
+    const auto above = hn::Add(hn::Floor(high), hn::Set(d, 1.0F));
+    hn::Store(hn::ConvertTo(whole, above), whole, block.last + axis);
+  }
+}
+
+/// Clamps the shifts of a block that may leave the range of the field.
+HWY_INLINE void clamp_shifts(const Placement& place, Block& block) {
+  const int begin[3] = {block.i, block.j, block.k};
+  const int size[3] = {static_cast<int>(lanes()), block.rows, 1};
+  block.clamped = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int near = begin[axis], far = near + size[axis] - 1;
+    const auto lower = static_cast<int>(place.lower[axis]),
+               upper = static_cast<int>(place.upper[axis]);
+    if (near + block.first[axis] >= lower && far + block.last[axis] <= upper) continue;
+    block.clamped = true;
+    const int first = std::clamp(block.first[axis], lower - far, upper - far);
+    const int last = std::clamp(block.last[axis], lower - near, upper - near);
+    // taps beyond the range have weight 0 and may not exist; along x a second one is in the row's
+    // padding
+    block.first[axis] = first;
+    block.last[axis] = axis == 0 ? std::max(last, first + 1) : last;
+  }
+}
+
+/// The shifts of the lanes of row r along an axis, clamped so that position + shift stays in the
+/// field's range.
+HWY_INLINE V shift_of(const PaddedGrid& grid, const Particles& from, const Block& block, int r,
+                      int axis) {
+  const D d;
+  const float* at = from.displacement[axis] + grid.index(block.i, block.j + r, block.k);
+  const V sum = hn::Add(hn::LoadU(d, at - from.back), hn::LoadU(d, at));
+  const V shift = hn::Mul(hn::Set(d, -from.factor), sum);
+  if (!block.clamped) return shift;
+  const V position = axis == 0   ? hn::Iota(d, static_cast<float>(block.i))
+                     : axis == 1 ? hn::Set(d, static_cast<float>(block.j + r))
+                                 : hn::Set(d, static_cast<float>(block.k));
+  const V low = hn::Sub(hn::Set(d, from.place.lower[axis]), position);
+  const V high = hn::Sub(hn::Set(d, from.place.upper[axis]), position);
+  return hn::Min(hn::Max(shift, low), high);
 }
 
 /// max(0, 1 − |s − t|)
@@ -57,154 +126,170 @@ HWY_INLINE V hat(V s, int t) {
   return hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0F), distance));
 }
 
-/// Weights of a row's lanes for each of the block's shifts along an axis.
-struct AxisWeights {
-  alignas(64) float at[kMaxTaps][kMaxLanes];
+/// Hats of two or three shifts along an axis.
+struct Hats {
+  V near, middle, far;
 };
 
-HWY_INLINE void set_weights(const Tile& tile, int r, int axis, AxisWeights& weights) {
+template <int kTaps>
+HWY_INLINE Hats hats(V s, int first) {
   const D d;
-  const V s = hn::Load(d, tile.shift[axis][r]);
-  for (int t = tile.first[axis]; t <= tile.last[axis]; ++t)
-    hn::Store(hat(s, t), d, weights.at[t - tile.first[axis]]);
+  const V one = hn::Set(d, 1.0F), u = hn::Sub(s, hn::Set(d, static_cast<float>(first)));
+  if constexpr (kTaps == 2) return {hn::Sub(one, u), u, u};
+  const V past = hn::Sub(u, one);
+  return {hn::Max(hn::Zero(d), hn::Neg(past)), hn::Sub(one, hn::Abs(past)),
+          hn::Max(hn::Zero(d), past)};
 }
 
-/// Returns Σ weight × value over kTaps shifts along x, or over `taps` if kTaps is 0.
-template <int kTaps>
-HWY_INLINE V along_x(const AxisWeights& weights, const float* field, int taps) {
+template <int kX>
+HWY_INLINE V along_x(const Hats& x, const float* field) {
   const D d;
-  V sum = hn::Mul(hn::Load(d, weights.at[0]), hn::LoadU(d, field));
-  for (int t = 1; t < (kTaps > 0 ? kTaps : taps); ++t)
-    sum = hn::MulAdd(hn::Load(d, weights.at[t]), hn::LoadU(d, field + t), sum);
+  V sum = hn::Mul(x.near, hn::LoadU(d, field));
+  sum = hn::MulAdd(x.middle, hn::LoadU(d, field + 1), sum);
+  if constexpr (kX == 3) sum = hn::MulAdd(x.far, hn::LoadU(d, field + 2), sum);
   return sum;
 }
 
-/// Computes the values of kFields fields at the shifted places of row r of the tile.
-template <int kFields, int kTaps>
-HWY_INLINE void sum_block(const PaddedGrid& grid, const Tile& tile, int r, const AxisWeights& wx,
-                          const AxisWeights& wy, const float* const* fields, float* const* out) {
+template <int kX, int kY>
+HWY_INLINE V along_xy(const Hats& x, const Hats& y, const float* field, Index row) {
+  V sum = hn::Mul(y.near, along_x<kX>(x, field));
+  sum = hn::MulAdd(y.middle, along_x<kX>(x, field + row), sum);
+  if constexpr (kY == 3) sum = hn::MulAdd(y.far, along_x<kX>(x, field + 2 * row), sum);
+  return sum;
+}
+
+/// Interpolates with kX × kY shifts along x and y.
+template <int kFields, int kX, int kY>
+HWY_INLINE void sum_few(const PaddedGrid& grid, const Particles& from, const Block& block,
+                        const float* const* fields, float* const* out) {
   const D d;
-  const V sz = hn::Load(d, tile.shift[2][r]);
-  const Index own = grid.index(tile.i, tile.j + r, tile.k);
-  const int taps = tile.last[0] - tile.first[0] + 1;
-  V sum0 = hn::Zero(d), sum1 = hn::Zero(d), sum2 = hn::Zero(d);
-  for (int tz = tile.first[2]; tz <= tile.last[2]; ++tz) {
-    const V wz = hat(sz, tz);
-    for (int ty = tile.first[1]; ty <= tile.last[1]; ++ty) {
-      const V w = hn::Mul(wz, hn::Load(d, wy.at[ty - tile.first[1]]));
-      const Index o = own + tz * grid.plane() + ty * grid.row() + tile.first[0];
-      sum0 = hn::MulAdd(w, along_x<kTaps>(wx, fields[0] + o, taps), sum0);
+  const Index row = grid.row(), plane = grid.plane();
+  for (int r = 0; r < block.rows; ++r) {
+    const Hats x = hats<kX>(shift_of(grid, from, block, r, 0), block.first[0]);
+    const Hats y = hats<kY>(shift_of(grid, from, block, r, 1), block.first[1]);
+    const V sz = shift_of(grid, from, block, r, 2);
+    const Index own = grid.index(block.i, block.j + r, block.k);
+    const Index o = own + block.first[1] * row + block.first[0];
+    V sum0 = hn::Zero(d), sum1 = hn::Zero(d), sum2 = hn::Zero(d);
+    for (int t = block.first[2]; t <= block.last[2]; ++t) {
+      const V z = hat(sz, t);
+      sum0 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[0] + o + t * plane, row), sum0);
       if constexpr (kFields == 3) {
-        sum1 = hn::MulAdd(w, along_x<kTaps>(wx, fields[1] + o, taps), sum1);
-        sum2 = hn::MulAdd(w, along_x<kTaps>(wx, fields[2] + o, taps), sum2);
+        sum1 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[1] + o + t * plane, row), sum1);
+        sum2 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[2] + o + t * plane, row), sum2);
       }
     }
-  }
-  hn::StoreU(sum0, d, out[0] + own);
-  if constexpr (kFields == 3) {
-    hn::StoreU(sum1, d, out[1] + own);
-    hn::StoreU(sum2, d, out[2] + own);
-  }
-}
-
-/// Sums the block of a row; the compiler knows common numbers of shifts along x.
-template <int kFields>
-HWY_INLINE void interpolate_row(const PaddedGrid& grid, const Tile& tile, int r,
-                                const float* const* fields, float* const* out) {
-  AxisWeights wx, wy;
-  set_weights(tile, r, 0, wx);
-  set_weights(tile, r, 1, wy);
-  switch (tile.last[0] - tile.first[0] + 1) {
-    case 2:
-      return sum_block<kFields, 2>(grid, tile, r, wx, wy, fields, out);
-    case 3:
-      return sum_block<kFields, 3>(grid, tile, r, wx, wy, fields, out);
-    default:
-      return sum_block<kFields, 0>(grid, tile, r, wx, wy, fields, out);
+    hn::StoreU(sum0, d, out[0] + own);
+    if constexpr (kFields == 3) {
+      hn::StoreU(sum1, d, out[1] + own);
+      hn::StoreU(sum2, d, out[2] + own);
+    }
   }
 }
 
-/// Does the same lane by lane, where the flow shears so much that the block would be large.
+/// Does the same with any number of shifts.
 template <int kFields>
-void interpolate_lanes(const PaddedGrid& grid, const Tile& tile, int r, const float* const* fields,
-                       float* const* out) {
-  const auto lanes = static_cast<int>(hn::Lanes(D()));
-  for (int lane = 0; lane < lanes; ++lane) {
-    const float x = static_cast<float>(tile.i + lane) + tile.shift[0][r][lane];
-    const float y = static_cast<float>(tile.j + r) + tile.shift[1][r][lane];
-    const float z = static_cast<float>(tile.k) + tile.shift[2][r][lane];
-    const Index c = grid.index(tile.i + lane, tile.j + r, tile.k);
-    for (int f = 0; f < kFields; ++f) out[f][c] = trilinear(grid, fields[f], x, y, z);
-  }
-}
-
-/// Advects one tile; its shifts are −factor·(d[c − back] + d[c]).
-template <int kFields>
-HWY_INLINE void advect_tile(const PaddedGrid& grid, const Placement& place, Tile& tile,
-                            float factor, Index back, const float* const displacement[3],
-                            const float* const* fields, float* const* out) {
+void sum_many(const PaddedGrid& grid, const Particles& from, const Block& block,
+              const float* const* fields, float* const* out) {
   const D d;
-  const V iota = hn::Iota(d, static_cast<float>(tile.i));
-  for (int axis = 0; axis < 3; ++axis) {
-    V low = hn::Set(d, 1e6F), high = hn::Set(d, -1e6F);
-    for (int r = 0; r < tile.rows; ++r) {
-      const float* from = displacement[axis] + grid.index(tile.i, tile.j + r, tile.k);
-      const V sum = hn::Add(hn::LoadU(d, from - back), hn::LoadU(d, from));
-      const V position = axis == 0   ? iota
-                         : axis == 1 ? hn::Set(d, static_cast<float>(tile.j + r))
-                                     : hn::Set(d, static_cast<float>(tile.k));
-      const V shift = clamp_shift(hn::Mul(hn::Set(d, -factor), sum), position, place.lower[axis],
-                                  place.upper[axis]);
-      hn::Store(shift, d, tile.shift[axis][r]);
-      low = hn::Min(low, shift);
-      high = hn::Max(high, shift);
-    }
-    // taps beyond the range have weight 0 and may not exist; along x they stay inside the row's
-    // padding
-    const int at = axis == 1 ? tile.j : tile.k;
-    set_range(tile, axis, low, high, axis == 0 ? 1e6F : place.upper[axis] - static_cast<float>(at));
-  }
-  const bool block = tile.taps() <= kMaxTaps;
-  for (int r = 0; r < tile.rows; ++r) {
-    if (block) {
-      interpolate_row<kFields>(grid, tile, r, fields, out);
-    } else {
-      interpolate_lanes<kFields>(grid, tile, r, fields, out);
-    }
-  }
-}
-
-template <int kFields>
-HWY_INLINE void advect_planes(const PaddedGrid& grid, const Placement& place, float factor,
-                              Index back, const float* const displacement[3],
-                              const float* const* fields, float* const* out, int k0, int k1) {
-  const auto step = static_cast<int>(hn::Lanes(D()));
-  Tile tile;
-  for (tile.k = k0; tile.k < k1; ++tile.k) {
-    for (tile.j = 0; tile.j < place.count[1]; tile.j += kTileRows) {
-      tile.rows = std::min(kTileRows, place.count[1] - tile.j);
-      for (tile.i = 0; tile.i < grid.n; tile.i += step) {
-        advect_tile<kFields>(grid, place, tile, factor, back, displacement, fields, out);
+  for (int r = 0; r < block.rows; ++r) {
+    const V sx = shift_of(grid, from, block, r, 0), sy = shift_of(grid, from, block, r, 1),
+            sz = shift_of(grid, from, block, r, 2);
+    const Index own = grid.index(block.i, block.j + r, block.k);
+    for (int f = 0; f < kFields; ++f) {
+      V sum = hn::Zero(d);
+      for (int z = block.first[2]; z <= block.last[2]; ++z) {
+        for (int y = block.first[1]; y <= block.last[1]; ++y) {
+          const V w = hn::Mul(hat(sz, z), hat(sy, y));
+          const float* row = fields[f] + own + z * grid.plane() + y * grid.row();
+          for (int x = block.first[0]; x <= block.last[0]; ++x)
+            sum = hn::MulAdd(hn::Mul(w, hat(sx, x)), hn::LoadU(d, row + x), sum);
+        }
       }
+      hn::StoreU(sum, d, out[f] + own);
     }
   }
 }
 
-void Trace(const PaddedGrid& grid, const float* const velocity[3], float* const displacement[3],
-           int k0, int k1) {
+/// Does the same lane by lane, where the flow shears so much that the box would be large.
+template <int kFields>
+void sum_lanes(const PaddedGrid& grid, const Particles& from, const Block& block,
+               const float* const* fields, float* const* out) {
+  const D d;
+  alignas(64) float shift[3][kMaxLanes];
+  for (int r = 0; r < block.rows; ++r) {
+    for (int axis = 0; axis < 3; ++axis)
+      hn::Store(shift_of(grid, from, block, r, axis), d, shift[axis]);
+    for (int lane = 0; lane < static_cast<int>(lanes()); ++lane) {
+      const float x = static_cast<float>(block.i + lane) + shift[0][lane];
+      const float y = static_cast<float>(block.j + r) + shift[1][lane];
+      const float z = static_cast<float>(block.k) + shift[2][lane];
+      const Index c = grid.index(block.i + lane, block.j + r, block.k);
+      for (int f = 0; f < kFields; ++f) out[f][c] = trilinear(grid, fields[f], x, y, z);
+    }
+  }
+}
+
+/// Computes the values of kFields fields at the shifted places of a block.
+template <int kFields>
+HWY_INLINE void interpolate(const PaddedGrid& grid, const Particles& from, const Block& block,
+                            const float* const* fields, float* const* out) {
+  const int x = block.taps(0), y = block.taps(1);
+  if (x * y * block.taps(2) > kMaxTaps) return sum_lanes<kFields>(grid, from, block, fields, out);
+  if (x == 2 && y == 2) return sum_few<kFields, 2, 2>(grid, from, block, fields, out);
+  if (x == 2 && y == 3) return sum_few<kFields, 2, 3>(grid, from, block, fields, out);
+  if (x == 3 && y == 2) return sum_few<kFields, 3, 2>(grid, from, block, fields, out);
+  if (x == 3 && y == 3) return sum_few<kFields, 3, 3>(grid, from, block, fields, out);
+  sum_many<kFields>(grid, from, block, fields, out);
+}
+
+/// Calls f(block) for the blocks of planes [k0, k1).
+template <class F>
+HWY_INLINE void over_blocks(const PaddedGrid& grid, int rows, int k0, int k1, const F& f) {
+  Block block;
+  for (block.k = k0; block.k < k1; ++block.k) {
+    for (block.j = 0; block.j < rows; block.j += kBlockRows) {
+      block.rows = std::min(kBlockRows, rows - block.j);
+      for (block.i = 0; block.i < grid.n; block.i += static_cast<int>(lanes())) f(block);
+    }
+  }
+}
+
+void Trace(const PaddedGrid& grid, const float* const velocity[3], Displacements& moved, int k0,
+           int k1) {
   Placement place;
   for (int a = 0; a < 3; ++a) {
     place.count[a] = grid.n;
     place.upper[a] = static_cast<float>(grid.n - 1);
   }
-  advect_planes<3>(grid, place, 0.25F, 0, velocity, velocity, displacement, k0, k1);
-  for (int a = 0; a < 3; ++a) extend_plane(grid, displacement[a], k0, k1);
+  const Particles from{place, velocity, 0.25F, 0};
+  float* const out[3] = {moved.at[0].data(), moved.at[1].data(), moved.at[2].data()};
+  over_blocks(grid, grid.n, k0, k1, [&](Block& block) HWY_ATTR {
+    const ShiftRange half = range_of(grid, block, velocity, 0.5F);
+    set_shifts(half, half, block);
+    clamp_shifts(place, block);
+    interpolate<3>(grid, from, block, velocity, out);
+    moved.ranges[range_index(grid, block.i, block.j, block.k)] = range_of(grid, block, out, 1.0F);
+  });
+  for (float* d : out) extend_plane(grid, d, k0, k1);
 }
 
-void Sample(const PaddedGrid& grid, const Placement& place, const float* const displacement[3],
+void Sample(const PaddedGrid& grid, const Placement& place, const Displacements& moved,
             const float* in, float* out, int k0, int k1) {
-  const Index back = place.axis < 0 ? 0 : grid.stride(place.axis);
-  advect_planes<1>(grid, place, 0.5F, back, displacement, &in, &out, k0, k1);
+  const float* const d[3] = {moved.at[0].data(), moved.at[1].data(), moved.at[2].data()};
+  const Particles from{place, d, 0.5F, place.axis < 0 ? 0 : grid.stride(place.axis)};
+  const Index end = grid.n - 1;
+  over_blocks(grid, place.count[1], k0, k1, [&](Block& block) HWY_ATTR {
+    const Index i = block.i, j = std::min<Index>(block.j, end), k = std::min<Index>(block.k, end);
+    // the halo before the first cell holds its copy
+    const Index before[3] = {place.axis == 0 ? std::max<Index>(i - 1, 0) : i,
+                             place.axis == 1 ? std::max<Index>(j - 1, 0) : j,
+                             place.axis == 2 ? std::max<Index>(k - 1, 0) : k};
+    set_shifts(moved.ranges[range_index(grid, i, j, k)],
+               moved.ranges[range_index(grid, before[0], before[1], before[2])], block);
+    clamp_shifts(place, block);
+    interpolate<1>(grid, from, block, &in, &out);
+  });
   if (place.axis != 0) return;
   // the last face of each row stands alone
   for (int k = k0; k < k1; ++k) {
@@ -212,12 +297,10 @@ void Sample(const PaddedGrid& grid, const Placement& place, const float* const d
       const Index c = grid.index(grid.n, j, k);
       const float here[3] = {static_cast<float>(grid.n), static_cast<float>(j),
                              static_cast<float>(k)};
-      float from[3];
-      for (int a = 0; a < 3; ++a) {
-        const float d = 0.5F * (displacement[a][c - 1] + displacement[a][c]);
-        from[a] = std::clamp(here[a] - d, place.lower[a], place.upper[a]);
-      }
-      out[c] = trilinear(grid, in, from[0], from[1], from[2]);
+      float x[3];
+      for (int a = 0; a < 3; ++a)
+        x[a] = std::clamp(here[a] - 0.5F * (d[a][c - 1] + d[a][c]), place.lower[a], place.upper[a]);
+      out[c] = trilinear(grid, in, x[0], x[1], x[2]);
     }
   }
 }
@@ -234,13 +317,13 @@ namespace {
 HWY_EXPORT(Trace);
 HWY_EXPORT(Sample);
 
-void trace(const PaddedGrid& grid, const float* const velocity[3], float* const displacement[3],
-           int k0, int k1) {
-  HWY_DYNAMIC_DISPATCH(Trace)(grid, velocity, displacement, k0, k1);
+void trace(const PaddedGrid& grid, const float* const velocity[3], Displacements& moved, int k0,
+           int k1) {
+  HWY_DYNAMIC_DISPATCH(Trace)(grid, velocity, moved, k0, k1);
 }
-void sample(const PaddedGrid& grid, const Placement& place, const float* const displacement[3],
+void sample(const PaddedGrid& grid, const Placement& place, const Displacements& moved,
             const float* in, float* out, int k0, int k1) {
-  HWY_DYNAMIC_DISPATCH(Sample)(grid, place, displacement, in, out, k0, k1);
+  HWY_DYNAMIC_DISPATCH(Sample)(grid, place, moved, in, out, k0, k1);
 }
 
 }  // namespace

@@ -3,21 +3,25 @@
 namespace prostm::fluid {
 namespace {
 
-/// Calls f(index) for each shut face in the hands' box, the floor and the box's outer sides
-/// excepted.
-template <class F>
-void for_shut_faces(const PressureLevel& level, int axis, F&& f) {
+/// Lists the shut faces in the hands' box, the floor and the box's outer sides excepted.
+void list_shut_faces(const PressureLevel& level, int axis, std::vector<Index>& shut) {
+  const CellBox& box = level.box;
+  const int end = level.grid.n - 1;  // the box's outer sides are beyond
   int first[3], last[3];
   for (int a = 0; a < 3; ++a) {
-    first[a] = std::max(level.box.lower[a], a == axis ? 1 : 0);
-    last[a] = std::min(level.box.upper[a], level.grid.n - 1);
+    first[a] = std::max(box.lower[a], a == axis ? 1 : 0);
+    last[a] = std::min(a == axis ? box.upper[a] : box.upper[a] - 1, end);
   }
+  shut.clear();
   for (int k = first[2]; k <= last[2]; ++k) {
     for (int j = first[1]; j <= last[1]; ++j) {
+      const RowSpan span = level.face_span(axis, j, k);
+      if (span.empty()) continue;
       const Index row = level.grid.index(0, j, k);
       const float* open = level.open[axis].data() + row;
-      for (int i = first[0]; i <= last[0]; ++i) {
-        if (open[i] == 0.0F) f(row + i);
+      for (int i = std::max<int>(first[0], span.begin); i <= std::min<int>(last[0], span.end);
+           ++i) {
+        if (open[i] == 0.0F) shut.push_back(row + i);
       }
     }
   }
@@ -25,29 +29,30 @@ void for_shut_faces(const PressureLevel& level, int axis, F&& f) {
 
 }  // namespace
 
-void extend_into_hands(const PressureLevel& level, int axis, Field& u,
-                       PaddedField<std::uint8_t>& layer) {
+void extend_into_hands(const PressureLevel& level, int axis, Field& u, ShutFaces& faces) {
+  faces.at.clear();
   if (level.box.empty()) return;
+  list_shut_faces(level, axis, faces.at);
   const Field& open = level.open[axis];
   const Index row = level.grid.row(), plane = level.grid.plane();
   constexpr std::uint8_t kLayers = 2;
   for (std::uint8_t pass = 1; pass <= kLayers; ++pass) {
-    for_shut_faces(level, axis, [&](Index c) {
-      if (layer[c] != 0) return;
+    for (const Index c : faces.at) {
+      if (faces.layer[c] != 0) continue;
       float sum = 0.0F, count = 0.0F;
       for (const Index o : {Index{-1}, Index{1}, -row, row, -plane, plane}) {
         const bool known =
-            open[c + o] > 0.0F ? pass == 1 : layer[c + o] != 0 && layer[c + o] < pass;
+            open[c + o] > 0.0F ? pass == 1 : faces.layer[c + o] != 0 && faces.layer[c + o] < pass;
         if (!known) continue;
         sum += u[c + o];
         count += 1.0F;
       }
-      if (count == 0.0F) return;
+      if (count == 0.0F) continue;
       u[c] = sum / count;
-      layer[c] = pass;
-    });
+      faces.layer[c] = pass;
+    }
   }
-  for_shut_faces(level, axis, [&](Index c) { layer[c] = 0; });
+  for (const Index c : faces.at) faces.layer[c] = 0;
 }
 
 }  // namespace prostm::fluid

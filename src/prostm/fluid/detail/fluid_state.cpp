@@ -9,6 +9,7 @@
 #include "prostm/fluid/detail/carry_over.hpp"
 #include "prostm/fluid/detail/extrapolation.hpp"
 #include "prostm/fluid/detail/forces.hpp"
+#include "prostm/fluid/detail/largest.hpp"
 #include "prostm/fluid/detail/over_planes.hpp"
 #include "prostm/fluid/detail/settings.hpp"
 #include "prostm/fluid/detail/viscosity.hpp"
@@ -21,16 +22,6 @@ using fluid::Index;
 namespace {
 
 constexpr float kAbsurd = 1e6F;  // [m/s]; a state with a larger value is unusable
-
-/// Returns the bits of the largest |x| in [begin, end), without a floating-point comparison: NaN
-/// would trap there, and has the largest bits of all.
-std::int32_t largest_bits(const float* begin, const float* end) {
-  std::int32_t largest = 0;
-  for (const float* x = begin; x != end; ++x) {
-    largest = std::max(largest, std::bit_cast<std::int32_t>(*x) & 0x7fffffff);
-  }
-  return largest;
-}
 
 GridShape grid_shape(const FluidSettings& settings) {
   fluid::validate(settings);
@@ -59,9 +50,8 @@ Fluid::State::State(const FluidSettings& s, const SmokeInflow& from, WorkerPool&
       next_velocity{Field(padded), Field(padded), Field(padded)},
       next_smoke(padded),
       centre{Field(padded), Field(padded), Field(padded)},
-      trace{Field(padded), Field(padded), Field(padded)},
-      layer{fluid::PaddedField<std::uint8_t>(padded), fluid::PaddedField<std::uint8_t>(padded),
-            fluid::PaddedField<std::uint8_t>(padded)},
+      moved(padded),
+      shut{fluid::ShutFaces(padded), fluid::ShutFaces(padded), fluid::ShutFaces(padded)},
       sums(static_cast<std::size_t>(s.cells)),
       pressure_out(grid.cell_count()),
       smoke_out(grid.cell_count()),
@@ -122,7 +112,7 @@ void Fluid::State::prepare(double step_dt) {
 void Fluid::State::meet(const HandRaster& raster) {
   const StageTimer total;
   StageTimer stage;
-  usable = usable && raster.grid == grid && fluid::is_finite(raster);
+  usable = usable && raster.grid == grid && fluid::is_finite(raster, pool);
   if (usable) {
     place_hands(raster);
     stats.hand = stage.lap();
@@ -151,14 +141,13 @@ void Fluid::State::let_act(double share) {
 /// Ends a sub-step among the hands of the step before.
 void Fluid::State::finish_substep() {
   solve();
-  project();
-  usable = check();
+  usable = project();
   if (usable) extend_into_hands();
 }
 
 void Fluid::State::extend_into_hands() {
   pool.run(3, [&](int axis) {
-    fluid::extend_into_hands(solver.fine(), axis, velocity[axis], layer[axis]);
+    fluid::extend_into_hands(solver.fine(), axis, velocity[axis], shut[axis]);
   });
 }
 
@@ -166,9 +155,8 @@ FluidStats Fluid::State::settle() {
   const StageTimer timer;
   const double before = stats.total;
   if (usable) {
-    project();
+    usable = project();
     stats.solve += timer.seconds();
-    usable = check();
     if (!usable) reset();
   }
   if (usable) {
@@ -192,20 +180,18 @@ void Fluid::State::advect() {
   });
   // displacements of the particles
   const float* const from[3] = {centre[0].data(), centre[1].data(), centre[2].data()};
-  float* const moved[3] = {trace[0].data(), trace[1].data(), trace[2].data()};
   over_planes([&](int k0, int k1) { kernels.trace(padded, from, moved, k0, k1); });
   press_early();
   surroundings.set_smoke_halo(smoke);
   // the values that they bring
-  const float* const displacement[3] = {trace[0].data(), trace[1].data(), trace[2].data()};
   over_planes([&](int k0, int k1) {
     for (int axis = 0; axis < 3; ++axis) {
       const int faces = axis == 2 && k1 == n ? n + 1 : k1;
-      kernels.sample(padded, fluid::face_placement(n, axis), displacement, velocity[axis].data(),
+      kernels.sample(padded, fluid::face_placement(n, axis), moved, velocity[axis].data(),
                      next_velocity[axis].data(), k0, faces);
     }
-    kernels.sample(padded, fluid::centre_placement(n), displacement, smoke.data(),
-                   next_smoke.data(), k0, k1);
+    kernels.sample(padded, fluid::centre_placement(n), moved, smoke.data(), next_smoke.data(), k0,
+                   k1);
   });
   for (int axis = 0; axis < 3; ++axis) std::swap(velocity[axis], next_velocity[axis]);
   std::swap(smoke, next_smoke);
@@ -283,10 +269,10 @@ void Fluid::State::confine_vorticity() {
   });
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k)
-      fluid::confinement_force(padded, centre, magnitude, epsilon, trace, k);
+      fluid::confinement_force(padded, centre, magnitude, epsilon, moved.at, k);
   });
   over_planes([&](int k0, int k1) {
-    for (int k = k0; k < k1; ++k) fluid::add_centred_force(padded, trace, step, velocity, k);
+    for (int k = k0; k < k1; ++k) fluid::add_centred_force(padded, moved.at, step, velocity, k);
   });
   // the scratch doubles as the next smoke, whose halo must be clear air
   magnitude.fill(0.0F);
@@ -295,9 +281,11 @@ void Fluid::State::confine_vorticity() {
 void Fluid::State::place_hands(const HandRaster& raster) {
   obstacle.update(raster, solver.fine());
   lowest_hand = fluid::lowest_of(raster);
-  solver.rebuild();
-  push_swept(raster);
-  mark_fluid_cells(raster);
+  pool.run(2, [&](int task) {
+    if (task == 0) return solver.rebuild();
+    push_swept(raster);
+    mark_fluid_cells(raster);
+  });
 }
 
 void Fluid::State::push_swept(const HandRaster& raster) {
@@ -327,8 +315,10 @@ void Fluid::State::mark_fluid_cells(const HandRaster& raster) {
   marked = raster.box;
   for (int k = marked.lower[2]; k < marked.upper[2]; ++k) {
     for (int j = marked.lower[1]; j < marked.upper[1]; ++j) {
-      if (solver.fine().span(j, k).empty()) continue;
-      for (int i = marked.lower[0]; i < marked.upper[0]; ++i) {
+      const fluid::RowSpan span = solver.fine().span(j, k);
+      const int first = std::max<int>(marked.lower[0], span.begin),
+                last = std::min<int>(marked.upper[0], span.end);
+      for (int i = first; i < last; ++i) {
         const Index c = padded.index(i, j, k);
         row_of(j, k)[i] = fluid::is_in_hand(raster, i, j, k) || obstacle.closed(c) ? 0 : 1;
         if (obstacle.closed(c)) smoke[c] = 0.0F;
@@ -369,16 +359,6 @@ void Fluid::State::solve() {
   if (is_split()) let_act(1.0 - early);
 }
 
-void Fluid::State::project() {
-  const auto factor = static_cast<float>(1.0 / pressure_per_velocity());
-  over_planes([&](int k0, int k1) {
-    for (int k = k0; k < k1; ++k) {
-      fluid::subtract_gradient(solver.fine(), obstacle, solver.pressure().data(), factor, velocity,
-                               k);
-    }
-  });
-}
-
 /// The largest of the planes' `largest`.
 std::int32_t Fluid::State::largest_over_planes() const {
   std::int32_t largest = 0;
@@ -386,16 +366,21 @@ std::int32_t Fluid::State::largest_over_planes() const {
   return largest;
 }
 
-/// Whether the state is usable: has no NaN, which would trap in later comparisons, and no absurd
-/// speed.
-bool Fluid::State::check() {
+/// Makes the velocity free of divergence; false if the state is unusable: has NaN, which would trap
+/// in later comparisons, or an absurd speed.
+bool Fluid::State::project() {
+  const auto factor = static_cast<float>(1.0 / pressure_per_velocity());
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
+      fluid::subtract_gradient(solver.fine(), obstacle, solver.pressure().data(), factor, velocity,
+                               k);
       std::int32_t& largest = sums[static_cast<std::size_t>(k)].largest;
       const Index c = padded.index(0, 0, k);
       largest = 0;
-      for (const Field& u : velocity)
-        largest = std::max(largest, largest_bits(u.data() + c, u.data() + c + padded.plane()));
+      for (const Field& u : velocity) {
+        largest =
+            std::max(largest, fluid::largest_bits(u.data() + c, u.data() + c + padded.plane()));
+      }
     }
   });
   const std::int32_t largest = largest_over_planes();
@@ -416,7 +401,7 @@ bool Fluid::State::publish() {
       for (int j = 0; j < n; ++j) {
         const Index c = padded.index(0, j, k);
         const float* pressure = felt.data() + c;
-        largest = std::max(largest, largest_bits(pressure, pressure + n));
+        largest = std::max(largest, fluid::largest_bits(pressure, pressure + n));
         std::copy_n(pressure, n, pressure_out.data() + grid.cell_index(0, j, k));
         std::copy_n(smoke.data() + c, n, smoke_out.data() + grid.cell_index(0, j, k));
       }

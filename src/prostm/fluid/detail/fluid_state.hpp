@@ -8,6 +8,7 @@
 
 #include "prostm/fluid/detail/advection.hpp"
 #include "prostm/fluid/detail/conjugate_gradients.hpp"
+#include "prostm/fluid/detail/extrapolation.hpp"
 #include "prostm/fluid/detail/obstacle.hpp"
 #include "prostm/fluid/detail/pressure_solver.hpp"
 #include "prostm/fluid/detail/projection.hpp"
@@ -34,8 +35,7 @@ struct Fluid::State {
   void place_hands(const HandRaster& raster);
   void solve();
   bool publish();
-  void project();
-  bool check();
+  bool project();
   void measure();
 
   void finish_substep();
@@ -80,8 +80,9 @@ struct Fluid::State {
 
   // scratch
   fluid::Field next_velocity[3], next_smoke;
-  fluid::Field centre[3], trace[3];  // cell-centred velocity and displacement [cells per step]
-  fluid::PaddedField<std::uint8_t> layer[3];
+  fluid::Field centre[3];      // cell-centred velocity [cells per step]
+  fluid::Displacements moved;  // [cells per step]
+  fluid::ShutFaces shut[3];
   struct PlaneSums {
     fluid::DivergenceSum divergence;
     std::int32_t largest = 0;  // the bits of the largest |pressure|, then of the largest |velocity|

@@ -2,11 +2,19 @@
 
 #include <cmath>
 
+// plain loops, compiled for each vector width
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "prostm/fluid/detail/forces.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace prostm::fluid {
+namespace HWY_NAMESPACE {
 namespace {
 
 /// ∇×u by centred differences, cell edge 1.
-void curl(const PaddedGrid& grid, const Field u[3], Index c, float omega[3]) {
+HWY_INLINE void curl(const PaddedGrid& grid, const Field u[3], Index c, float omega[3]) {
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3, d = (a + 2) % 3;
     const Index sb = grid.stride(b), sd = grid.stride(d);
@@ -14,9 +22,7 @@ void curl(const PaddedGrid& grid, const Field u[3], Index c, float omega[3]) {
   }
 }
 
-}  // namespace
-
-void add_buoyancy(const PaddedGrid& grid, const Field& smoke, float dt_beta, Field& w, int k) {
+void AddBuoyancy(const PaddedGrid& grid, const Field& smoke, float dt_beta, Field& w, int k) {
   const Index plane = grid.plane();
   for (int j = 0; j < grid.n; ++j) {
     const Index c = grid.index(0, j, k);
@@ -27,8 +33,8 @@ void add_buoyancy(const PaddedGrid& grid, const Field& smoke, float dt_beta, Fie
   }
 }
 
-void centre_velocity(const PaddedGrid& grid, const Field velocity[3], float scale, Field centre[3],
-                     int k) {
+void CentreVelocity(const PaddedGrid& grid, const Field velocity[3], float scale, Field centre[3],
+                    int k) {
   const float half = 0.5F * scale;
   for (int a = 0; a < 3; ++a) {
     const Index s = grid.stride(a);
@@ -40,7 +46,7 @@ void centre_velocity(const PaddedGrid& grid, const Field velocity[3], float scal
   }
 }
 
-void vorticity_magnitude(const PaddedGrid& grid, const Field centre[3], Field& magnitude, int k) {
+void VorticityMagnitude(const PaddedGrid& grid, const Field centre[3], Field& magnitude, int k) {
   for (int j = 0; j < grid.n; ++j) {
     for (int i = 0; i < grid.n; ++i) {
       float omega[3];
@@ -51,8 +57,8 @@ void vorticity_magnitude(const PaddedGrid& grid, const Field centre[3], Field& m
   }
 }
 
-void confinement_force(const PaddedGrid& grid, const Field centre[3], const Field& magnitude,
-                       float epsilon, Field force[3], int k) {
+void ConfinementForce(const PaddedGrid& grid, const Field centre[3], const Field& magnitude,
+                      float epsilon, Field force[3], int k) {
   constexpr float kLeastGradient = 1e-6F;  // below this there is no direction to push in
   for (int j = 0; j < grid.n; ++j) {
     for (int i = 0; i < grid.n; ++i) {
@@ -72,8 +78,8 @@ void confinement_force(const PaddedGrid& grid, const Field centre[3], const Fiel
   }
 }
 
-void add_centred_force(const PaddedGrid& grid, const Field force[3], float dt, Field velocity[3],
-                       int k) {
+void AddCentredForce(const PaddedGrid& grid, const Field force[3], float dt, Field velocity[3],
+                     int k) {
   for (int a = 0; a < 3; ++a) {
     const Index s = grid.stride(a);
     for (int j = 0; j < grid.n; ++j) {
@@ -86,4 +92,45 @@ void add_centred_force(const PaddedGrid& grid, const Field force[3], float dt, F
   }
 }
 
+}  // namespace
+}  // namespace HWY_NAMESPACE
 }  // namespace prostm::fluid
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace prostm::fluid {
+namespace {
+
+HWY_EXPORT(AddBuoyancy);
+HWY_EXPORT(CentreVelocity);
+HWY_EXPORT(VorticityMagnitude);
+HWY_EXPORT(ConfinementForce);
+HWY_EXPORT(AddCentredForce);
+
+}  // namespace
+
+void add_buoyancy(const PaddedGrid& grid, const Field& smoke, float dt_beta, Field& w, int k) {
+  HWY_DYNAMIC_DISPATCH(AddBuoyancy)(grid, smoke, dt_beta, w, k);
+}
+
+void centre_velocity(const PaddedGrid& grid, const Field velocity[3], float scale, Field centre[3],
+                     int k) {
+  HWY_DYNAMIC_DISPATCH(CentreVelocity)(grid, velocity, scale, centre, k);
+}
+
+void vorticity_magnitude(const PaddedGrid& grid, const Field centre[3], Field& magnitude, int k) {
+  HWY_DYNAMIC_DISPATCH(VorticityMagnitude)(grid, centre, magnitude, k);
+}
+
+void confinement_force(const PaddedGrid& grid, const Field centre[3], const Field& magnitude,
+                       float epsilon, Field force[3], int k) {
+  HWY_DYNAMIC_DISPATCH(ConfinementForce)(grid, centre, magnitude, epsilon, force, k);
+}
+
+void add_centred_force(const PaddedGrid& grid, const Field force[3], float dt, Field velocity[3],
+                       int k) {
+  HWY_DYNAMIC_DISPATCH(AddCentredForce)(grid, force, dt, velocity, k);
+}
+
+}  // namespace prostm::fluid
+#endif  // HWY_ONCE

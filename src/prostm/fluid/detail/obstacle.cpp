@@ -1,8 +1,11 @@
 #include "prostm/fluid/detail/obstacle.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+
+#include "prostm/fluid/detail/largest.hpp"
 
 namespace prostm::fluid {
 namespace {
@@ -46,21 +49,25 @@ float open_fraction(float a, float b, float c, float d) {
   return fraction < Obstacle::kMinFraction ? 0.0F : fraction;
 }
 
-bool is_finite(const HandRaster& raster) {
+bool is_finite(const HandRaster& raster, WorkerPool& pool) {
   const GridShape& g = raster.grid;
   const CellBox& box = raster.box;
-  for (int k = box.lower[2]; k <= box.upper[2] && !box.empty(); ++k) {
+  if (box.empty()) return true;
+  const int cells = box.upper[0] - box.lower[0];
+  std::atomic<bool> finite{true};
+  const auto look = [&](const float* row, int count) {
+    if (largest_bits(row, row + count) > kLargestFinite) finite = false;
+  };
+  pool.run(box.upper[2] - box.lower[2] + 1, [&](int task) {
+    const int k = box.lower[2] + task;
     for (int j = box.lower[1]; j <= box.upper[1]; ++j) {
-      for (int i = box.lower[0]; i <= box.upper[0]; ++i) {
-        if (!std::isfinite(raster.node_distance[g.node_index(i, j, k)])) return false;
-        if (i == box.upper[0] || j == box.upper[1] || k == box.upper[2]) continue;
-        for (const auto& v : raster.velocity) {
-          if (!std::isfinite(v[g.cell_index(i, j, k)])) return false;
-        }
-      }
+      look(raster.node_distance.data() + g.node_index(box.lower[0], j, k), cells + 1);
+      if (j == box.upper[1] || k == box.upper[2]) continue;
+      for (const auto& v : raster.velocity)
+        look(v.data() + g.cell_index(box.lower[0], j, k), cells);
     }
-  }
-  return true;
+  });
+  return finite;
 }
 
 Obstacle::Obstacle(int n, WorkerPool& pool, HandFaces faces)
@@ -69,6 +76,7 @@ Obstacle::Obstacle(int n, WorkerPool& pool, HandFaces faces)
       faces_(faces),
       wall_{Field(grid_), Field(grid_), Field(grid_)},
       state_(grid_, kReached),
+      inside_(static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(n + 1)),
       stack_(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) *
              static_cast<std::size_t>(n)) {}
 
@@ -89,6 +97,7 @@ void Obstacle::update(const HandRaster& raster, PressureLevel& level) {
   if (box_.empty()) return;
   level.box = box_;
   const int planes = box_.upper[2] - box_.lower[2];
+  pool_.run(planes + 1, [&](int task) { find_inside(raster, box_.lower[2] + task); });
   pool_.run(planes + 1, [&](int task) { cut_faces(raster, level, box_.lower[2] + task); });
   pool_.run(planes, [&](int task) {
     level.find_spans(box_.lower[2] + task);
@@ -97,6 +106,36 @@ void Obstacle::update(const HandRaster& raster, PressureLevel& level) {
   close_narrow(level);
   close_pockets(level);
   pool_.run(planes, [&](int task) { level.fill_diagonal(box_.lower[2] + task); });
+}
+
+void Obstacle::find_inside(const HandRaster& raster, int k) {
+  for (int j = box_.lower[1]; j <= box_.upper[1]; ++j) {
+    const float* row = raster.node_distance.data() + raster.grid.node_index(0, j, k);
+    int first = box_.lower[0], last = box_.upper[0];
+    while (first <= last && row[first] > 0.0F) ++first;
+    while (last > first && row[last] > 0.0F) --last;
+    inside(j, k) = {static_cast<std::int16_t>(first), static_cast<std::int16_t>(last + 1)};
+  }
+}
+
+/// The faces of an axis in row (j, k) that a hand may shut.
+RowSpan Obstacle::cut_span(int axis, int j, int k) const {
+  const auto lower = static_cast<std::int16_t>(box_.lower[0]),
+             upper = static_cast<std::int16_t>(box_.upper[0] + (axis == 0));
+  if (faces_ == HandFaces::Voxels) return {lower, upper};
+  RowSpan span = inside(j, k);
+  const auto join = [&](RowSpan other) {
+    if (other.empty()) return;
+    if (span.empty()) span = other;
+    span = {std::min(span.begin, other.begin), std::max(span.end, other.end)};
+  };
+  if (axis != 1) join(inside(j + 1, k));
+  if (axis != 2) join(inside(j, k + 1));
+  if (axis == 0) join(inside(j + 1, k + 1));
+  // faces of the other axes reach from node to node along x
+  if (axis != 0 && !span.empty()) span.begin = std::max<std::int16_t>(span.begin - 1, lower);
+  span.end = std::min(span.end, upper);
+  return span;
 }
 
 void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) {
@@ -113,7 +152,11 @@ void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) 
       float* open = level.open[axis].data() + grid_.index(0, j, k);
       float* wall = wall_[axis].data() + grid_.index(0, j, k);
       const float* phi = raster.node_distance.data() + g.node_index(0, j, k);
-      for (int i = box_.lower[0]; i < box_.upper[0] + (axis == 0); ++i) {
+      const RowSpan span = cut_span(axis, j, k);
+      for (int i = span.begin; i < span.end; ++i) {
+        const bool is_out =
+            phi[i] > 0.0F && phi[i + s] > 0.0F && phi[i + s + t] > 0.0F && phi[i + t] > 0.0F;
+        if (is_out && faces_ == HandFaces::Fractions) continue;
         open[i] = faces_ == HandFaces::Voxels
                       ? open_between_voxels(raster, axis, i, j, k)
                       : open_fraction(phi[i], phi[i + s], phi[i + s + t], phi[i + t]);
@@ -133,10 +176,9 @@ void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) 
 void Obstacle::classify(const PressureLevel& level, int k) {
   const Index row = grid_.row(), plane = grid_.plane();
   for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
-    const RowSpan span = level.span(j, k);
-    // a row without a cut face runs to the box's sides, which the outside reaches
-    if (span.empty()) continue;
-    for (int i = box_.lower[0]; i < box_.upper[0]; ++i) {
+    // cells beside the span run to the box's sides, which the outside reaches
+    const RowSpan span = cells_of(level, j, k);
+    for (int i = span.begin; i < span.end; ++i) {
       const Index c = grid_.index(i, j, k);
       const Field* a = level.open;
       const float sum = a[0][c] + a[0][c + 1] + a[1][c] + a[1][c + row] + a[2][c] + a[2][c + plane];
@@ -145,12 +187,19 @@ void Obstacle::classify(const PressureLevel& level, int k) {
   }
 }
 
+/// The cells of the box in the span of row (j, k).
+RowSpan Obstacle::cells_of(const PressureLevel& level, int j, int k) const {
+  const RowSpan span = level.span(j, k);
+  return {std::max(span.begin, static_cast<std::int16_t>(box_.lower[0])),
+          std::min(span.end, static_cast<std::int16_t>(box_.upper[0]))};
+}
+
 template <class F>
 void Obstacle::for_cut_cells(const PressureLevel& level, F&& f) {
   for (int k = box_.lower[2]; k < box_.upper[2]; ++k) {
     for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
-      if (level.span(j, k).empty()) continue;
-      for (int i = box_.lower[0]; i < box_.upper[0]; ++i) f(grid_.index(i, j, k));
+      const RowSpan span = cells_of(level, j, k);
+      for (int i = span.begin; i < span.end; ++i) f(grid_.index(i, j, k));
     }
   }
 }
@@ -205,9 +254,27 @@ void Obstacle::flood(const PressureLevel& level, Index seed) {
   }
 }
 
+/// Reaches most cells of plane k from both ends of their rows, which leaves little to flood.
+void Obstacle::reach_along_rows(const PressureLevel& level, int k) {
+  for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
+    const RowSpan span = cells_of(level, j, k);
+    const Index row = grid_.index(0, j, k);
+    const float* open = level.open[0].data() + row;
+    std::uint8_t* state = state_.data() + row;
+    for (int i = span.begin; i < span.end; ++i) {
+      if (state[i] == kOpen && state[i - 1] == kReached && open[i] > 0.0F) state[i] = kReached;
+    }
+    for (int i = span.end - 1; i >= span.begin; --i) {
+      if (state[i] == kOpen && state[i + 1] == kReached && open[i + 1] > 0.0F) state[i] = kReached;
+    }
+  }
+}
+
 void Obstacle::close_pockets(PressureLevel& level) {
   // everything outside the box counts as reached, the halo beyond the open sides too; the floor's
   // faces are shut
+  const int planes = box_.upper[2] - box_.lower[2];
+  pool_.run(planes, [&](int task) { reach_along_rows(level, box_.lower[2] + task); });
   for_cut_cells(level, [&](Index c) {
     if (state_[c] != kOpen) return;
     bool touches = false;

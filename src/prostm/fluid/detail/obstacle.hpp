@@ -43,9 +43,20 @@ class Obstacle {
   enum CellState : std::uint8_t { kReached, kOpen, kClosed };
 
   void forget();
+  void find_inside(const HandRaster& raster, int k);
+  RowSpan cut_span(int axis, int j, int k) const;
+  RowSpan cells_of(const PressureLevel& level, int j, int k) const;
+  /// The nodes of a row from the first one in a hand to the last one.
+  RowSpan inside(int j, int k) const { return inside_[node_row(j, k)]; }
+  RowSpan& inside(int j, int k) { return inside_[node_row(j, k)]; }
+  std::size_t node_row(int j, int k) const {
+    return static_cast<std::size_t>(k) * static_cast<std::size_t>(grid_.n + 1) +
+           static_cast<std::size_t>(j);
+  }
   void cut_faces(const HandRaster& raster, PressureLevel& level, int k);
   void classify(const PressureLevel& level, int k);
   void close(PressureLevel& level, Index c);
+  void reach_along_rows(const PressureLevel& level, int k);
   void close_narrow(PressureLevel& level);
   void close_pockets(PressureLevel& level);
   void flood(const PressureLevel& level, Index seed);
@@ -57,6 +68,7 @@ class Obstacle {
   HandFaces faces_;
   Field wall_[3];
   PaddedField<std::uint8_t> state_;  // kReached outside the box
+  std::vector<RowSpan> inside_;      // a row of nodes each, where the box has some
   std::vector<Index> stack_;         // room for all cells
   CellBox box_;
   int closed_cells_ = 0;
@@ -76,6 +88,6 @@ inline bool is_in_hand(const HandRaster& raster, int i, int j, int k) {
 double lowest_of(const HandRaster& raster);
 
 /// True if every distance and velocity in the raster's box is a finite number.
-bool is_finite(const HandRaster& raster);
+bool is_finite(const HandRaster& raster, WorkerPool& pool);
 
 }  // namespace prostm::fluid

@@ -28,13 +28,13 @@ PressureLevel::PressureLevel(int n)
 }
 
 void PressureLevel::open_all() {
-  // the fractions of the old box, its upper faces included
-  for (int k = box.lower[2]; k <= box.upper[2] && !box.empty(); ++k) {
-    for (int j = box.lower[1]; j <= box.upper[1]; ++j) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const float value = axis == 2 && k == 0 ? 0.0F : 1.0F;
-        std::fill(open[axis].data() + grid.index(box.lower[0], j, k),
-                  open[axis].data() + grid.index(box.upper[0], j, k) + 1, value);
+  for (int axis = 0; axis < 3 && !box.empty(); ++axis) {
+    for (int k = box.lower[2]; k < box.upper[2] + (axis == 2); ++k) {
+      for (int j = box.lower[1]; j < box.upper[1] + (axis == 1); ++j) {
+        const RowSpan cut = face_span(axis, j, k);
+        if (cut.empty()) continue;
+        float* row = open[axis].data() + grid.index(0, j, k);
+        std::fill(row + cut.begin, row + cut.end + 1, axis == 2 && k == 0 ? 0.0F : 1.0F);
       }
     }
   }
@@ -75,14 +75,15 @@ void PressureLevel::coarsen_from(const PressureLevel& fine) {
 void PressureLevel::find_spans(int k) {
   if (always_full || k < box.lower[2] || k >= box.upper[2]) return;
   const Index row = grid.row(), plane = grid.plane();
-  const float all_open = k == 0 ? 5.0F : 6.0F;
+  const float lowest = k == 0 ? 0.0F : 1.0F;  // the floor is shut
   for (int j = box.lower[1]; j < box.upper[1]; ++j) {
     const Index c = grid.index(0, j, k);
     const float *x = open[0].data() + c, *y = open[1].data() + c, *z = open[2].data() + c;
     int first = grid.n, last = -1;
     for (int i = box.lower[0]; i < box.upper[0]; ++i) {
-      const float sum = x[i] + x[i + 1] + y[i] + y[i + row] + z[i] + z[i + plane];
-      if (sum == all_open) continue;
+      const bool is_open = x[i] == 1.0F && x[i + 1] == 1.0F && y[i] == 1.0F && y[i + row] == 1.0F &&
+                           z[i] == lowest && z[i + plane] == 1.0F;
+      if (is_open) continue;
       first = std::min(first, i);
       last = i;
     }

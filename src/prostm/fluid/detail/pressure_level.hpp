@@ -45,6 +45,12 @@ struct PressureLevel {
     return spans[static_cast<std::size_t>(k) * static_cast<std::size_t>(grid.n) +
                  static_cast<std::size_t>(j)];
   }
+  /// The part of row (j, k) of an axis's faces, end included, beyond which all are open; j and k
+  /// run to one beyond the box along their own axis.
+  RowSpan face_span(int axis, int j, int k) const {
+    // a face is in the spans of the cells on both sides; the last one is beyond the box
+    return span(j - (axis == 1 && j == box.upper[1]), k - (axis == 2 && k == box.upper[2]));
+  }
   /// Tables along x of the diagonal and its inverse (0 beyond n) for an uncut row: 5..8 and 1 more
   /// at both ends.
   const float* table_diagonal(int j, int k) const { return diagonal_tables[table(j, k)].data(); }

@@ -25,21 +25,22 @@ HWY_INLINE float diffused(const Rows& rows, Index i, Index west, Index east, flo
   return rows.own[i] + share * (around - 6.0F * rows.own[i]);
 }
 
+/// Whole vectors, the last one with zeros in the row's padding, and then the ends of the row.
 HWY_INLINE void diffuse_row(const Rows& rows, Index count, float share, float* HWY_RESTRICT out) {
   const D d;
   const auto step = static_cast<Index>(hn::Lanes(d));
   const auto weight = hn::Set(d, share), six = hn::Set(d, 6.0F);
-  out[0] = diffused(rows, 0, 0, 1, share);
-  Index i = 1;
-  for (; i + step < count; i += step) {
-    const auto own = hn::LoadU(d, rows.own + i);
+  for (Index i = 0; i < count; i += step) {
+    const auto own = hn::Load(d, rows.own + i);
     const auto x = hn::Add(hn::LoadU(d, rows.own + i - 1), hn::LoadU(d, rows.own + i + 1));
-    const auto y = hn::Add(hn::LoadU(d, rows.south + i), hn::LoadU(d, rows.north + i));
-    const auto z = hn::Add(hn::LoadU(d, rows.below + i), hn::LoadU(d, rows.above + i));
+    const auto y = hn::Add(hn::Load(d, rows.south + i), hn::Load(d, rows.north + i));
+    const auto z = hn::Add(hn::Load(d, rows.below + i), hn::Load(d, rows.above + i));
     const auto rest = hn::NegMulAdd(six, own, hn::Add(hn::Add(x, y), z));
-    hn::StoreU(hn::MulAdd(weight, rest, own), d, out + i);
+    const auto inside = hn::FirstN(d, static_cast<std::size_t>(count - i));
+    hn::Store(hn::IfThenElseZero(inside, hn::MulAdd(weight, rest, own)), d, out + i);
   }
-  for (; i < count; ++i) out[i] = diffused(rows, i, i - 1, i + 1 < count ? i + 1 : i, share);
+  out[0] = diffused(rows, 0, 0, 1, share);
+  out[count - 1] = diffused(rows, count - 1, count - 2, count - 1, share);
 }
 
 void DiffusePlane(const PaddedGrid& grid, const Index last[3], const float* u, float share,
