@@ -137,29 +137,47 @@ struct StepTimes {
   Summary divergence, accurate_divergence;
 };
 
-/// Times steps of the solvers in turn.
+/// Steps of one solver among the moving hand.
+class TimedFluid {
+ public:
+  TimedFluid(const FluidSettings& settings, prostm::WorkerPool& pool)
+      : fluid_(settings, prostm::scene_from_name("four-plumes").smoke, pool),
+        hand_(fluid_.grid(), pool) {}
+  /// Calls f(stats) after each of the next steps.
+  template <class F>
+  void run(int steps, F&& f) {
+    for (int t = 0; t < steps; ++t) f(fluid_.step(kStep, hand_.at(step_++)));
+  }
+
+ private:
+  Fluid fluid_;
+  MovingHand hand_;
+  int step_ = 0;
+};
+
+/// Times steps of the solvers in turn, a few each, so that each finds its own state in the caches.
 StepTimes step_times(int cells, int steps) {
+  constexpr int kTurn = 10;
   prostm::WorkerPool pool(kThreads);
-  const prostm::SmokeInflow scene = prostm::scene_from_name("one-plume").smoke;
-  Fluid ours(multigrid(cells, FluidSettings{}.cycles), scene, pool),
-      paper(jacobi(cells, false), scene, pool),
-      accurate(mgpcg(cells, FluidSettings{}.cg_iterations), scene, pool);
-  MovingHand hand(ours.grid(), pool);
+  TimedFluid ours(multigrid(cells, FluidSettings{}.cycles), pool),
+      paper(jacobi(cells, false), pool),
+      accurate(mgpcg(cells, FluidSettings{}.cg_iterations), pool);
   const double gigacells = 1e-9 * std::pow(cells, 3);
   Distribution ours_ms, paper_ms, accurate_ms, advection, pressure, divergence, accurate_divergence;
-  for (int t = 0; t < kWarmUp + steps; ++t) {
-    const HandRaster& raster = hand.at(t);
-    const prostm::FluidStats a = ours.step(kStep, raster);
-    const double b = paper.step(kStep, raster).total;
-    const prostm::FluidStats c = accurate.step(kStep, raster);
-    if (t < kWarmUp) continue;
-    ours_ms.add(1e3 * a.total);
-    paper_ms.add(1e3 * b);
-    accurate_ms.add(1e3 * c.total);
-    accurate_divergence.add(c.divergence_max);
-    advection.add(kAdvectionBytes * gigacells / a.advect);
-    pressure.add(kPressureBytes * gigacells / a.solve);
-    divergence.add(a.divergence_max);
+  for (TimedFluid* fluid : {&ours, &paper, &accurate})
+    fluid->run(kWarmUp, [](const prostm::FluidStats&) {});
+  for (int t = 0; t < steps; t += kTurn) {
+    ours.run(kTurn, [&](const prostm::FluidStats& s) {
+      ours_ms.add(1e3 * s.total);
+      advection.add(kAdvectionBytes * gigacells / s.advect);
+      pressure.add(kPressureBytes * gigacells / s.solve);
+      divergence.add(s.divergence_max);
+    });
+    paper.run(kTurn, [&](const prostm::FluidStats& s) { paper_ms.add(1e3 * s.total); });
+    accurate.run(kTurn, [&](const prostm::FluidStats& s) {
+      accurate_ms.add(1e3 * s.total);
+      accurate_divergence.add(s.divergence_max);
+    });
   }
   return {
       ours_ms.summary(),  paper_ms.summary(),   accurate_ms.summary(),        advection.summary(),

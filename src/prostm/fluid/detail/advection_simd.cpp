@@ -24,15 +24,18 @@ constexpr int kMaxTaps = 96;  // with more shifted rows, lane by lane is cheaper
 
 /// A field of places, the displacements there, and how much of d[c − back] + d[c] they are.
 struct Particles {
+  const PaddedGrid& grid;
   const Placement& place;
   const float* const* displacement;
   float factor;
   Index back;
+  Index row = grid.row(), plane = grid.plane();
 };
 
 /// A few rows of one vector, from which lane shifts −d go to whole shifts `first` to `last`.
 struct Block {
   int i = 0, j = 0, k = 0, rows = 0;
+  Index at = 0;  // of its first value
   alignas(16) std::int32_t first[4] = {0, 0, 0, 0};
   alignas(16) std::int32_t last[4] = {0, 0, 0, 0};
   bool clamped = false;  // a lane may leave the field's range
@@ -51,15 +54,15 @@ HWY_INLINE std::size_t range_index(const PaddedGrid& grid, Index i, Index j, Ind
 }
 
 /// The range of the shifts −factor·d in a block.
-HWY_INLINE ShiftRange range_of(const PaddedGrid& grid, const Block& block,
+HWY_INLINE ShiftRange range_of(const Particles& from, const Block& block,
                                const float* const d_of[3], float factor) {
   const D d;
   ShiftRange range;
   for (int axis = 0; axis < 3; ++axis) {
-    const float* from = d_of[axis] + grid.index(block.i, block.j, block.k);
-    V low = hn::LoadU(d, from), high = low;
+    const float* first = d_of[axis] + block.at;
+    V low = hn::LoadU(d, first), high = low;
     for (int r = 1; r < block.rows; ++r) {
-      const V v = hn::LoadU(d, from + r * grid.row());
+      const V v = hn::LoadU(d, first + r * from.row);
       low = hn::Min(low, v);
       high = hn::Max(high, v);
     }
@@ -104,10 +107,9 @@ HWY_INLINE void clamp_shifts(const Placement& place, Block& block) {
 
 /// The shifts of the lanes of row r along an axis, clamped so that position + shift stays in the
 /// field's range.
-HWY_INLINE V shift_of(const PaddedGrid& grid, const Particles& from, const Block& block, int r,
-                      int axis) {
+HWY_INLINE V shift_of(const Particles& from, const Block& block, int r, int axis) {
   const D d;
-  const float* at = from.displacement[axis] + grid.index(block.i, block.j + r, block.k);
+  const float* at = from.displacement[axis] + block.at + r * from.row;
   const V sum = hn::Add(hn::LoadU(d, at - from.back), hn::LoadU(d, at));
   const V shift = hn::Mul(hn::Set(d, -from.factor), sum);
   if (!block.clamped) return shift;
@@ -160,25 +162,28 @@ HWY_INLINE V along_xy(const Hats& x, const Hats& y, const float* field, Index ro
 
 /// Interpolates with kX × kY shifts along x and y.
 template <int kFields, int kX, int kY>
-HWY_INLINE void sum_few(const PaddedGrid& grid, const Particles& from, const Block& block,
-                        const float* const* fields, float* const* out) {
+HWY_INLINE void sum_few(const Particles& from, const Block& block, const float* const* fields,
+                        float* const* out) {
   const D d;
-  const Index row = grid.row(), plane = grid.plane();
-  for (int r = 0; r < block.rows; ++r) {
-    const Hats x = hats<kX>(shift_of(grid, from, block, r, 0), block.first[0]);
-    const Hats y = hats<kY>(shift_of(grid, from, block, r, 1), block.first[1]);
-    const V sz = shift_of(grid, from, block, r, 2);
-    const Index own = grid.index(block.i, block.j + r, block.k);
-    const Index o = own + block.first[1] * row + block.first[0];
+  const V one = hn::Set(d, 1.0F);
+  const Index row = from.row, plane = from.plane;
+  Index o = block.at + block.first[2] * plane + block.first[1] * row + block.first[0];
+  for (int r = 0; r < block.rows; ++r, o += row) {
+    const Hats x = hats<kX>(shift_of(from, block, r, 0), block.first[0]);
+    const Hats y = hats<kY>(shift_of(from, block, r, 1), block.first[1]);
+    V u = hn::Sub(shift_of(from, block, r, 2), hn::Set(d, static_cast<float>(block.first[2])));
     V sum0 = hn::Zero(d), sum1 = hn::Zero(d), sum2 = hn::Zero(d);
-    for (int t = block.first[2]; t <= block.last[2]; ++t) {
-      const V z = hat(sz, t);
-      sum0 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[0] + o + t * plane, row), sum0);
+    Index shifted = o;
+    for (int t = block.first[2]; t <= block.last[2]; ++t, shifted += plane) {
+      const V z = hn::Max(hn::Zero(d), hn::Sub(one, hn::Abs(u)));
+      u = hn::Sub(u, one);
+      sum0 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[0] + shifted, row), sum0);
       if constexpr (kFields == 3) {
-        sum1 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[1] + o + t * plane, row), sum1);
-        sum2 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[2] + o + t * plane, row), sum2);
+        sum1 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[1] + shifted, row), sum1);
+        sum2 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[2] + shifted, row), sum2);
       }
     }
+    const Index own = block.at + r * row;
     hn::StoreU(sum0, d, out[0] + own);
     if constexpr (kFields == 3) {
       hn::StoreU(sum1, d, out[1] + own);
@@ -189,19 +194,19 @@ HWY_INLINE void sum_few(const PaddedGrid& grid, const Particles& from, const Blo
 
 /// Does the same with any number of shifts.
 template <int kFields>
-void sum_many(const PaddedGrid& grid, const Particles& from, const Block& block,
-              const float* const* fields, float* const* out) {
+void sum_many(const Particles& from, const Block& block, const float* const* fields,
+              float* const* out) {
   const D d;
   for (int r = 0; r < block.rows; ++r) {
-    const V sx = shift_of(grid, from, block, r, 0), sy = shift_of(grid, from, block, r, 1),
-            sz = shift_of(grid, from, block, r, 2);
-    const Index own = grid.index(block.i, block.j + r, block.k);
+    const V sx = shift_of(from, block, r, 0), sy = shift_of(from, block, r, 1),
+            sz = shift_of(from, block, r, 2);
+    const Index own = block.at + r * from.row;
     for (int f = 0; f < kFields; ++f) {
       V sum = hn::Zero(d);
       for (int z = block.first[2]; z <= block.last[2]; ++z) {
         for (int y = block.first[1]; y <= block.last[1]; ++y) {
           const V w = hn::Mul(hat(sz, z), hat(sy, y));
-          const float* row = fields[f] + own + z * grid.plane() + y * grid.row();
+          const float* row = fields[f] + own + z * from.plane + y * from.row;
           for (int x = block.first[0]; x <= block.last[0]; ++x)
             sum = hn::MulAdd(hn::Mul(w, hat(sx, x)), hn::LoadU(d, row + x), sum);
         }
@@ -213,44 +218,45 @@ void sum_many(const PaddedGrid& grid, const Particles& from, const Block& block,
 
 /// Does the same lane by lane, where the flow shears so much that the box would be large.
 template <int kFields>
-void sum_lanes(const PaddedGrid& grid, const Particles& from, const Block& block,
-               const float* const* fields, float* const* out) {
+void sum_lanes(const Particles& from, const Block& block, const float* const* fields,
+               float* const* out) {
   const D d;
   alignas(64) float shift[3][kMaxLanes];
   for (int r = 0; r < block.rows; ++r) {
-    for (int axis = 0; axis < 3; ++axis)
-      hn::Store(shift_of(grid, from, block, r, axis), d, shift[axis]);
+    for (int axis = 0; axis < 3; ++axis) hn::Store(shift_of(from, block, r, axis), d, shift[axis]);
     for (int lane = 0; lane < static_cast<int>(lanes()); ++lane) {
       const float x = static_cast<float>(block.i + lane) + shift[0][lane];
       const float y = static_cast<float>(block.j + r) + shift[1][lane];
       const float z = static_cast<float>(block.k) + shift[2][lane];
-      const Index c = grid.index(block.i + lane, block.j + r, block.k);
-      for (int f = 0; f < kFields; ++f) out[f][c] = trilinear(grid, fields[f], x, y, z);
+      const Index c = block.at + r * from.row + lane;
+      for (int f = 0; f < kFields; ++f) out[f][c] = trilinear(from.grid, fields[f], x, y, z);
     }
   }
 }
 
 /// Computes the values of kFields fields at the shifted places of a block.
 template <int kFields>
-HWY_INLINE void interpolate(const PaddedGrid& grid, const Particles& from, const Block& block,
-                            const float* const* fields, float* const* out) {
+HWY_INLINE void interpolate(const Particles& from, const Block& block, const float* const* fields,
+                            float* const* out) {
   const int x = block.taps(0), y = block.taps(1);
-  if (x * y * block.taps(2) > kMaxTaps) return sum_lanes<kFields>(grid, from, block, fields, out);
-  if (x == 2 && y == 2) return sum_few<kFields, 2, 2>(grid, from, block, fields, out);
-  if (x == 2 && y == 3) return sum_few<kFields, 2, 3>(grid, from, block, fields, out);
-  if (x == 3 && y == 2) return sum_few<kFields, 3, 2>(grid, from, block, fields, out);
-  if (x == 3 && y == 3) return sum_few<kFields, 3, 3>(grid, from, block, fields, out);
-  sum_many<kFields>(grid, from, block, fields, out);
+  if (x * y * block.taps(2) > kMaxTaps) return sum_lanes<kFields>(from, block, fields, out);
+  if (x == 2 && y == 2) return sum_few<kFields, 2, 2>(from, block, fields, out);
+  if (x == 2 && y == 3) return sum_few<kFields, 2, 3>(from, block, fields, out);
+  if (x == 3 && y == 2) return sum_few<kFields, 3, 2>(from, block, fields, out);
+  if (x == 3 && y == 3) return sum_few<kFields, 3, 3>(from, block, fields, out);
+  sum_many<kFields>(from, block, fields, out);
 }
 
 /// Calls f(block) for the blocks of planes [k0, k1).
 template <class F>
 HWY_INLINE void over_blocks(const PaddedGrid& grid, int rows, int k0, int k1, const F& f) {
+  const auto step = static_cast<int>(lanes());
   Block block;
   for (block.k = k0; block.k < k1; ++block.k) {
     for (block.j = 0; block.j < rows; block.j += kBlockRows) {
       block.rows = std::min(kBlockRows, rows - block.j);
-      for (block.i = 0; block.i < grid.n; block.i += static_cast<int>(lanes())) f(block);
+      block.at = grid.index(0, block.j, block.k);
+      for (block.i = 0; block.i < grid.n; block.i += step, block.at += step) f(block);
     }
   }
 }
@@ -262,14 +268,14 @@ void Trace(const PaddedGrid& grid, const float* const velocity[3], Displacements
     place.count[a] = grid.n;
     place.upper[a] = static_cast<float>(grid.n - 1);
   }
-  const Particles from{place, velocity, 0.25F, 0};
+  const Particles from{grid, place, velocity, 0.25F, 0};
   float* const out[3] = {moved.at[0].data(), moved.at[1].data(), moved.at[2].data()};
   over_blocks(grid, grid.n, k0, k1, [&](Block& block) HWY_ATTR {
-    const ShiftRange half = range_of(grid, block, velocity, 0.5F);
+    const ShiftRange half = range_of(from, block, velocity, 0.5F);
     set_shifts(half, half, block);
     clamp_shifts(place, block);
-    interpolate<3>(grid, from, block, velocity, out);
-    moved.ranges[range_index(grid, block.i, block.j, block.k)] = range_of(grid, block, out, 1.0F);
+    interpolate<3>(from, block, velocity, out);
+    moved.ranges[range_index(grid, block.i, block.j, block.k)] = range_of(from, block, out, 1.0F);
   });
   for (float* d : out) extend_plane(grid, d, k0, k1);
 }
@@ -277,7 +283,7 @@ void Trace(const PaddedGrid& grid, const float* const velocity[3], Displacements
 void Sample(const PaddedGrid& grid, const Placement& place, const Displacements& moved,
             const float* in, float* out, int k0, int k1) {
   const float* const d[3] = {moved.at[0].data(), moved.at[1].data(), moved.at[2].data()};
-  const Particles from{place, d, 0.5F, place.axis < 0 ? 0 : grid.stride(place.axis)};
+  const Particles from{grid, place, d, 0.5F, place.axis < 0 ? 0 : grid.stride(place.axis)};
   const Index end = grid.n - 1;
   over_blocks(grid, place.count[1], k0, k1, [&](Block& block) HWY_ATTR {
     const Index i = block.i, j = std::min<Index>(block.j, end), k = std::min<Index>(block.k, end);
@@ -288,7 +294,7 @@ void Sample(const PaddedGrid& grid, const Placement& place, const Displacements&
     set_shifts(moved.ranges[range_index(grid, i, j, k)],
                moved.ranges[range_index(grid, before[0], before[1], before[2])], block);
     clamp_shifts(place, block);
-    interpolate<1>(grid, from, block, &in, &out);
+    interpolate<1>(from, block, &in, &out);
   });
   if (place.axis != 0) return;
   // the last face of each row stands alone

@@ -1,10 +1,10 @@
 #include "prostm/fluid/detail/extrapolation.hpp"
 
 namespace prostm::fluid {
-namespace {
 
-/// Lists the shut faces in the hands' box, the floor and the box's outer sides excepted.
 void list_shut_faces(const PressureLevel& level, int axis, std::vector<Index>& shut) {
+  shut.clear();
+  if (level.box.empty()) return;
   const CellBox& box = level.box;
   const int end = level.grid.n - 1;  // the box's outer sides are beyond
   int first[3], last[3];
@@ -12,7 +12,6 @@ void list_shut_faces(const PressureLevel& level, int axis, std::vector<Index>& s
     first[a] = std::max(box.lower[a], a == axis ? 1 : 0);
     last[a] = std::min(a == axis ? box.upper[a] : box.upper[a] - 1, end);
   }
-  shut.clear();
   for (int k = first[2]; k <= last[2]; ++k) {
     for (int j = first[1]; j <= last[1]; ++j) {
       const RowSpan span = level.face_span(axis, j, k);
@@ -27,12 +26,7 @@ void list_shut_faces(const PressureLevel& level, int axis, std::vector<Index>& s
   }
 }
 
-}  // namespace
-
 void extend_into_hands(const PressureLevel& level, int axis, Field& u, ShutFaces& faces) {
-  faces.at.clear();
-  if (level.box.empty()) return;
-  list_shut_faces(level, axis, faces.at);
   const Field& open = level.open[axis];
   const Index row = level.grid.row(), plane = level.grid.plane();
   constexpr std::uint8_t kLayers = 2;

@@ -18,9 +18,12 @@ struct ShutFaces {
   PaddedField<std::uint8_t> layer;  ///< one byte per face, all 0 between calls
 };
 
-/// Gives shut faces of `axis` the mean of the neighbouring faces that the fluid passes, two layers
-/// deep; deeper ones keep the wall's velocity. Advection then finds the fluid's tangential velocity
-/// behind a wall, which makes the wall slip.
+/// Lists the shut faces of `axis` in the hands' box, the floor and the outer sides excepted.
+void list_shut_faces(const PressureLevel& level, int axis, std::vector<Index>& shut);
+
+/// Gives the listed faces of `axis` the mean of the neighbouring faces that the fluid passes, two
+/// layers deep; deeper ones keep the wall's velocity. Advection then finds the fluid's tangential
+/// velocity behind a wall, which makes the wall slip.
 void extend_into_hands(const PressureLevel& level, int axis, Field& u, ShutFaces& faces);
 
 }  // namespace prostm::fluid

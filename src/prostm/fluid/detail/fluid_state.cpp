@@ -49,7 +49,6 @@ Fluid::State::State(const FluidSettings& s, const SmokeInflow& from, WorkerPool&
       acting(padded),
       next_velocity{Field(padded), Field(padded), Field(padded)},
       next_smoke(padded),
-      centre{Field(padded), Field(padded), Field(padded)},
       moved(padded),
       shut{fluid::ShutFaces(padded), fluid::ShutFaces(padded), fluid::ShutFaces(padded)},
       sums(static_cast<std::size_t>(s.cells)),
@@ -174,6 +173,7 @@ FluidStats Fluid::State::settle() {
 void Fluid::State::advect() {
   const int n = padded.n;
   const auto scale = static_cast<float>(dt / grid.cell);
+  Field* const centre = next_velocity;  // until the next velocity is written
   const fluid::AdvectionKernels& kernels = fluid::fast_advection_kernels();
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) fluid::centre_velocity(padded, velocity, scale, centre, k);
@@ -257,11 +257,12 @@ void Fluid::State::add_forces() {
 
 void Fluid::State::confine_vorticity() {
   Field& magnitude = next_smoke;
+  Field* const centre = next_velocity;
   const auto epsilon = static_cast<float>(settings.vorticity);
   const auto step = static_cast<float>(dt);
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) fluid::centre_velocity(padded, velocity, 1.0F, centre, k);
-    for (Field& u : centre) fluid::extend_plane(padded, u.data(), k0, k1);
+    for (Field& u : next_velocity) fluid::extend_plane(padded, u.data(), k0, k1);
   });
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) fluid::vorticity_magnitude(padded, centre, magnitude, k);
@@ -281,8 +282,9 @@ void Fluid::State::confine_vorticity() {
 void Fluid::State::place_hands(const HandRaster& raster) {
   obstacle.update(raster, solver.fine());
   lowest_hand = fluid::lowest_of(raster);
-  pool.run(2, [&](int task) {
-    if (task == 0) return solver.rebuild();
+  pool.run(5, [&](int task) {
+    if (task < 3) return fluid::list_shut_faces(solver.fine(), task, shut[task].at);
+    if (task == 3) return solver.rebuild();
     push_swept(raster);
     mark_fluid_cells(raster);
   });

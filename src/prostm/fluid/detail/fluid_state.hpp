@@ -79,9 +79,8 @@ struct Fluid::State {
   FluidStats stats;
 
   // scratch
-  fluid::Field next_velocity[3], next_smoke;
-  fluid::Field centre[3];      // cell-centred velocity [cells per step]
-  fluid::Displacements moved;  // [cells per step]
+  fluid::Field next_velocity[3], next_smoke;  // the former for cell-centred velocity too
+  fluid::Displacements moved;                 // [cells per step]
   fluid::ShutFaces shut[3];
   struct PlaneSums {
     fluid::DivergenceSum divergence;
