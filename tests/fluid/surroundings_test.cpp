@@ -50,7 +50,8 @@ TEST(Surroundings, CalmWhatFlowsInThroughAnOpenSide) {
   const PaddedGrid grid{kCells};
   Field velocity[3] = {Field(grid, 1.0F), Field(grid, 0.0F), Field(grid, 3.0F)};
   for (int j = 0; j < kCells; ++j) velocity[1][grid.index(5, j, 7)] = 4.0F;
-  Surroundings(box(), one_jet(0.0)).calm_inflow(velocity);
+  WorkerPool pool(2);
+  Surroundings(box(), one_jet(0.0)).calm_inflow(pool, velocity);
 
   // in through x = 0, out through the opposite side and the top
   EXPECT_EQ(velocity[0][grid.index(0, 5, 7)], 0.0F);

@@ -1,5 +1,9 @@
 #include "prostm/fluid/detail/advection.hpp"
 
+// only vectors whose length is known at compile time: hats are structs of them
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "prostm/fluid/detail/advection_simd.cpp"
 #include <hwy/foreach_target.h>

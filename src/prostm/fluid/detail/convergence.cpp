@@ -2,23 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace prostm::fluid {
 namespace {
 
-/// Calls use(c) for every cell of the rows' spans that has an equation.
+/// Calls use(row, cells) for the cells of every row's span; those that have no equation hold 0.
 template <class Use>
-void over_cut_cells(const PressureLevel& level, const Use& use) {
+void over_spans(const PressureLevel& level, const Field& p, const Use& use) {
   for (int k = level.box.lower[2]; k < level.box.upper[2]; ++k) {
     for (int j = level.box.lower[1]; j < level.box.upper[1]; ++j) {
       const RowSpan span = level.span(j, k);
-      const Index c = level.grid.index(0, j, k);
-      for (int i = span.begin; i < std::min<int>(span.end, level.grid.n); ++i) {
-        if (level.inverse[c + i] > 0.0F) use(c + i);
-      }
+      const int cells = std::min<int>(span.end, level.grid.n) - span.begin;
+      if (cells > 0) use(p.data() + level.grid.index(span.begin, j, k), cells);
     }
   }
 }
+
+/// A sum in lanes, so that the compiler may use vectors.
+struct LaneSum {
+  static constexpr int kLanes = 8;
+  double of[kLanes] = {};
+  double total() const { return std::accumulate(of, of + kLanes, 0.0); }
+};
 
 }  // namespace
 
@@ -34,19 +40,29 @@ void Convergence::begin() {
 
 void Convergence::keep(const PressureLevel& level, const Field& p) {
   kept_.clear();
-  over_cut_cells(level, [&](Index c) { kept_.push_back(p[c]); });
+  over_spans(level, p,
+             [&](const float* row, int cells) { kept_.insert(kept_.end(), row, row + cells); });
 }
 
 void Convergence::compare(const PressureLevel& level, const Field& p) {
+  LaneSum changes, pressures;
+  const float* kept = kept_.data();
+  over_spans(level, p, [&](const float* row, int cells) {
+    for (int first = 0; first < cells; first += LaneSum::kLanes) {
+      const int lanes = std::min(LaneSum::kLanes, cells - first);
+      for (int lane = 0; lane < lanes; ++lane) {
+        const auto now = static_cast<double>(row[first + lane]);
+        const double change = now - static_cast<double>(kept[first + lane]);
+        changes.of[lane] += change * change;
+        pressures.of[lane] += now * now;
+      }
+    }
+    kept += cells;
+  });
   ++iterations_;
   before_ = last_;
-  last_ = pressure_ = 0.0;
-  std::size_t at = 0;
-  over_cut_cells(level, [&](Index c) {
-    const auto now = static_cast<double>(p[c]), change = now - static_cast<double>(kept_[at++]);
-    last_ += change * change;
-    pressure_ += now * now;
-  });
+  last_ = changes.total();
+  pressure_ = pressures.total();
 }
 
 double Convergence::error() const {

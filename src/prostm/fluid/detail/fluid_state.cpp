@@ -195,7 +195,7 @@ void Fluid::State::advect() {
   });
   for (int axis = 0; axis < 3; ++axis) std::swap(velocity[axis], next_velocity[axis]);
   std::swap(smoke, next_smoke);
-  surroundings.calm_inflow(velocity);
+  surroundings.calm_inflow(pool, velocity);
   surroundings.set_floor(velocity[2]);
 }
 

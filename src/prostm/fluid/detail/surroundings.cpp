@@ -110,26 +110,28 @@ void Surroundings::set_smoke_halo(Field& smoke) const {
   }
 }
 
-void Surroundings::calm_inflow(Field velocity[3]) const {
-  const int last = grid_.n - 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int other[2] = {(axis + 1) % 3, (axis + 2) % 3};
-    for (int side = axis == 2 ? 1 : 0; side < 2; ++side) {  // the floor is not open
-      for (int b = 0; b <= last; ++b) {
-        for (int a = 0; a <= last; ++a) {
-          int at[3];
-          at[axis] = side * last;
-          at[other[0]] = a;
-          at[other[1]] = b;
-          const Index c = grid_.index(at[0], at[1], at[2]);
-          float& inward = velocity[axis][c + side * grid_.stride(axis)];
-          if (side == 0 ? inward <= 0.0F : inward >= 0.0F) continue;
-          inward = 0.0F;
-          for (const int t : other) {
-            if (t != 2 || at[2] > 0) velocity[t][c] = 0.0F;
-            velocity[t][c + grid_.stride(t)] = 0.0F;
-          }
-        }
+void Surroundings::calm_inflow(WorkerPool& pool, Field velocity[3]) const {
+  // the two sides of an axis have no cell in common; the floor is not open
+  pool.run(2, [&](int side) { calm_side(0, side, velocity); });
+  pool.run(2, [&](int side) { calm_side(1, side, velocity); });
+  calm_side(2, 1, velocity);
+}
+
+void Surroundings::calm_side(int axis, int side, Field velocity[3]) const {
+  const int last = grid_.n - 1, other[2] = {(axis + 1) % 3, (axis + 2) % 3};
+  for (int b = 0; b <= last; ++b) {
+    for (int a = 0; a <= last; ++a) {
+      int at[3];
+      at[axis] = side * last;
+      at[other[0]] = a;
+      at[other[1]] = b;
+      const Index c = grid_.index(at[0], at[1], at[2]);
+      float& inward = velocity[axis][c + side * grid_.stride(axis)];
+      if (side == 0 ? inward <= 0.0F : inward >= 0.0F) continue;
+      inward = 0.0F;
+      for (const int t : other) {
+        if (t != 2 || at[2] > 0) velocity[t][c] = 0.0F;
+        velocity[t][c + grid_.stride(t)] = 0.0F;
       }
     }
   }

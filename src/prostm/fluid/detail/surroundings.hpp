@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/detail/padded_grid.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
@@ -39,9 +40,10 @@ class Surroundings {
   /// Air that enters through an open side was at rest outside (F3a): the side's cells forget their
   /// momentum where the flow is inward, and the projection alone drives it. Kept momentum would
   /// feed itself and turn the whole box.
-  void calm_inflow(Field velocity[3]) const;
+  void calm_inflow(WorkerPool& pool, Field velocity[3]) const;
 
  private:
+  void calm_side(int axis, int side, Field velocity[3]) const;
   std::size_t column(int i, int j) const { return static_cast<std::size_t>(j * grid_.n + i); }
 
   PaddedGrid grid_;
