@@ -52,6 +52,8 @@ class MovingHand {
     rasteriser_.rasterise(frame_, pool_);
     return rasteriser_.raster();
   }
+  /// The cells that the hand of the last step may touch.
+  const prostm::CellBox& box() const { return rasteriser_.raster().box; }
 
  private:
   std::unique_ptr<prostm::HandSource> source_;
@@ -130,58 +132,88 @@ Summary accuracy(const FluidSettings& settings, const std::string& scene) {
   return errors.summary();
 }
 
-struct StepTimes {
-  Summary ours, paper, accurate;  // [ms]
-  Summary advection, pressure;    // of ours [GB/s]
-  // the largest that ours and the accurate mode leave [cells per step and cell]
-  Summary divergence, accurate_divergence;
-};
-
 /// Steps of one solver among the moving hand.
 class TimedFluid {
  public:
   TimedFluid(const FluidSettings& settings, prostm::WorkerPool& pool)
       : fluid_(settings, prostm::scene_from_name("four-plumes").smoke, pool),
         hand_(fluid_.grid(), pool) {}
-  /// Calls f(stats) after each of the next steps.
-  template <class F>
-  void run(int steps, F&& f) {
-    for (int t = 0; t < steps; ++t) f(fluid_.step(kStep, hand_.at(step_++)));
+
+  void warm_up() {
+    while (step_ < kWarmUp) fluid_.step(kStep, hand_.at(step_++));
+  }
+  void run(int steps) {
+    const double gigacells = 1e-9 * std::pow(fluid_.grid().nx, 3);
+    for (int t = 0; t < steps; ++t) {
+      const prostm::FluidStats stats = fluid_.step(kStep, hand_.at(step_++));
+      ms_.add(1e3 * stats.total);
+      advection_.add(kAdvectionBytes * gigacells / stats.advect);
+      pressure_.add(kPressureBytes * gigacells / stats.solve);
+      divergence_.add(stats.divergence_max);
+    }
+    away_.add(divergence_away());
   }
 
+  Summary ms() const { return ms_.summary(); }
+  Summary advection() const { return advection_.summary(); }    // [GB/s]
+  Summary pressure() const { return pressure_.summary(); }      // [GB/s]
+  Summary divergence() const { return divergence_.summary(); }  // the largest, cells per step
+  Summary away() const { return away_.summary(); }  // the same away from hands, jets and sides
+
  private:
+  /// Where tools/compare_mantaflow.py looks: above a seventh of the height, and some cells from the
+  /// hand's heights, the sides and the top.
+  double divergence_away() const {
+    constexpr int kSides = 4, kHand = 5;
+    const int n = fluid_.grid().nx;
+    const prostm::CellBox& hand = hand_.box();
+    double largest = 0.0;
+    for (int k = n / 7; k < n - kSides; ++k) {
+      if (!hand.empty() && k >= hand.lower[2] - kHand && k < hand.upper[2] + kHand) continue;
+      for (int j = kSides; j < n - kSides; ++j) {
+        for (int i = kSides; i < n - kSides; ++i)
+          largest = std::max(largest, std::abs(fluid_.divergence(i, j, k)));
+      }
+    }
+    return kStep * largest;
+  }
+
   Fluid fluid_;
   MovingHand hand_;
   int step_ = 0;
+  Distribution ms_, advection_, pressure_, divergence_, away_;
 };
 
 /// Times steps of the solvers in turn, a few each, so that each finds its own state in the caches.
-StepTimes step_times(int cells, int steps) {
+void add_step_times(int cells, int steps, double bytes_per_second, std::vector<Row>& rows) {
   constexpr int kTurn = 10;
   prostm::WorkerPool pool(kThreads);
-  TimedFluid ours(multigrid(cells, FluidSettings{}.cycles), pool),
-      paper(jacobi(cells, false), pool),
-      accurate(mgpcg(cells, FluidSettings{}.cg_iterations), pool);
-  const double gigacells = 1e-9 * std::pow(cells, 3);
-  Distribution ours_ms, paper_ms, accurate_ms, advection, pressure, divergence, accurate_divergence;
-  for (TimedFluid* fluid : {&ours, &paper, &accurate})
-    fluid->run(kWarmUp, [](const prostm::FluidStats&) {});
+  TimedFluid ours(multigrid(cells, FluidSettings{}.cycles), pool), three(multigrid(cells, 3), pool),
+      accurate(mgpcg(cells, FluidSettings{}.cg_iterations), pool),
+      paper(jacobi(cells, false), pool);
+  for (TimedFluid* fluid : {&ours, &three, &accurate, &paper}) fluid->warm_up();
   for (int t = 0; t < steps; t += kTurn) {
-    ours.run(kTurn, [&](const prostm::FluidStats& s) {
-      ours_ms.add(1e3 * s.total);
-      advection.add(kAdvectionBytes * gigacells / s.advect);
-      pressure.add(kPressureBytes * gigacells / s.solve);
-      divergence.add(s.divergence_max);
-    });
-    paper.run(kTurn, [&](const prostm::FluidStats& s) { paper_ms.add(1e3 * s.total); });
-    accurate.run(kTurn, [&](const prostm::FluidStats& s) {
-      accurate_ms.add(1e3 * s.total);
-      accurate_divergence.add(s.divergence_max);
-    });
+    for (TimedFluid* fluid : {&ours, &three, &accurate, &paper}) fluid->run(kTurn);
   }
-  return {
-      ours_ms.summary(),  paper_ms.summary(),   accurate_ms.summary(),        advection.summary(),
-      pressure.summary(), divergence.summary(), accurate_divergence.summary()};
+  const std::string size = std::to_string(cells) + "^3";
+  const double floor = 1e3 * kBytesPerCell * std::pow(cells, 3) / bytes_per_second;
+  const auto add_solver = [&](const std::string& name, const TimedFluid& fluid,
+                              const std::string& other, double other_ms) {
+    rows.push_back({"step " + size + " with a hand, " + name, "ms", fluid.ms(), other, other_ms});
+    rows.push_back(
+        {"largest divergence, " + size + ", " + name, "1/step", fluid.divergence(), "", 0.0});
+    rows.push_back({"away from hands, jets and sides, " + size + ", " + name, "1/step",
+                    fluid.away(), "", 0.0});
+  };
+  add_solver("multigrid", ours, "40 Jacobi sweeps", paper.ms().p50);
+  add_solver("3 V-cycles", three, "multigrid", ours.ms().p50);
+  add_solver("mgpcg", accurate, "multigrid", ours.ms().p50);
+  rows.push_back(
+      {"step " + size + " against its memory traffic", "ms", ours.ms(), "traffic alone", floor});
+  rows.push_back({"traffic of advection, " + size, "GB/s", ours.advection(), "triad",
+                  1e-9 * bytes_per_second});
+  rows.push_back(
+      {"traffic of pressure, " + size, "GB/s", ours.pressure(), "triad", 1e-9 * bytes_per_second});
 }
 
 /// Times rasterising the scripted hand on a 64³ grid, alone or with a second one beside and above
@@ -230,23 +262,8 @@ double triad_rate() {
 std::vector<Row> measure() {
   std::vector<Row> rows;
   const double rate = triad_rate();
-  for (const int cells : {32, 64, 96, 128, 160}) {
-    const std::string size = std::to_string(cells) + "^3";
-    const StepTimes times = step_times(cells, cells <= 64 ? kTimedSteps : kTimedSteps / 10);
-    const double floor = 1e3 * kBytesPerCell * std::pow(cells, 3) / rate;
-    rows.push_back({"step " + size + " with a hand, multigrid", "ms", times.ours,
-                    "40 Jacobi sweeps", times.paper.p50});
-    rows.push_back(
-        {"step " + size + " against its memory traffic", "ms", times.ours, "traffic alone", floor});
-    rows.push_back({"step " + size + " with a hand, mgpcg", "ms", times.accurate, "multigrid",
-                    times.ours.p50});
-    rows.push_back({"largest divergence, " + size, "1/step", times.divergence, "", 0.0});
-    rows.push_back(
-        {"largest divergence, " + size + ", mgpcg", "1/step", times.accurate_divergence, "", 0.0});
-    rows.push_back(
-        {"traffic of advection, " + size, "GB/s", times.advection, "triad", 1e-9 * rate});
-    rows.push_back({"traffic of pressure, " + size, "GB/s", times.pressure, "triad", 1e-9 * rate});
-  }
+  for (const int cells : {32, 64, 96, 128, 160})
+    add_step_times(cells, cells <= 64 ? kTimedSteps : kTimedSteps / 10, rate, rows);
   rows.push_back({"raster 64^3, one hand", "ms", raster_times(false), "", 0.0});
   rows.push_back({"raster 64^3, two hands", "ms", raster_times(true), "", 0.0});
   const Summary cold = accuracy(jacobi(64, false), "one-plume");

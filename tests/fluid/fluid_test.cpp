@@ -245,6 +245,21 @@ TEST(Fluid, ReportsTheDivergenceThatItLeaves) {
   }
 }
 
+TEST(Fluid, TellsTheDivergenceOfEachCell) {
+  WorkerPool pool(2);
+  Fluid fluid(settings_of(32, 1), scene_from_name("one-plume").smoke, pool);
+  HandRaster no_hand;
+  no_hand.grid = fluid.grid();
+  for (int t = 0; t < 10; ++t) {
+    const double reported = fluid.step(kStep, no_hand).divergence_max;
+    double largest = 0.0;
+    for (int c = 0; c < 32 * 32 * 32; ++c)
+      largest = std::max(largest, std::abs(fluid.divergence(c % 32, c / 32 % 32, c / 1024)));
+    EXPECT_NEAR(kStep * largest, reported, 1e-5 * reported + 1e-6) << t;
+    EXPECT_GT(reported, 1e-4) << t;
+  }
+}
+
 /// Relative rms error of a pressure against the converged one, on cells within two of the hand.
 double error_beside(const Fluid& fluid, const Fluid& exact) {
   const GridShape& g = fluid.grid();

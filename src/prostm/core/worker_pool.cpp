@@ -25,8 +25,7 @@ void relax() {
 
 }  // namespace
 
-WorkerPool::WorkerPool(int threads)
-    : parts_(static_cast<std::size_t>(std::clamp(threads, 1, static_cast<int>(kIndexMask)))) {
+WorkerPool::WorkerPool(int threads) : parts_(static_cast<std::size_t>(std::max(threads, 1))) {
   if (threads < 1) {
     throw std::invalid_argument("threads = " + std::to_string(threads) + " must be at least 1");
   }

@@ -62,6 +62,16 @@ Vec3 Fluid::velocity(int i, int j, int k) const {
   return centre;
 }
 
+double Fluid::divergence(int i, int j, int k) const {
+  const Index c = state_->padded.index(i, j, k);
+  double outflow = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Field& u = state_->velocity[axis];
+    outflow += static_cast<double>(u[c + state_->padded.stride(axis)]) - static_cast<double>(u[c]);
+  }
+  return outflow / state_->grid.cell;
+}
+
 void Fluid::copy_state(const Fluid& other) {
   State& to = *state_;
   const State& from = *other.state_;

@@ -140,6 +140,8 @@ class Fluid {
   std::span<const float> smoke() const;
   /// Velocity at a cell centre [m/s].
   Vec3 velocity(int i, int j, int k) const;
+  /// Divergence of the velocity in a cell that no hand cuts [1/s].
+  double divergence(int i, int j, int k) const;
 
   /// Copies velocity, smoke and pressure of another fluid, to compare solvers from the same state.
   /// @pre both are between steps.

@@ -71,7 +71,7 @@ HWY_EXPORT(DiffusePlane);
 }  // namespace
 
 int viscous_passes(double share) {
-  return static_cast<int>(std::ceil(share * 6.0 / 0.9));
+  return static_cast<int>(std::ceil(share * 6.0 / 0.95));
 }
 
 void diffuse(const PaddedGrid& grid, int axis, const Field& u, float share, Field& out, int k) {

@@ -5,7 +5,7 @@
 
 namespace prostm::fluid {
 
-/// Returns how many passes a step needs so that each is stable: 6 share ≤ 0.9 (F13).
+/// Returns how many passes a step needs so that each is stable: 6 share ≤ 0.95 (F13).
 /// @param share νΔt/h² of the whole step.
 int viscous_passes(double share);
 
