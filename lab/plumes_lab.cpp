@@ -14,9 +14,11 @@ int main(int argc, char** argv) {
   double width = 1e3 * FluidSettings().width, theta = FluidSettings().theta;
   int substeps = FluidSettings().substeps;
   std::string follow;
+  std::string part(name_of(PressurePart::All));
   int frames = 250;
-  double trim = JetSettings().trim_rate;
+  double trim = JetSettings().trim_rate, tremor = 1.0;
   app.add_option("--hands", folder, "folder with recorded hands");
+  app.add_option("--tremor", tremor, "share of their tremor")->capture_default_str();
   app.add_option("--only", only, "cases whose name contains this");
   app.add_option("--scenes", scenes, "scenes")->capture_default_str();
   app.add_option("--cells", cells, "cells along each edge")->capture_default_str();
@@ -26,6 +28,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--substeps", substeps, "steps of the fluid in a step")->capture_default_str();
   app.add_option("--follow", follow, "what the box follows: palm or index");
+  app.add_option("--pressure-of", part, "what is felt: all, smoke or movement")
+      ->capture_default_str();
   app.add_option("--trim", trim, "rate of the jets' trim [1/s]")->capture_default_str();
   app.add_option("--frames", frames, "frames of each case")
       ->check(CLI::Range(1, 10000))
@@ -38,7 +42,7 @@ int main(int argc, char** argv) {
       return rows;
     }
     for (const std::string& scene : scenes) {
-      for (const bench::HeldCase& held : bench::held_cases(folder)) {
+      for (const bench::HeldCase& held : bench::held_cases(folder, tremor)) {
         if (held.name.find(only) == std::string::npos) continue;
         for (const int n : cells) {
           for (const double ms : steps) {
@@ -49,6 +53,7 @@ int main(int argc, char** argv) {
             settings.fluid.theta = theta;
             settings.fluid.substeps = substeps;
             if (!follow.empty()) settings.box.follow = from_name<BoxFollows>(follow, "follow");
+            settings.fluid_pressure.part = from_name<PressurePart>(part, "pressure-of");
             settings.jets.trim_rate = trim;
             const auto measured = bench::measure_plumes(held, settings, 1e-3 * ms, frames);
             const std::string name = fmt::format("{}, {}, {}³, {} ms", scene, held.name, n, ms);

@@ -147,7 +147,9 @@ std::unique_ptr<HandSource> make_held_hand(const std::string& recording, const H
   place(hold, hand);
   to_tracker(hand);
   hand.id = 1;
-  return std::make_unique<HeldHand>(hand, tremor_of(hands));
+  std::vector<Vec3> tremor = tremor_of(hands);
+  for (Vec3& moved : tremor) moved *= hold.tremor;
+  return std::make_unique<HeldHand>(hand, std::move(tremor));
 }
 
 std::unique_ptr<HandSource> make_still_hand(HandSource& source, const Hold& hold) {

@@ -13,6 +13,7 @@ struct Hold {
   double x = 0.0, y = 0.0;  ///< of the palm joint, in D [m]
   double height = 0.215;    ///< of the palm joint above the array [m]
   double tilt = 0.0;        ///< of the palm about D's y [rad]
+  double tremor = 1.0;      ///< share of the recorded tremor
 };
 
 /// The flattest pose of a recording (that whose fingertips are nearest to the palm's plane), turned
