@@ -36,7 +36,7 @@ void* allocate_field(std::size_t bytes) {
 }
 
 void free_field(void* memory, std::size_t bytes) {
-  ::operator delete(memory, rounded(bytes), alignment(bytes));
+  ::operator delete(memory, alignment(bytes));
 }
 
 }  // namespace prostm::fluid
