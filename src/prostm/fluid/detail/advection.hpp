@@ -26,7 +26,7 @@ struct ShiftRange {
   alignas(16) float high[4] = {0, 0, 0, 0};
 };
 
-constexpr int kBlockRows = 4;
+inline constexpr int kBlockRows = 4;
 
 /// Displacements d of the particles that arrive at the cells, and their ranges in blocks of
 /// kBlockRows rows of one vector, which only the vector kernels write and read.
