@@ -188,13 +188,7 @@ TEST(Live, RatesAreThoseOfTheRunHoweverSeldomTheyAreAskedFor) {
 }
 
 TEST(Live, TellsHowWellWhatIsFeltRendersTheTarget) {
-  // it is computed in what the run and other programs leave of the processor, which is little under
-  // a sanitizer: so few steps and few transducers
-  PipelineSettings settings = small_settings();
-  settings.world_rate = 10.0;
-  settings.transducers.position.resize(16);
-  settings.transducers.normal.resize(16);
-  LiveRun run(settings);
+  LiveRun run;
   Page page(run.port());  // it is computed while a page watches
   EXPECT_TRUE(eventually([&] {
     page.next_frame();
