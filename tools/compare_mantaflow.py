@@ -4,8 +4,8 @@
 usage: tools/compare_mantaflow.py [--cells N] [--frames N] [--bench FILE]
 
 Mantaflow gets a box of N³ cells, open but for its floor, with four jets and an ellipsoid that bobs, one substep a
-frame and no adaptive domain; prostm gets four plumes and the scripted hand. Prints the time of a frame (medians), and the
-largest divergence left (|∇·u| Δt, per cell) away from obstacles, jets and sides.
+frame and no adaptive domain; prostm gets four plumes and the scripted hand. Prints the time of a frame (medians), and
+the largest divergence left (|∇·u| Δt, per cell) away from obstacles, jets and sides.
 """
 
 import argparse

@@ -248,8 +248,7 @@ TEST(Fluid, ReportsTheDivergenceThatItLeaves) {
 TEST(Fluid, TellsTheDivergenceOfEachCell) {
   WorkerPool pool(2);
   Fluid fluid(settings_of(32, 1), scene_from_name("one-plume").smoke, pool);
-  HandRaster no_hand;
-  no_hand.grid = fluid.grid();
+  const HandRaster no_hand = test::empty_raster(fluid.grid());
   for (int t = 0; t < 10; ++t) {
     const double reported = fluid.step(kStep, no_hand).divergence_max;
     double largest = 0.0;

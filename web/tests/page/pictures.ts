@@ -12,38 +12,41 @@ const kPictures = [
 ] as const;
 
 const browser = await openBrowser();
-for (const { name, theme, study } of kPictures) {
-  const program = new Program(["--scene", "four-plumes", "--seconds", "3600", ...(study ? ["--hand", "study"] : [])]);
-  try {
-    await program.start();
-    const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: theme });
-    // without the picture the run keeps its rates meanwhile
-    await page.goto(`${program.address}/#picture=off`);
-    await until(page, () => (window.prostm?.frame?.hands.length ?? 0) > 0, 0, "a hand");
-    // half a minute, so that the strips are full; then hold the next moment at which the open hand is well in the smoke,
-    // or the gate passes
-    await page.waitForTimeout(32_000);
-    await until(page, (study) => {
-      const { plan, numbers, hands, gate } = window.prostm.frame!;
-      const tip = hands[0]?.joints.subarray(8 * 15, 8 * 15 + 3), palm = hands[0]?.joints;
-      const open = tip !== undefined && palm !== undefined && Math.hypot(tip[0]! - palm[0]!, tip[1]! - palm[1]!, tip[2]! - palm[2]!) > 0.11;
-      const pressed = open && plan.length === 4 && numbers[24]! > 0.08 && numbers[18]! > 0.92;
-      const good = study ? gate?.passed === true : pressed;
-      if (good) {
-        const mode = document.querySelector<HTMLSelectElement>("#picture-mode")!;
-        mode.value = "auto";
-        mode.dispatchEvent(new Event("change"));
-        location.hash = "still";
-      }
-      return good;
-    }, study, "what the picture is to show", 180_000);
-    const drawn = await page.evaluate(() => window.prostm.pictures);
-    await until(page, (n) => window.prostm.pictures > n + 3, drawn, "pictures with every pixel", 180_000);
-    await page.screenshot({ path: join(out, `${name}.png`) });
-    await page.close();
-  } finally {
-    await program.stop();
+try {
+  for (const { name, theme, study } of kPictures) {
+    const program = new Program(["--scene", "four-plumes", "--seconds", "3600", ...(study ? ["--hand", "study"] : [])]);
+    try {
+      await program.start();
+      const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: theme });
+      // without the picture the run keeps its rates meanwhile
+      await page.goto(`${program.address}/#picture=off`);
+      await until(page, () => (window.prostm?.frame?.hands.length ?? 0) > 0, 0, "a hand");
+      // half a minute, so that the strips are full; then hold the next moment at which the open hand is well in the
+      // smoke, or the gate passes
+      await page.waitForTimeout(32_000);
+      await until(page, (study) => {
+        const { plan, numbers, hands, gate } = window.prostm.frame!;
+        const tip = hands[0]?.joints.subarray(8 * 15, 8 * 15 + 3), palm = hands[0]?.joints;
+        const open = tip !== undefined && palm !== undefined && Math.hypot(tip[0]! - palm[0]!, tip[1]! - palm[1]!, tip[2]! - palm[2]!) > 0.11;
+        const pressed = open && plan.length === 4 && numbers[24]! > 0.08 && numbers[18]! > 0.92;
+        const good = study ? gate?.passed === true : pressed;
+        if (good) {
+          const mode = document.querySelector<HTMLSelectElement>("#picture-mode")!;
+          mode.value = "auto";
+          mode.dispatchEvent(new Event("change"));
+          location.hash = "still";
+        }
+        return good;
+      }, study, "what the picture is to show", 180_000);
+      const drawn = await page.evaluate(() => window.prostm.pictures);
+      await until(page, (n) => window.prostm.pictures > n + 3, drawn, "pictures with every pixel", 180_000);
+      await page.screenshot({ path: join(out, `${name}.png`) });
+      await page.close();
+    } finally {
+      await program.stop();
+    }
   }
+} finally {
+  await browser.close();
+  clean();
 }
-await browser.close();
-clean();

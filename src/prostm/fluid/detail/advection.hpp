@@ -26,6 +26,7 @@ struct ShiftRange {
   alignas(16) float high[4] = {0, 0, 0, 0};
 };
 
+/// Fewer make more blocks, more make their boxes of shifted rows larger.
 inline constexpr int kBlockRows = 4;
 
 /// Displacements d of the particles that arrive at the cells, and their ranges in blocks of

@@ -125,11 +125,15 @@ HWY_INLINE V shift_of(const Particles& from, const Block& block, int r, int axis
   return hn::Min(hn::Max(shift, low), high);
 }
 
-/// max(0, 1 − |s − t|)
-HWY_INLINE V hat(V s, int t) {
+/// s − t
+HWY_INLINE V minus(V s, int t) {
+  return hn::Sub(s, hn::Set(D(), static_cast<float>(t)));
+}
+
+/// max(0, 1 − |u|)
+HWY_INLINE V hat(V u) {
   const D d;
-  const V distance = hn::Abs(hn::Sub(s, hn::Set(d, static_cast<float>(t))));
-  return hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0F), distance));
+  return hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, 1.0F), hn::Abs(u)));
 }
 
 /// Hats of two or three shifts along an axis.
@@ -140,7 +144,7 @@ struct Hats {
 template <int kTaps>
 HWY_INLINE Hats hats(V s, int first) {
   const D d;
-  const V one = hn::Set(d, 1.0F), u = hn::Sub(s, hn::Set(d, static_cast<float>(first)));
+  const V one = hn::Set(d, 1.0F), u = minus(s, first);
   if constexpr (kTaps == 2) return {hn::Sub(one, u), u, u};
   const V past = hn::Sub(u, one);
   return {hn::Max(hn::Zero(d), hn::Neg(past)), hn::Sub(one, hn::Abs(past)),
@@ -175,11 +179,11 @@ HWY_INLINE void sum_few(const Particles& from, const Block& block, const float* 
   for (int r = 0; r < block.rows; ++r, o += row) {
     const Hats x = hats<kX>(shift_of(from, block, r, 0), block.first[0]);
     const Hats y = hats<kY>(shift_of(from, block, r, 1), block.first[1]);
-    V u = hn::Sub(shift_of(from, block, r, 2), hn::Set(d, static_cast<float>(block.first[2])));
+    V u = minus(shift_of(from, block, r, 2), block.first[2]);
     V sum0 = hn::Zero(d), sum1 = hn::Zero(d), sum2 = hn::Zero(d);
     Index shifted = o;
     for (int t = block.first[2]; t <= block.last[2]; ++t, shifted += plane) {
-      const V z = hn::Max(hn::Zero(d), hn::Sub(one, hn::Abs(u)));
+      const V z = hat(u);
       u = hn::Sub(u, one);
       sum0 = hn::MulAdd(z, along_xy<kX, kY>(x, y, fields[0] + shifted, row), sum0);
       if constexpr (kFields == 3) {
@@ -209,10 +213,10 @@ void sum_many(const Particles& from, const Block& block, const float* const* fie
       V sum = hn::Zero(d);
       for (int z = block.first[2]; z <= block.last[2]; ++z) {
         for (int y = block.first[1]; y <= block.last[1]; ++y) {
-          const V w = hn::Mul(hat(sz, z), hat(sy, y));
+          const V w = hn::Mul(hat(minus(sz, z)), hat(minus(sy, y)));
           const float* row = fields[f] + own + z * from.plane + y * from.row;
           for (int x = block.first[0]; x <= block.last[0]; ++x)
-            sum = hn::MulAdd(hn::Mul(w, hat(sx, x)), hn::LoadU(d, row + x), sum);
+            sum = hn::MulAdd(hn::Mul(w, hat(minus(sx, x))), hn::LoadU(d, row + x), sum);
         }
       }
       hn::StoreU(sum, d, out[f] + own);
@@ -290,12 +294,11 @@ void Sample(const PaddedGrid& grid, const Placement& place, const Displacements&
   const Particles from{grid, place, d, 0.5F, place.axis < 0 ? 0 : grid.stride(place.axis)};
   const Index end = grid.n - 1;
   over_blocks(grid, place.count[1], k0, k1, [&](Block& block) HWY_ATTR {
-    const Index i = block.i, j = std::min<Index>(block.j, end), k = std::min<Index>(block.k, end);
-    // the halo before the first cell holds its copy
-    const Index before[3] = {place.axis == 0 ? std::max<Index>(i - 1, 0) : i,
-                             place.axis == 1 ? std::max<Index>(j - 1, 0) : j,
-                             place.axis == 2 ? std::max<Index>(k - 1, 0) : k};
-    set_shifts(moved.ranges[range_index(grid, i, j, k)],
+    // the halo before the first cell and after the last one holds its copy
+    const Index own[3] = {block.i, std::min<Index>(block.j, end), std::min<Index>(block.k, end)};
+    Index before[3] = {own[0], own[1], own[2]};
+    if (place.axis >= 0) before[place.axis] = std::max<Index>(own[place.axis] - 1, 0);
+    set_shifts(moved.ranges[range_index(grid, own[0], own[1], own[2])],
                moved.ranges[range_index(grid, before[0], before[1], before[2])], block);
     clamp_shifts(place, block);
     interpolate<1>(from, block, &in, &out);

@@ -282,6 +282,7 @@ void Fluid::State::confine_vorticity() {
 void Fluid::State::place_hands(const HandRaster& raster) {
   obstacle.update(raster, solver.fine());
   lowest_hand = fluid::lowest_of(raster);
+  // none of these reads what another one writes
   pool.run(5, [&](int task) {
     if (task < 3) return fluid::list_shut_faces(solver.fine(), task, shut[task].at);
     if (task == 3) return solver.rebuild();

@@ -31,8 +31,8 @@ struct PaddedGrid {
 };
 
 /// Memory for a field, aligned to 64 bytes at least. A large one is in pages of 2 MiB where the
-/// system has them: stencils walk over so many planes of so many fields that pages of 4 KiB cost a
-/// tenth of a step in address translation. @throws std::bad_alloc.
+/// system has them: stencils walk over so many planes of so many fields that pages of 4 KiB cost 8
+/// % of a step in address translation. @throws std::bad_alloc.
 void* allocate_field(std::size_t bytes);
 void free_field(void* memory, std::size_t bytes);
 

@@ -61,7 +61,7 @@ struct LaneSums {
   alignas(64) float squares[PaddedGrid::kLane] = {}, largest[PaddedGrid::kLane] = {};
 };
 
-/// Adds a row of n outflows. @pre n is a multiple of kLane or less than the lanes of a vector.
+/// Adds a row of n outflows. @pre n is a multiple of kLane.
 HWY_INLINE void add_row(const float* outflow, Index n, LaneSums& sums) {
   const D d;
   for (Index lane = 0; lane < PaddedGrid::kLane; lane += static_cast<Index>(hn::Lanes(d))) {
