@@ -16,9 +16,11 @@ int main(int argc, char** argv) {
   std::string follow;
   std::string part(name_of(PressurePart::All));
   int frames = 250;
-  double trim = JetSettings().trim_rate, tremor = 1.0;
+  double trim = JetSettings().trim_rate, tremor = 4.0;
   app.add_option("--hands", folder, "folder with recorded hands");
-  app.add_option("--tremor", tremor, "share of their tremor")->capture_default_str();
+  app.add_option("--tremor-above", tremor, "they tremble as recorded above so many Hz; 0: still")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
   app.add_option("--only", only, "cases whose name contains this");
   app.add_option("--scenes", scenes, "scenes")->capture_default_str();
   app.add_option("--cells", cells, "cells along each edge")->capture_default_str();
@@ -32,7 +34,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--trim", trim, "rate of the jets' trim [1/s]")->capture_default_str();
   app.add_option("--frames", frames, "frames of each case")
-      ->check(CLI::Range(1, 10000))
+      ->check(CLI::Range(1, 2000))
       ->capture_default_str();
   app.add_option("--curves", curves, "draw only the curves of refinement, into this picture");
   return bench::run(app, argc, argv, [&] {

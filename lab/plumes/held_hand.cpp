@@ -5,13 +5,16 @@
 #include <vector>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/units.hpp"
 #include "prostm/io/hand_file.hpp"
 
 namespace prostm::bench {
 namespace {
 
-constexpr double kStill = 2.0;   // length of the tremor that is taken [s]
-constexpr double kRate = 100.0;  // its samples a second [Hz]
+constexpr double kRate = 100.0;  // frames a second [Hz]
+// the tremor that is taken, and how much of its beginning its end is blended with [frames]
+constexpr std::size_t kStill = 200, kBlend = 20;
+constexpr double kLength = 60.0;  // for which a trembling hand is held [s]
 
 /// Turns a hand in D about its palm joint until the palm is level and points along +y, then
 /// tilts it, and moves it.
@@ -45,33 +48,19 @@ void to_tracker(Hand& hand) {
   }
 }
 
-class HeldHand final : public HandSource {
+/// Gives one hand at all times.
+class StillHand final : public HandSource {
  public:
-  HeldHand(const Hand& hand, std::vector<Vec3> tremor) : hand_(hand), tremor_(std::move(tremor)) {}
+  explicit StillHand(const Hand& hand) : hand_(hand) {}
 
   void sample(double time, HandFrame& out) override {
     out.time = time;
     out.age = 0.0;
     out.hands.assign(1, hand_);
-    if (tremor_.size() < 2) return;
-    Hand& hand = out.hands.front();
-    // to and fro, linear between samples
-    const auto last = static_cast<double>(tremor_.size() - 1);
-    const double phase = std::fmod(time * kRate, 2.0 * last);
-    const bool back = phase >= last;
-    const double at = back ? 2.0 * last - phase : phase;
-    const auto i = std::min(static_cast<std::size_t>(at), tremor_.size() - 2);
-    const double u = at - static_cast<double>(i);
-    const Vec3 step = tremor_[i + 1] - tremor_[i];
-    for (std::size_t j = 0; j < kJointCount; ++j) {
-      hand.position[j] += tremor_[i] + u * step;
-      hand.velocity[j] = (back ? -kRate : kRate) * step;
-    }
   }
 
  private:
   Hand hand_;
-  std::vector<Vec3> tremor_;  // of the whole hand, in T [m]
 };
 
 /// One hand a frame, as often as kRate, in T.
@@ -89,7 +78,7 @@ std::vector<Hand> hands_of(const std::string& path) {
   return hands;
 }
 
-/// The first of the frames in which the palm moves least for kStill.
+/// The first of `count` frames in which the palm moves least.
 std::size_t stillest(const std::vector<Hand>& hands, std::size_t count) {
   std::size_t best = 0;
   double least = 1e9;
@@ -119,19 +108,47 @@ double bent(const Hand& hand) {
   return most;
 }
 
-std::vector<Vec3> tremor_of(const std::vector<Hand>& hands) {
-  const auto count = std::min(static_cast<std::size_t>(kStill * kRate), hands.size());
-  const std::size_t first = stillest(hands, count);
-  constexpr std::size_t kAround = 20;  // samples of the moving mean on each side: 0.2 s
-  std::vector<Vec3> tremor;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t from = i - std::min(i, kAround), to = std::min(count - 1, i + kAround);
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t j = from; j <= to; ++j)
-      mean += hands[first + j].position[kPalm] / static_cast<double>(to - from + 1);
-    tremor.push_back(hands[first + i].position[kPalm] - mean);
+/// The palm's place at frame i, less its mean with the weights of a Gaussian whose gain at `cutoff`
+/// [Hz] is 1/√2: its faster movement.
+Vec3 fast_part(const std::vector<Hand>& hands, std::size_t i, double cutoff) {
+  const double sigma = kRate * std::sqrt(std::log(2.0)) / (2.0 * kPi * cutoff);  // [frames]
+  const auto reach = static_cast<std::size_t>(std::ceil(4.0 * sigma));
+  Vec3 sum = Vec3::Zero();
+  double weights = 0.0;
+  for (std::size_t j = i - std::min(i, reach); j <= std::min(i + reach, hands.size() - 1); ++j) {
+    const double away = (static_cast<double>(j) - static_cast<double>(i)) / sigma;
+    const double weight = std::exp(-0.5 * away * away);
+    sum += weight * hands[j].position[kPalm];
+    weights += weight;
+  }
+  return hands[i].position[kPalm] - sum / weights;
+}
+
+/// The palm's tremor in the stillest part of a recording, whose end goes over into its beginning.
+std::vector<Vec3> tremor_of(const std::vector<Hand>& hands, double cutoff) {
+  const std::size_t count = std::min(kStill + kBlend, hands.size());
+  const std::size_t first = stillest(hands, count), blend = std::min(kBlend, count / 2);
+  std::vector<Vec3> tremor(count - blend);
+  for (std::size_t i = 0; i < tremor.size(); ++i) tremor[i] = fast_part(hands, first + i, cutoff);
+  for (std::size_t i = 0; i < blend; ++i) {
+    const double u = static_cast<double>(i) / static_cast<double>(blend);
+    tremor[i] = u * tremor[i] + (1.0 - u) * fast_part(hands, first + tremor.size() + i, cutoff);
   }
   return tremor;
+}
+
+/// A recording of a hand that trembles, in T.
+HandRecording held(const Hand& hand, const std::vector<Vec3>& tremor, double length) {
+  HandRecording recording;
+  const auto frames = static_cast<std::size_t>(std::ceil(length * kRate)) + 1;
+  for (std::size_t i = 0; i < frames; ++i) {
+    HandFrame frame;
+    frame.time = static_cast<double>(i) / kRate;
+    frame.hands.assign(1, hand);
+    for (Vec3& p : frame.hands.front().position) p += tremor[i % tremor.size()];
+    recording.frames.push_back(frame);
+  }
+  return recording;
 }
 
 }  // namespace
@@ -147,9 +164,9 @@ std::unique_ptr<HandSource> make_held_hand(const std::string& recording, const H
   place(hold, hand);
   to_tracker(hand);
   hand.id = 1;
-  std::vector<Vec3> tremor = tremor_of(hands);
-  for (Vec3& moved : tremor) moved *= hold.tremor;
-  return std::make_unique<HeldHand>(hand, std::move(tremor));
+  if (hold.tremor_above == 0.0) return std::make_unique<StillHand>(hand);
+  return make_recorded_hand(held(hand, tremor_of(hands, hold.tremor_above), kLength), {}, false,
+                            1.0 / kRate);
 }
 
 std::unique_ptr<HandSource> make_still_hand(HandSource& source, const Hold& hold) {
@@ -159,7 +176,7 @@ std::unique_ptr<HandSource> make_still_hand(HandSource& source, const Hold& hold
   Hand hand = frame.hands.front();
   place(hold, hand);
   to_tracker(hand);
-  return std::make_unique<HeldHand>(hand, std::vector<Vec3>());
+  return std::make_unique<StillHand>(hand);
 }
 
 std::unique_ptr<HandSource> make_finger(double x, double y, double height) {
@@ -182,7 +199,7 @@ std::unique_ptr<HandSource> make_finger(double x, double y, double height) {
   const Vec3 to = Vec3(x, y, height) - pad;
   for (Vec3& p : hand.position) p += to;
   to_tracker(hand);
-  return std::make_unique<HeldHand>(hand, std::vector<Vec3>());
+  return std::make_unique<StillHand>(hand);
 }
 
 }  // namespace prostm::bench

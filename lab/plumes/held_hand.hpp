@@ -13,13 +13,14 @@ struct Hold {
   double x = 0.0, y = 0.0;  ///< of the palm joint, in D [m]
   double height = 0.215;    ///< of the palm joint above the array [m]
   double tilt = 0.0;        ///< of the palm about D's y [rad]
-  double tremor = 1.0;      ///< share of the recorded tremor
+  /// the hand trembles as the palm of its recording does above this frequency [Hz]; 0: it is still
+  double tremor_above = 0.0;
 };
 
 /// The flattest pose of a recording (that whose fingertips are nearest to the palm's plane), turned
 /// so that its palm is level and its fingers point away from the user, and put where `hold` says.
-/// It trembles as the palm of the recording does in its stillest two seconds, about its mean over
-/// 0.4 s, played to and fro.
+/// It trembles for a minute as the palm of the recording does in its stillest two seconds, again
+/// and again.
 /// @throws InputError for a file that is no recording.
 std::unique_ptr<HandSource> make_held_hand(const std::string& recording, const Hold& hold);
 

@@ -45,7 +45,7 @@ Summary over_frames(const std::vector<FieldShape>& frames, const Quantity<FieldS
 
 }  // namespace
 
-std::vector<HeldCase> held_cases(const std::string& folder, double tremor) {
+std::vector<HeldCase> held_cases(const std::string& folder, double tremor_above) {
   std::vector<HeldCase> cases;
   for (const double size : {0.9, 1.0, 1.1}) {
     cases.push_back({fmt::format("study hand {:.1f}", size),
@@ -74,8 +74,8 @@ std::vector<HeldCase> held_cases(const std::string& folder, double tremor) {
   for (const char* name :
        {"flat-closed", "HandSplay-110fps", "rollAndPitchWithEntry", "flapping"}) {
     const std::string path = folder + "/" + name + ".hands.jsonl";
-    cases.push_back({std::string(name) + ", held", [path, tremor](const PipelineSettings&) {
-                       return make_held_hand(path, {.tremor = tremor});
+    cases.push_back({std::string(name) + ", held", [path, tremor_above](const PipelineSettings&) {
+                       return make_held_hand(path, {.tremor_above = tremor_above});
                      }});
   }
   return cases;

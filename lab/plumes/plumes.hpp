@@ -23,8 +23,9 @@ struct HeldCase {
 };
 
 /// The study hand in sizes, left, aside, high and low; the scripted hand, open; and what `folder`
-/// has of recordings (none if it is empty), with this share of their tremor.
-std::vector<HeldCase> held_cases(const std::string& folder, double tremor = 1.0);
+/// has of recordings (none if it is empty), with the tremor of their recording above this
+/// frequency [Hz]; 0: still.
+std::vector<HeldCase> held_cases(const std::string& folder, double tremor_above = 0.0);
 
 struct Measured {
   std::vector<FieldShape> frames;

@@ -54,14 +54,14 @@ void draw_refinement(const std::string& path) {
   const auto chart = [](const char* title, const char* y) {
     return Chart{title, "edge of a cell / mm", y, false, {}, false};
   };
-  std::vector<Chart> charts = {chart("Pad of a finger, box of 0.16 m", "force / mN"),
+  std::vector<Chart> charts = {chart("Pad of a finger, box of 0.12 m", "force / mN"),
                                chart("Palm, box of 0.36 m", "area above half / cm²"),
                                chart("Palm, box of 0.36 m", "force / mN")};
   PipelineSettings finger;
-  finger.fluid.width = 0.16;
+  finger.fluid.width = 0.12;
   finger.box.follow = BoxFollows::Index;
   finger.jets.trim_rate = 0.0;
-  add_lines(named(cases, "finger over a jet"), finger, {48, 64, 96, 112},
+  add_lines(named(cases, "finger over a jet"), finger, {32, 48, 64, 80, 96},
             {[](const Measured& m) { return m.pad.summary().mean; }}, charts.data());
   add_lines(named(cases, "study hand 1.0"), {}, {48, 64, 96},
             {[](const Measured& m) { return 1e4 * m.frames.back().area; },

@@ -78,7 +78,8 @@ TEST(Surroundings, GuideAJetUpToACeiling) {
   const Surroundings around(box(), inflow);
   const float hold = 1.0F - std::exp(-0.2F);  // of a step of 20 ms
   Field velocity[3] = {Field(grid, 1.0F), Field(grid, 1.0F), Field(grid, 0.25F)};
-  around.guide(0.02, 0.045, velocity);
+  WorkerPool pool(2);
+  around.guide(pool, 0.02, 0.045, velocity);
   // on the axis: w goes to the floor's, u and v to nothing, below 45 mm
   for (int k = 1; k < 8; ++k) {
     EXPECT_NEAR(velocity[2][grid.index(10, 4, k)], k < 5 ? 0.25F + hold * 2.0F : 0.25F, 1e-6F) << k;
@@ -91,8 +92,8 @@ TEST(Surroundings, GuideAJetUpToACeiling) {
   EXPECT_EQ(velocity[0][grid.index(1, 14, 2)], 1.0F);
 
   Field still[3] = {Field(grid, 1.0F), Field(grid, 1.0F), Field(grid, 1.0F)};
-  around.guide(0.02, -0.01, still);  // a hand on the floor
-  Surroundings(box(), one_jet(0.25)).guide(0.02, 1.0, still);
+  around.guide(pool, 0.02, -0.01, still);  // a hand on the floor
+  Surroundings(box(), one_jet(0.25)).guide(pool, 0.02, 1.0, still);
   EXPECT_EQ(still[2][grid.index(10, 4, 2)], 1.0F);
 }
 

@@ -33,18 +33,24 @@ TEST(HeldHand, IsLevelAndWhereItIsPut) {
 }
 
 TEST(HeldHand, OfARecordingTremblesAsItsPalmDid) {
-  const auto held = make_held_hand(test::source_file("data/wave.hands.jsonl"), {});
+  const std::string wave = test::source_file("data/wave.hands.jsonl");
+  const auto fast = make_held_hand(wave, {.tremor_above = 8.0}),
+             held = make_held_hand(wave, {.tremor_above = 4.0}), still = make_held_hand(wave, {});
   const Vec3 centre(0.0, 0.0, 0.215);
-  double most = 0.0, jump = 0.0;
+  double square = 0.0, of_fast = 0.0, jump = 0.0;
   Vec3 before = in_device(*held, 0.0).position[kPalm];
   for (double t = 0.01; t < 10.0; t += 0.01) {
     const Hand hand = in_device(*held, t);
-    most = std::max(most, (hand.position[kPalm] - centre).norm());
+    square += (hand.position[kPalm] - centre).squaredNorm();
+    of_fast += (in_device(*fast, t).position[kPalm] - centre).squaredNorm();
     jump = std::max(jump, (hand.position[kPalm] - before).norm());
     before = hand.position[kPalm];
     ASSERT_NEAR(palm_of(hand).tilt, 0.0, 1e-6);
+    ASSERT_LT((in_device(*still, t).position[kPalm] - centre).norm(), 1e-9);
   }
-  EXPECT_LT(most, 0.02);
+  EXPECT_GT(square, of_fast);
+  EXPECT_GT(of_fast, 0.0);
+  EXPECT_LT(square, 1000 * 0.01 * 0.01);
   EXPECT_LE(jump, 1.01 * 0.01 * 3.0) << "faster than any hand";
 }
 

@@ -139,6 +139,7 @@ TEST(Stimulus, GoesWithTheSquareOfSizeAndSpeed) {
   EXPECT_EQ(half.maxima, 4);
   EXPECT_NEAR(half.area, 16e-4, 1e-12);
   EXPECT_NEAR(half.force, 0.6e-3, 1e-12);
+  EXPECT_NEAR(half.area_margin, 3.75e-4, 1e-12);
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ struct FluidSettings {
   /// of the step before. Air passes a finger in less than a step of 20 ms.
   int substeps = 1;
   /// weight of the pressure at the end of a particle's path, (F17); the rest acts at its start.
-  /// 1: implicit. 0.6 nearly centred, which small things such as fingers need at steps of 20 ms.
-  double theta = 1.0;
+  /// 1: implicit, with an error of the first order in the step
+  double theta = 0.6;
   PressureMethod solver = PressureMethod::Multigrid;
   int cycles = 2;            ///< V-cycles a step
   int cg_iterations = 3;     ///< iterations a step of Mgpcg, a V-cycle each
@@ -113,7 +113,8 @@ class Fluid {
   /// Moves the box by whole cells, and carries the flow over: what is new takes the values of the
   /// nearest cell that there was. A box that moves by half of its edge or more begins anew at rest.
   /// pressure(), fluid_cells() and smoke() are of the old place until meet(). Allocates nothing.
-  /// @pre before meet(), where the hands of the step before are taken away.
+  /// @pre between prepare() and meet(), where the last pressure has acted and the hands of the step
+  /// before are taken away; or before the first step.
   void move_box(const CellShift& by) noexcept;
 
   /// Advances by dt [s] with the hands of `raster` (made for grid()): section 3 of docs/design.md.

@@ -17,14 +17,14 @@ constexpr double kForce = 0.45e-3;  // of every scene but still air [N]
 /// have an eddy viscosity, without which they meander and merge. The broad part of a hand is in
 /// front of its palm joint, and so are they.
 SmokeInflow thin_plumes(const std::vector<Vec2>& centres, double speed) {
-  const Vec2 ahead(0.0, 15.0_mm);
-  SmokeInflow inflow{{}, 0.06, 0.95e-4, 0.10, 0.1};
-  for (const Vec2& centre : centres) inflow.jets.push_back({centre + ahead, 19_mm, speed});
+  const Vec2 ahead(0.0, 13.2_mm);
+  SmokeInflow inflow{{}, 0.06, 0.97e-4, 0.10, 0.1};
+  for (const Vec2& centre : centres) inflow.jets.push_back({centre + ahead, 21.3_mm, speed});
   return inflow;
 }
 
 SmokeInflow wide_plume() {
-  return {{SmokeJet{Vec2(0.0, 10.0_mm), 105_mm, 0.283}}, 0.04, 0.8e-4};
+  return {{SmokeJet{Vec2(0.0, 3.0_mm), 106.4_mm, 0.316}}, 0.02, 2.46e-4};
 }
 
 /// Six jets, between which air escapes from the middle; a closed ring of air would press there too.
@@ -34,27 +34,27 @@ SmokeInflow ring_of_plumes() {
   for (int q = 0; q < kJets; ++q) {
     const double angle = 2.0 * kPi * q / kJets;
     inflow.jets.push_back(
-        {Vec2(35.0_mm * std::cos(angle), 8.0_mm + 35.0_mm * std::sin(angle)), 12_mm, 0.8});
+        {Vec2(35.0_mm * std::cos(angle), 8.0_mm + 35.0_mm * std::sin(angle)), 12_mm, 0.785});
   }
   return inflow;
 }
 
 /// Puffs through a tube, so that they reach the hand as they left the floor.
 SmokeInflow pulsing_plume() {
-  return {{SmokeJet{Vec2(0.0, 15.0_mm), 30_mm, 0.45}}, 0.06, 0.95e-4, 0.10, 0.1};
+  return {{SmokeJet{Vec2(0.0, 15.0_mm), 30_mm, 0.422}}, 0.06, 0.95e-4, 0.10, 0.1};
 }
 
 /// Smoke through the whole floor.
 SmokeInflow wind() {
-  return {{SmokeJet{Vec2::Zero(), 1.0, 0.285}}, 0.0, 0.8e-4};
+  return {{SmokeJet{Vec2::Zero(), 1.0, 0.294}}, 0.0, 0.8e-4};
 }
 
 /// Tuned on a flat closed hand whose skin is 0.2 m above the array, so that all press with the same
 /// force (docs/design.md, section 3.6).
 std::vector<Scene> make_scenes() {
-  constexpr double kAside = 23.2_mm, kAround = 31.0_mm;
+  constexpr double kAside = 24.2_mm, kAround = 31.4_mm;
   // a hand is wider at its knuckles than at its heel, and turns jets outwards there
-  constexpr double kHeel = kAside + 0.7_mm, kKnuckles = kAside - 0.7_mm;
+  constexpr double kHeel = kAside + 0.86_mm, kKnuckles = kAside - 0.86_mm;
   const double x = kAround * std::cos(kPi / 6.0), y = 0.5 * kAround;
   const std::vector<Vec2> two = {{-kAside, 0}, {kAside, 0}};
   const std::vector<Vec2> three = {{-x, -y}, {x, -y}, {0, kAround}};
@@ -62,10 +62,10 @@ std::vector<Scene> make_scenes() {
       {-kHeel, -kAside}, {-kKnuckles, kAside}, {kHeel, -kAside}, {kKnuckles, kAside}};
   // one and four have the same full scale: the same force is then played with the same strength
   return {{"one-plume", "One wide plume", wide_plume(), 0.11, {1, 88e-4, kForce}},
-          {"two-plumes", "Two thin plumes", thin_plumes(two, 0.64), 0.16, {2, 0.0, kForce}},
-          {"three-plumes", "Three thin plumes", thin_plumes(three, 0.60), 0.12, {3, 0.0, kForce}},
-          {"four-plumes", "Four thin plumes", thin_plumes(four, 0.60), 0.11, {4, 64e-4, kForce}},
-          {"ring", "A ring of six plumes", ring_of_plumes(), 0.16, {}},
+          {"two-plumes", "Two thin plumes", thin_plumes(two, 0.58), 0.17, {2, 0.0, kForce}},
+          {"three-plumes", "Three thin plumes", thin_plumes(three, 0.53), 0.12, {3, 0.0, kForce}},
+          {"four-plumes", "Four thin plumes", thin_plumes(four, 0.54), 0.11, {4, 64e-4, kForce}},
+          {"ring", "A ring of six plumes", ring_of_plumes(), 0.17, {}},
           {"pulsing", "A pulsing plume", pulsing_plume(), 0.36, {}, {1.0, 0.9}},
           {"wind", "Gusts of wind", wind(), 0.10, {}, {0.4, 0.4}},
           // ½ρv² of a palm at 0.65 m/s

@@ -8,13 +8,15 @@ namespace prostm {
 
 /// The pressure that a scene is meant to make on a flat hand of average size.
 struct Stimulus {
-  int maxima = 0;      ///< 0: nothing is asked of the field
-  double area = 0.0;   ///< of at least half of the largest pressure [m²]; 0: not asked
-  double force = 0.0;  ///< [N]; 0: not asked
+  int maxima = 0;              ///< 0: nothing is asked of the field
+  double area = 0.0;           ///< of at least half of the largest pressure [m²]; 0: not asked
+  double force = 0.0;          ///< [N]; 0: not asked
+  double area_margin = 15e-4;  ///< the difference from `area` that is let pass [m²]
 
   /// The same of jets that are `size` times as large, and `speed` times as fast.
   Stimulus scaled(double size, double speed) const {
-    return {maxima, size * size * area, size * size * speed * speed * force};
+    return {maxima, size * size * area, size * size * speed * speed * force,
+            size * size * area_margin};
   }
 };
 

@@ -36,7 +36,7 @@ GateFinding look_at(const FieldShape& shape, const Stimulus& wanted) {
     return {P::Maxima, static_cast<double>(shape.count()), static_cast<double>(wanted.maxima)};
   if (shape.balance < B::kBalance) return {P::Balance, shape.balance, B::kBalance};
   if (shape.saddle > B::kSaddle) return {P::Saddle, shape.saddle, B::kSaddle};
-  if (wanted.area > 0.0 && std::abs(shape.area - wanted.area) > B::kArea)
+  if (wanted.area > 0.0 && std::abs(shape.area - wanted.area) > wanted.area_margin)
     return {P::Area, shape.area, wanted.area};
   if (wanted.force > 0.0 && std::abs(shape.force - wanted.force) > B::kForce * wanted.force)
     return {P::Force, shape.force, wanted.force};

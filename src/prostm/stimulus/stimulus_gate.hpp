@@ -67,7 +67,6 @@ struct GateBounds {
   static constexpr double kSpeed = 0.05;   ///< of the palm joint [m/s]
   static constexpr double kBalance = 0.8;  ///< the least maximum over the largest
   static constexpr double kSaddle = 0.7;   ///< over the largest
-  static constexpr double kArea = 15e-4;   ///< difference from the scene's [m²]
   static constexpr double kForce = 0.10;   ///< difference over the scene's
   static constexpr double kShare = 0.8;    ///< least share of good frames
 };

@@ -11,7 +11,7 @@ namespace {
 using namespace literals;
 
 // of the hand of average size, detail/hand_skeleton.hpp
-constexpr double kLength = 90.3_mm, kBreadth = 56.3_mm;
+constexpr double kLength = 90.3_mm, kBreadth = 57.7_mm;
 
 }  // namespace
 

@@ -23,6 +23,11 @@ namespace {
 
 constexpr float kAbsurd = 1e6F;  // [m/s]; a state with a larger value is unusable
 
+/// y ← a x + b y
+void blend(float a, const float* x, float b, float* y, Index count) {
+  for (Index i = 0; i < count; ++i) y[i] = a * x[i] + b * y[i];
+}
+
 GridShape grid_shape(const FluidSettings& settings) {
   fluid::validate(settings);
   GridShape grid;
@@ -99,8 +104,9 @@ void Fluid::State::prepare(double step_dt) {
   dt = step_dt / settings.substeps;
   stats = {};
   usable = std::isfinite(dt) && dt > 0.0;
-  if (is_split()) acting.fill(0.0F);
   for (int sub = 1; sub <= settings.substeps && usable; ++sub) {
+    // what acts over the step begins with what acts early in its first part
+    keep = sub > 1 ? 1.0F : 0.0F;
     advect();
     add_forces();
     if (sub < settings.substeps) finish_substep();
@@ -128,26 +134,36 @@ bool Fluid::State::is_split() const {
   return settings.substeps > 1 || settings.theta < 1.0;
 }
 
-/// Adds the present pressure to the mean of those that act over the step.
-void Fluid::State::let_act(double share) {
-  const auto weight = static_cast<float>(share / settings.substeps);
-  over_planes([&](int k0, int k1) {
-    for (Index c = padded.index(0, 0, k0); c < padded.index(0, 0, k1); ++c)
-      acting[c] += weight * solver.pressure()[c];
-  });
+/// The present pressure's weight in the mean of those that act over the step, where it acts in this
+/// share of a sub-step.
+float Fluid::State::weight(double share) const {
+  return static_cast<float>(share / settings.substeps);
+}
+
+/// Lets a share of the last pressure act before the particles move (F17), in planes [k0, k1).
+void Fluid::State::press_early(int k0, int k1) {
+  const auto factor = static_cast<float>(early * dt / (settings.density * grid.cell));
+  const float* const pressure = solver.pressure().data();
+  for (int k = k0; k < k1 && early > 0.0; ++k)
+    fluid::subtract_gradient(solver.fine(), obstacle, pressure, factor, velocity, k);
+  const Index c = padded.index(0, 0, k0);
+  blend(weight(early), pressure + c, keep, acting.data() + c, (k1 - k0) * padded.plane());
 }
 
 /// Ends a sub-step among the hands of the step before.
 void Fluid::State::finish_substep() {
   solve();
+  over_planes([&](int k0, int k1) {
+    const Index c = padded.index(0, 0, k0);
+    blend(weight(1.0 - early), solver.pressure().data() + c, 1.0F, acting.data() + c,
+          (k1 - k0) * padded.plane());
+  });
   usable = project();
   if (usable) extend_into_hands();
 }
 
 void Fluid::State::extend_into_hands() {
-  pool.run(3, [&](int axis) {
-    fluid::extend_into_hands(solver.fine(), axis, velocity[axis], shut[axis]);
-  });
+  pool.run(3, [&](int axis) { fluid::extend_into_hands(shut[axis], velocity[axis]); });
 }
 
 FluidStats Fluid::State::settle() {
@@ -170,6 +186,14 @@ FluidStats Fluid::State::settle() {
   return stats;
 }
 
+/// The share of the pressure that acts before the particles move. Beyond some cells a step the
+/// centred form is not stable.
+double Fluid::State::early_share() const {
+  constexpr double kStable = 6.0, kUnstable = 10.0;  // [cells per sub-step]
+  const double speed = fastest * dt / grid.cell;
+  return (1.0 - settings.theta) * std::clamp((kUnstable - speed) / (kUnstable - kStable), 0.0, 1.0);
+}
+
 void Fluid::State::advect() {
   const int n = padded.n;
   const auto scale = static_cast<float>(dt / grid.cell);
@@ -180,8 +204,12 @@ void Fluid::State::advect() {
   });
   // displacements of the particles
   const float* const from[3] = {centre[0].data(), centre[1].data(), centre[2].data()};
-  over_planes([&](int k0, int k1) { kernels.trace(padded, from, moved, k0, k1); });
-  press_early();
+  early = early_share();
+  over_planes([&](int k0, int k1) {
+    kernels.trace(padded, from, moved, k0, k1);
+    if (is_split()) press_early(k0, k1);
+  });
+  if (early > 0.0) extend_into_hands();
   surroundings.set_smoke_halo(smoke);
   // the values that they bring
   over_planes([&](int k0, int k1) {
@@ -197,25 +225,6 @@ void Fluid::State::advect() {
   std::swap(smoke, next_smoke);
   surroundings.calm_inflow(pool, velocity);
   surroundings.set_floor(velocity[2]);
-}
-
-/// Lets a share of the last pressure act before the particles move, (F17). Beyond some cells a step
-/// the centred form is not stable.
-void Fluid::State::press_early() {
-  constexpr double kStable = 6.0, kUnstable = 10.0;  // [cells per sub-step]
-  const double speed = fastest * dt / grid.cell;
-  early =
-      (1.0 - settings.theta) * std::clamp((kUnstable - speed) / (kUnstable - kStable), 0.0, 1.0);
-  if (early == 0.0) return;
-  const auto factor = static_cast<float>(early * dt / (settings.density * grid.cell));
-  over_planes([&](int k0, int k1) {
-    for (int k = k0; k < k1; ++k) {
-      fluid::subtract_gradient(solver.fine(), obstacle, solver.pressure().data(), factor, velocity,
-                               k);
-    }
-  });
-  extend_into_hands();
-  let_act(early);
 }
 
 /// (F13), in as many passes as keep it stable.
@@ -239,7 +248,7 @@ void Fluid::State::diffuse() {
 void Fluid::State::add_forces() {
   constexpr double kBelowHand = 0.050;  // a tube that ends nearer would press on the hand [m]
   diffuse();
-  surroundings.guide(dt, lowest_hand - kBelowHand, velocity);
+  surroundings.guide(pool, dt, lowest_hand - kBelowHand, velocity);
   const auto decay = static_cast<float>(std::exp(-settings.dissipation * dt));
   const auto lift = static_cast<float>(dt * settings.buoyancy);
   if (settings.dissipation > 0.0) {
@@ -284,7 +293,7 @@ void Fluid::State::place_hands(const HandRaster& raster) {
   lowest_hand = fluid::lowest_of(raster);
   // none of these reads what another one writes
   pool.run(5, [&](int task) {
-    if (task < 3) return fluid::list_shut_faces(solver.fine(), task, shut[task].at);
+    if (task < 3) return fluid::list_shut_faces(solver.fine(), task, shut[task]);
     if (task == 3) return solver.rebuild();
     push_swept(raster);
     mark_fluid_cells(raster);
@@ -359,7 +368,6 @@ void Fluid::State::solve() {
       solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
   }
   stats.pressure_error = solver.convergence().error();
-  if (is_split()) let_act(1.0 - early);
 }
 
 /// The largest of the planes' `largest`.
@@ -396,16 +404,17 @@ bool Fluid::State::project() {
 /// Copies the results for readers; false if a pressure is NaN or absurd.
 bool Fluid::State::publish() {
   const int n = padded.n;
-  const Field& felt = is_split() ? acting : solver.pressure();
+  const float late = weight(1.0 - early);
   over_planes([&](int k0, int k1) {
     for (int k = k0; k < k1; ++k) {
       std::int32_t& largest = sums[static_cast<std::size_t>(k)].largest;
       largest = 0;
       for (int j = 0; j < n; ++j) {
         const Index c = padded.index(0, j, k);
-        const float* pressure = felt.data() + c;
-        largest = std::max(largest, fluid::largest_bits(pressure, pressure + n));
-        std::copy_n(pressure, n, pressure_out.data() + grid.cell_index(0, j, k));
+        float* const felt = pressure_out.data() + grid.cell_index(0, j, k);
+        std::copy_n(solver.pressure().data() + c, n, felt);
+        if (is_split()) blend(1.0F, acting.data() + c, late, felt, n);
+        largest = std::max(largest, fluid::largest_bits(felt, felt + n));
         std::copy_n(smoke.data() + c, n, smoke_out.data() + grid.cell_index(0, j, k));
       }
     }

@@ -41,8 +41,9 @@ struct Fluid::State {
   void finish_substep();
   void extend_into_hands();
   bool is_split() const;
-  void let_act(double share);
-  void press_early();
+  float weight(double share) const;
+  double early_share() const;
+  void press_early(int k0, int k1);
   void diffuse();
   void confine_vorticity();
   void push_swept(const HandRaster& raster);
@@ -73,6 +74,7 @@ struct Fluid::State {
   // the present step
   double dt = 0.0;                 // of a sub-step [s]
   double early = 0.0;              // share of the pressure that acts early
+  float keep = 0.0F;               // of what acts over the step already
   double fastest = 0.0;            // of the last sub-step [m/s]
   bool usable = false;             // false: the state is to be reset
   double divergence_before = 0.0;  // Σ of squares, before the projection

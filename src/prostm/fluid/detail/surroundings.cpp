@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prostm/fluid/detail/over_planes.hpp"
 #include "prostm/fluid/detail/settings.hpp"
 
 namespace prostm::fluid {
@@ -35,7 +36,8 @@ Surroundings::Surroundings(const GridShape& grid, const SmokeInflow& inflow)
     : grid_{grid.nx},
       shape_(grid),
       speed_(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny)),
-      share_(speed_.size()) {
+      share_(speed_.size()),
+      smoky_(static_cast<std::size_t>(grid.ny)) {
   validate(inflow);
   set_inflow(inflow);
 }
@@ -45,6 +47,8 @@ void Surroundings::set_inflow(const SmokeInflow& inflow) {
   guide_height_ = inflow.guide_height;
   guide_time_ = inflow.guide_time;
   for (int j = 0; j < shape_.ny; ++j) {
+    RowSpan& smoky = smoky_[static_cast<std::size_t>(j)];
+    smoky = {};
     for (int i = 0; i < shape_.nx; ++i) {
       const Vec2 p = shape_.cell_centre(i, j, 0).head<2>();
       double speed = inflow.vent_speed, share = 0.0;
@@ -55,6 +59,9 @@ void Surroundings::set_inflow(const SmokeInflow& inflow) {
       }
       speed_[column(i, j)] = static_cast<float>(speed);
       share_[column(i, j)] = static_cast<float>(share);
+      if (share == 0.0) continue;
+      if (smoky.empty()) smoky.begin = static_cast<std::int16_t>(i);
+      smoky.end = static_cast<std::int16_t>(i + 1);
     }
   }
 }
@@ -64,7 +71,7 @@ void Surroundings::place(const GridShape& grid, const SmokeInflow& inflow) {
   set_inflow(inflow);
 }
 
-void Surroundings::guide(double dt, double ceiling, Field velocity[3]) const {
+void Surroundings::guide(WorkerPool& pool, double dt, double ceiling, Field velocity[3]) const {
   const double height = std::min(guide_height_, ceiling) - shape_.p_DF.z();
   if (height <= 0.0) return;
   const auto hold = static_cast<float>(1.0 - std::exp(-dt / guide_time_));
@@ -73,21 +80,24 @@ void Surroundings::guide(double dt, double ceiling, Field velocity[3]) const {
     return std::clamp(static_cast<int>(std::ceil(z / shape_.cell)), 0, grid_.n);
   };
   const int vertical = below(height), sideways = below(height - 0.5 * shape_.cell);
+  over_planes(pool, vertical, [&](int k0, int k1) {
+    for (int k = k0; k < k1; ++k) guide_plane(k, k < sideways, hold, velocity);
+  });
+}
+
+void Surroundings::guide_plane(int k, bool sideways, float hold, Field velocity[3]) const {
   for (int j = 0; j < grid_.n; ++j) {
-    for (int i = 0; i < grid_.n; ++i) {
-      const float pull = hold * share_[column(i, j)];
-      if (pull == 0.0F) continue;
-      // a sideways face between two columns takes half of the pull from each
-      const float keep = 1.0F - 0.5F * pull;
-      for (int k = 0; k < std::max(vertical, sideways); ++k) {
-        const Index c = grid_.index(i, j, k);
-        if (k > 0 && k < vertical) velocity[2][c] += pull * (speed_[column(i, j)] - velocity[2][c]);
-        if (k >= sideways) continue;
-        for (int axis = 0; axis < 2; ++axis) {
-          velocity[axis][c] *= keep;
-          velocity[axis][c + grid_.stride(axis)] *= keep;
-        }
-      }
+    const auto [begin, end] = smoky_[static_cast<std::size_t>(j)];
+    const Index c = grid_.index(0, j, k);
+    const float *share = share_.data() + column(0, j), *speed = speed_.data() + column(0, j);
+    float* const w = velocity[2].data() + c;
+    for (int i = begin; i < end && k > 0; ++i) w[i] += hold * share[i] * (speed[i] - w[i]);
+    // a face between two columns takes half of the pull from each
+    for (int axis = 0; axis < 2 && sideways; ++axis) {
+      float* const low = velocity[axis].data() + c;
+      float* const high = low + grid_.stride(axis);
+      for (int i = begin; i < end; ++i) low[i] *= 1.0F - 0.5F * hold * share[i];
+      for (int i = begin; i < end; ++i) high[i] *= 1.0F - 0.5F * hold * share[i];
     }
   }
 }

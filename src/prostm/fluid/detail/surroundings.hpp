@@ -5,6 +5,7 @@
 
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/detail/padded_grid.hpp"
+#include "prostm/fluid/detail/pressure_level.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
 
@@ -29,7 +30,7 @@ class Surroundings {
 
   /// Holds the jets in the tube of (F14) for a step of dt [s], up to the height `ceiling` above the
   /// array at most [m].
-  void guide(double dt, double ceiling, Field velocity[3]) const;
+  void guide(WorkerPool& pool, double dt, double ceiling, Field velocity[3]) const;
 
   /// Sets the velocity of the floor's faces.
   void set_floor(Field& w) const;
@@ -43,6 +44,7 @@ class Surroundings {
   void calm_inflow(WorkerPool& pool, Field velocity[3]) const;
 
  private:
+  void guide_plane(int k, bool sideways, float hold, Field velocity[3]) const;
   void calm_side(int axis, int side, Field velocity[3]) const;
   std::size_t column(int i, int j) const { return static_cast<std::size_t>(j * grid_.n + i); }
 
@@ -52,6 +54,7 @@ class Surroundings {
   double guide_height_ = 0, guide_time_ = 0;  // [m], [s]
   std::vector<float> speed_;                  // inflow speed at the floor's faces [m/s], n·n
   std::vector<float> share_;                  // share of fresh smoke in it, 0..1
+  std::vector<RowSpan> smoky_;                // of each row of cells, those with fresh smoke
 };
 
 }  // namespace prostm::fluid
