@@ -62,20 +62,6 @@ void print_table_row(const std::string& name, int count, const double (&rmse)[kS
   fmt::print("\n");
 }
 
-TargetField strongest(const Sequence& sequence) {
-  TargetField best;
-  double most = -1.0;
-  for (int f = 0; f < sequence.frames; ++f) {
-    TargetField field = sequence.field(f);
-    double sum = 0.0;
-    for (const double p : field.pressure) sum += p;
-    if (sum <= most) continue;
-    most = sum;
-    best = std::move(field);
-  }
-  return best;
-}
-
 GalleryPlan rendered(std::string name, const TargetField& target, const Plan& plan, double sigma,
                      const GainLaw& gain) {
   GalleryPlan out;
@@ -90,7 +76,7 @@ GalleryPlan rendered(std::string name, const TargetField& target, const Plan& pl
 GalleryField compared(const Sequence& sequence) {
   GalleryField field;
   field.name = sequence.name;
-  field.target = strongest(sequence);
+  field.target = sequence.field(sequence.frames - 1);  // where jets have settled
   Plan plan;
   PlanStats stats;
   for (Contender& stm : presets()) {
@@ -173,7 +159,7 @@ void draw_am_picture(const std::vector<Sequence>& sequences, const std::string& 
   std::vector<GalleryField> fields;
   for (const Sequence& sequence : sequences) {
     fields.push_back(compared(sequence));
-    fmt::print("{}, its strongest field:\n", sequence.name);
+    fmt::print("{}, its last field:\n", sequence.name);
     for (const GalleryPlan& plan : fields.back().plans) {
       fmt::print("  {:<18} RMSE {:.3f}, correlation {:.3f}\n", plan.name, plan.metrics.rmse,
                  plan.metrics.correlation);

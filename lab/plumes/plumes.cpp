@@ -64,6 +64,10 @@ std::vector<HeldCase> held_cases(const std::string& folder, double tremor_above)
                      return make_scripted_hand(still, s.track);
                    },
                    JetPlace::Array});
+  cases.push_back(
+      {"scripted hand, moving",
+       [](const PipelineSettings& s) { return make_scripted_hand(s.scripted_hand, s.track); },
+       JetPlace::Array});
   cases.push_back({"finger over a jet",
                    [](const PipelineSettings& s) {
                      const Vec2 jet = scene_from_name(s.scene).smoke.jets.front().centre;

@@ -22,9 +22,9 @@ struct HeldCase {
   bool has_pad = false;  ///< a finger's pad is over the scene's first jet
 };
 
-/// The study hand in sizes, left, aside, high and low; the scripted hand, open; and what `folder`
-/// has of recordings (none if it is empty), with the tremor of their recording above this
-/// frequency [Hz]; 0: still.
+/// The study hand in sizes, left, aside, high and low; the scripted hand, still and moving; a
+/// finger; and what `folder` has of recordings (none if it is empty), with the tremor of their
+/// recording above this frequency [Hz]; 0: still.
 std::vector<HeldCase> held_cases(const std::string& folder, double tremor_above = 0.0);
 
 struct Measured {

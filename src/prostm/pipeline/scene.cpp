@@ -18,7 +18,7 @@ constexpr double kForce = 0.45e-3;  // of every scene but still air [N]
 /// front of its palm joint, and so are they.
 SmokeInflow thin_plumes(const std::vector<Vec2>& centres, double speed) {
   const Vec2 ahead(0.0, 13.2_mm);
-  SmokeInflow inflow{{}, 0.06, 0.97e-4, 0.10, 0.1};
+  SmokeInflow inflow{{}, 0.06, 0.965e-4, 0.10, 0.1};
   for (const Vec2& centre : centres) inflow.jets.push_back({centre + ahead, 21.3_mm, speed});
   return inflow;
 }
