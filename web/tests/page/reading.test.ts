@@ -41,7 +41,7 @@ describe("a page without a hand", () => {
 describe("a page with a hand", () => {
   beforeAll(async () => {
     await page.locator("#page-hand").check();
-    await until(page, () => (window.prostm.frame?.plan.length ?? 0) > 0 && window.prostm.frame!.numbers[24]! > 0.1, 0, "pressure on the page's hand");
+    await until(page, () => (window.prostm.frame?.plan.length ?? 0) > 0 && window.prostm.frame!.numbers[24]! > 0.06, 0, "pressure on the page's hand");
   });
 
   it("names what is drawn", async () => {
