@@ -109,6 +109,13 @@ std::vector<py::ssize_t> shape_of(const TargetField& field) {
   return {field.rows, field.cols};
 }
 
+/// A view of values that a field may lack; None without them.
+py::object optional_view(const py::object& self, std::vector<double> TargetField::*values) {
+  const auto& field = self.cast<const TargetField&>();
+  if ((field.*values).empty()) return py::none();
+  return view(shape_of(field), (field.*values).data(), self);
+}
+
 py::array heights_at(const TargetField& field, const py::object& x) {
   const Numbers points = numbers(x, "x", 2);
   if (points.shape(1) != 2) {
@@ -179,13 +186,19 @@ void bind_field(py::module_& m) {
           "a view.")
       .def_property_readonly(
           "weight",
-          [](const py::object& self) -> py::object {
-            const auto& f = self.cast<const TargetField&>();
-            if (f.weight.empty()) return py::none();
-            return view(shape_of(f), f.weight.data(), self);
-          },
+          [](const py::object& self) { return optional_view(self, &TargetField::weight); },
           "(rows, cols) how much the error of each cell counts, 0 where there is no skin; a view. "
           "None: 1 everywhere.")
+      .def_property_readonly(
+          "smoke", [](const py::object& self) { return optional_view(self, &TargetField::smoke); },
+          "(rows, cols) part of the air's pressure that is the smoke's, of either sign, 0 where "
+          "there is no skin; a view. None: not known apart, as in a field that was not recorded "
+          "with [contact] parts.")
+      .def_property_readonly(
+          "movement",
+          [](const py::object& self) { return optional_view(self, &TargetField::movement); },
+          "(rows, cols) part of the air's pressure that is of the hand's own movement, of either "
+          "sign, 0 where there is no skin; a view. None: not known apart.")
       .def_property_readonly(
           "X_DP", [](const TargetField& f) { return pose_matrix(f.X_DP); },
           "(4, 4) pose of the plane in the device's frame [m]; a copy.")
@@ -201,10 +214,16 @@ void bind_field(py::module_& m) {
             };
             return py::make_tuple(
                 pressures_of(f), f.cell, py::make_tuple(f.origin.x(), f.origin.y()), copy(f.height),
-                pose_matrix(f.X_DP), f.weight.empty() ? py::object(py::none()) : copy(f.weight));
+                pose_matrix(f.X_DP), f.weight.empty() ? py::object(py::none()) : copy(f.weight),
+                f.smoke, f.movement);
           },
           [](const py::tuple& t) {
-            return make_field(t[0], t[1].cast<double>(), std::nullopt, t[2], t[3], t[4], t[5]);
+            TargetField field =
+                make_field(t[0], t[1].cast<double>(), std::nullopt, t[2], t[3], t[4], t[5]);
+            field.smoke = t[6].cast<std::vector<double>>();
+            field.movement = t[7].cast<std::vector<double>>();
+            validate(field);
+            return field;
           }));
 }
 

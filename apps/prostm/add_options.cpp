@@ -76,8 +76,7 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
   add_input_or_name(command, common.files, "--tracker", common.tracker, names_json,
                     "where the tracker is: centre (default), ultraleap-kit or another kit, or a "
                     "pose file (.json)");
-  command.add_option("--grid", common.grid,
-                     "cells along each edge of the fluid's box, a multiple of 16");
+  command.add_option("--grid", common.grid, "cells along each edge of the fluid's box");
   add_array(command, common, "usx (default), autd3, or an array file (.json)");
 }
 

@@ -99,16 +99,6 @@ TEST(Bounds, AreThoseOfTheList) {
   EXPECT_EQ(refusal([&] { require_bounds(paint); }), "coats = 0 must be between 1 and 5");
 }
 
-TEST(Bounds, MayAskForAMultiple) {
-  const Setting cells{"cells", "", 32, 128, "of the box", 16};
-  for (const int right : {32, 64, 128})
-    EXPECT_EQ(refusal([&] { require_bounds(cells, right); }), "accepted");
-  for (const int wrong : {0, 50, 144, -16}) {
-    EXPECT_EQ(refusal([&] { require_bounds(cells, wrong); }),
-              "cells = " + std::to_string(wrong) + " must be a multiple of 16 between 32 and 128");
-  }
-}
-
 /// Sets every field to a different value.
 class Changer : public SettingsWriter {
  public:

@@ -229,6 +229,44 @@ TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {
               HasSubstr("frame 20: weights that are 0 on all skin"));
 }
 
+TEST(Recording, HasPartsOfThePressureOnlyWhereAPatchHasThem) {
+  const test::TemporaryFolder folder;
+  std::vector<TargetFrame> frames = random_frames(30);
+  EXPECT_EQ(read_file(record(folder.file("none.h5"), frames)).find("movement"), std::string::npos);
+
+  // parts that start at a patch in the middle
+  TargetFrame late = frames.back();
+  late.patches.assign(1, TargetField());
+  TargetField& patch = late.patches[0];
+  patch.resize(2, 2);
+  patch.cell = 5e-3;
+  patch.skin = {1, 1, 0, 1};
+  patch.smoke = {0.25, -0.5, 0.0, 0.0};
+  patch.movement = {-0.125, 1.0, 0.0, 2.0};
+  frames.insert(frames.begin() + 20, late);
+  const RecordingReader reader(record(folder.file("late.h5"), frames));
+  for (int i = 0; i < reader.frames(); ++i) {
+    const TargetFrame read = reader.frame(i);
+    expect_same(read, frames[static_cast<std::size_t>(i)]);
+    for (std::size_t p = 0; p < read.patches.size(); ++p) {
+      const TargetField& written = frames[static_cast<std::size_t>(i)].patches[p];
+      EXPECT_EQ(read.patches[p].smoke, written.smoke);
+      EXPECT_EQ(read.patches[p].movement, written.movement);
+    }
+  }
+
+  // wrong parts are refused in their own frame
+  frames[20].patches[0].movement[3] = std::numeric_limits<double>::infinity();
+  const RecordingReader endless(record(folder.file("endless.h5"), frames));
+  EXPECT_NO_THROW(static_cast<void>(endless.frame(19)));
+  EXPECT_THAT(input_error([&] { static_cast<void>(endless.frame(20)); }),
+              HasSubstr("endless.h5, frame 20: movement = inf at row 1, column 1 must be finite"));
+  frames[20].patches[0].movement.clear();
+  const RecordingReader lone(record(folder.file("lone.h5"), frames));
+  EXPECT_THAT(input_error([&] { static_cast<void>(lone.frame(20)); }),
+              HasSubstr("must have as many values of each part of its pressure or none"));
+}
+
 TEST(Recording, HoldsAnEmptyOne) {
   const test::TemporaryFolder folder;
   const RecordingReader reader(record(folder.file("r.h5"), {}));

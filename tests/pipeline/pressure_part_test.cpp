@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -84,6 +85,57 @@ TEST(PressurePart, PartsAddUp) {
     }
   }
   EXPECT_GT(compared, 300U);
+}
+
+/// Targets with both parts, of a hand that moves through four plumes.
+std::vector<TargetField> targets_with_parts(PressurePart felt) {
+  PipelineSettings settings = settings_of(felt);
+  settings.fluid_pressure.parts = true;
+  WorldStage stage(settings, make_scripted_hand(settings.scripted_hand, settings.track));
+  std::vector<TargetField> out;
+  WorldFrame frame;
+  for (int step = 1; step <= 120; ++step) {
+    stage.run(step, 4.0 + 0.02 * step, 0.02, frame);
+    if (frame.targeted && step > 100)
+      out.insert(out.end(), frame.target.patches.begin(), frame.target.patches.end());
+  }
+  return out;
+}
+
+// in one run, where each stands with its sign
+TEST(PressurePart, BothStandInTheTargets) {
+  for (const PressurePart felt : {PressurePart::All, PressurePart::Smoke, PressurePart::Movement}) {
+    const std::vector<TargetField> targets = targets_with_parts(felt);
+    ASSERT_GE(targets.size(), 10U);
+    std::size_t below = 0, above = 0;
+    for (const TargetField& target : targets) {
+      validate(target);
+      ASSERT_EQ(target.smoke.size(), target.size());
+      for (std::size_t cell = 0; cell < target.size(); ++cell) {
+        const double smoke = target.smoke[cell], movement = target.movement[cell];
+        const double sum = felt == PressurePart::All     ? smoke + movement
+                           : felt == PressurePart::Smoke ? smoke
+                                                         : movement;
+        ASSERT_NEAR(target.pressure[cell], std::max(0.0, sum), 1e-6);
+        below += movement < 0.0 ? 1 : 0;
+        above += movement > 0.0 ? 1 : 0;
+        if (target.skin[cell] == 0) {
+          ASSERT_EQ(std::abs(smoke) + std::abs(movement), 0.0);
+        }
+      }
+    }
+    EXPECT_GT(below, 100U);
+    EXPECT_GT(above, 100U);
+  }
+}
+
+TEST(PressurePart, NoneStandsInTheTargetsUnlessItIsComputed) {
+  WorldStage stage(settings_of(PressurePart::All), make_study_hand({}));
+  WorldFrame frame;
+  for (int step = 1; step <= 4; ++step) stage.run(step, 0.02 * step, 0.02, frame);
+  ASSERT_FALSE(frame.target.patches.empty());
+  EXPECT_TRUE(frame.target.patches[0].smoke.empty());
+  EXPECT_TRUE(frame.target.patches[0].movement.empty());
 }
 
 }  // namespace

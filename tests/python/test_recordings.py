@@ -1,6 +1,7 @@
 """Recordings: frames by number, targets and plans as h5py reads them, and the reconstruction of a run."""
 
 import json
+import pickle
 import subprocess
 import sys
 import threading
@@ -122,6 +123,27 @@ def test_the_reconstruction_is_that_of_the_run(run):
     assert result.quasi_static_field(emission=weak).max() < rendered.max()
     positions, intensities = prostm.emit(result, seconds=0.1)
     assert positions.shape == (4000, len(result.paths), 3) and 0 < intensities.max() <= 1
+
+
+def test_both_parts_of_the_pressure(program, run, tmp_path):
+    settings, path = tmp_path / "parts.toml", tmp_path / "parts.h5"
+    settings.write_text("[contact]\nparts = true\n[fluid]\ncells = 40\n")
+    program("run", "--scene", "four-plumes", "--stepped", "--seconds", 1.6, "--settings", settings, "--record", path)
+    recording = prostm.Recording(path)
+    target = recording.target(planned_frame(path)).patches[0]
+    assert target.smoke.shape == target.movement.shape == target.shape
+    assert target.movement.any() and not target.movement[~target.skin].any()
+    whole = np.maximum(target.smoke + target.movement, 0)
+    np.testing.assert_allclose(target.pressure[target.skin], whole[target.skin], atol=1e-6)
+    assert not target.smoke.flags.writeable
+    twin = pickle.loads(pickle.dumps(target))
+    np.testing.assert_array_equal(twin.smoke, target.smoke)
+    np.testing.assert_array_equal(twin.movement, target.movement)
+    with h5py.File(path) as file:
+        assert file["target/smoke"].attrs["unit"] == file["target/movement"].attrs["unit"] == "Pa"
+        assert file["target/smoke"].shape == file["target/pressure"].shape
+    without = prostm.Recording(run).target(planned_frame(run)).patches[0]
+    assert without.smoke is None and without.movement is None
 
 
 def test_a_recording_of_foci(program, tmp_path):

@@ -271,7 +271,8 @@ TEST(Wire, EveryNumberHasANameOfItsOwn) {
   const auto names = view_number_names();
   ASSERT_GE(names.size(), static_cast<std::size_t>(kPlacedNumbers));
   EXPECT_EQ(names[kSpill], "spill");
-  EXPECT_EQ(names.back(), "felt_skill");
+  EXPECT_EQ(names[kFeltSkill], "felt_skill");
+  EXPECT_EQ(names.back(), "movement_mn");
   for (std::size_t m = 0; m < quantities<Metrics>().size(); ++m)
     EXPECT_EQ(names[view_metric_places()[m]], quantities<Metrics>()[m].name);
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -77,7 +77,8 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
 }
 
 ContactStats SkinContact::extract(const PressureSource& source, const HandRaster& raster,
-                                  const HandFrame& hands, TargetFrame& out) noexcept {
+                                  const HandFrame& hands, TargetFrame& out,
+                                  const std::optional<PressureParts>& parts) noexcept {
   ContactStats stats;
   grid_ = raster.grid;
   shapes_.clear();
@@ -104,6 +105,10 @@ ContactStats SkinContact::extract(const PressureSource& source, const HandRaster
     if (!place_patch(visible_[hand], hands.hands[hand], patch)) continue;
     find_skin(static_cast<int>(hand), patch);
     const Cells cells = press(source, shapes_[hand], patch);
+    if (parts) {
+      press_part(parts->smoke, patch, patch.smoke);
+      press_part(parts->movement, patch, patch.movement);
+    }
     stats.steep_cells += cells.steep;
     if (cells.skin == 0) continue;
     fill_heights(patch, queue_);
@@ -235,6 +240,15 @@ SkinContact::Cells SkinContact::press(const PressureSource& source, const HandSh
   for (std::size_t i = 0; i < pressed_.size(); ++i)
     patch.pressure[pressed_[i].cell] = pressed_[i].fade * std::max(0.0, pressures_[i]);  // (C4)
   return out;
+}
+
+/// Takes a part of the pressure at the points of press(), with its sign.
+void SkinContact::press_part(const PressureSource& part, const TargetField& patch,
+                             std::vector<double>& out) {
+  out.assign(patch.size(), 0.0);
+  part.sample(points_, -patch.X_DP.linear().col(2), pressures_);
+  for (std::size_t i = 0; i < pressed_.size(); ++i)
+    out[pressed_[i].cell] = pressed_[i].fade * pressures_[i];
 }
 
 /// (C6). The mean of four points a quarter of a cell away in both directions, so that a finger's

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <boost/container/static_vector.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -64,10 +65,11 @@ class SkinContact {
   }
 
   /// @param raster the hands of `hands` on the constructor's grid, whose corner may have moved by
-  /// whole cells.  @param hands in frame D; `out` takes over
-  /// their time.
+  /// whole cells.  @param hands in frame D; `out` takes over their time.  @param parts of the
+  /// source, if they are to stand in the patches too.
   ContactStats extract(const PressureSource& source, const HandRaster& raster,
-                       const HandFrame& hands, TargetFrame& out) noexcept;
+                       const HandFrame& hands, TargetFrame& out,
+                       const std::optional<PressureParts>& parts = {}) noexcept;
 
  private:
   struct SeenSkin {
@@ -87,6 +89,7 @@ class SkinContact {
   bool place_patch(std::span<const SeenSkin> visible, const Hand& hand, TargetField& patch) const;
   void find_skin(int hand, TargetField& patch);
   Cells press(const PressureSource& source, const HandShape& shape, TargetField& patch);
+  void press_part(const PressureSource& part, const TargetField& patch, std::vector<double>& out);
   double fade_at(const Vec3& p_D, const TargetField& patch) const;
   double touch_at(const HandShape& shape, const Vec3& p_D) const;
 

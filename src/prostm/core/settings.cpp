@@ -86,13 +86,7 @@ void require_bounds(const Setting& s, double value) {
 }
 
 void require_bounds(const Setting& s, int value) {
-  const int least = to_int(s.least), most = to_int(s.most);
-  if (s.multiple_of == 1) {
-    require_between(s.name, value, least, most, s.unit);
-  } else if (value < least || value > most || value % s.multiple_of != 0) {
-    throw std::invalid_argument(fmt::format("{} = {} must be a multiple of {} between {} and {}",
-                                            s.name, value, s.multiple_of, least, most));
-  }
+  require_between(s.name, value, to_int(s.least), to_int(s.most), s.unit);
 }
 
 void require_bounds(const ReadSettings& settings) {

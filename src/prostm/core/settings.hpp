@@ -26,7 +26,6 @@ struct Setting {
   double least = -std::numeric_limits<double>::infinity();  ///< of a number, in its unit
   double most = std::numeric_limits<double>::infinity();
   const char* help = "";  ///< one clause, without the unit and the bounds
-  int multiple_of = 1;    ///< that a whole number must be
 };
 
 /// Sees every field and may change it.
@@ -106,7 +105,7 @@ struct SettingRow {
 std::vector<SettingRow> setting_rows(const ReadSettings& settings);
 
 /// Checks a number against the setting's bounds. @throws std::invalid_argument with the sentence of
-/// require_between(), or "cells = 50 must be a multiple of 16 between 32 and 128".
+/// require_between().
 void require_bounds(const Setting& setting, double value);
 void require_bounds(const Setting& setting, int value);
 /// Checks every number. @throws std::invalid_argument about the first that is out of its bounds.

@@ -52,7 +52,7 @@ template <>
 inline constexpr std::array<std::string_view, 2> kNames<HandFaces> = {"fractions", "voxels"};
 
 struct FluidSettings {
-  int cells = 64;       ///< cells along each edge of the box; a multiple of 16, 32..160
+  int cells = 64;       ///< cells along each edge of the box, 32..160
   double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred, until
                         ///< move_box()
   /// a step is so many of the fluid, each with its pressure solve; all but the last meet the hands

@@ -10,6 +10,8 @@ namespace {
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   v.field({.name = "pressure_of", .help = "the part of the pressure that is felt"}, s.part);
+  v.field({.name = "parts", .help = "both parts stand in the targets beside what is felt"},
+          s.parts);
   v.field({"offset", "m", 0.001, 0.05, "distance from the skin at which the pressure is read"},
           s.offset);
   v.field({"time_constant", "s", 0, 10, "time constant of the pressure's smoothing; 0: none"},

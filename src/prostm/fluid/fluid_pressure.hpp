@@ -22,6 +22,7 @@ inline constexpr std::array<std::string_view, 3> kNames<PressurePart> = {"all", 
 
 struct FluidPressureSettings {
   PressurePart part = PressurePart::All;  ///< read by the world, which computes parts
+  bool parts = false;  ///< targets hold both parts too, also where all of the pressure is felt
   /// the pressure is read this far outside the skin, towards the array [m]; a length, so that
   /// finer cells do not move it
   double offset = 0.005625;

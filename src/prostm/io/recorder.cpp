@@ -104,7 +104,8 @@ struct Recorder::Impl {
   double flushed_at = 0.0;
 
   void append_target(const TargetField& field);
-  void append_weights(const TargetField& field);
+  void append_optional(const h5::Column& column, const TargetField& field,
+                       const std::vector<double>& values);
   void append_hands(const HandFrame& hands);
   void append_plan(const RecordedPlan* made, std::size_t patches_now);
   void append_how(const RecordedPlan* made, std::size_t patches_now);
@@ -137,27 +138,31 @@ void Recorder::Impl::append_target(const TargetField& field) {
   }
   target.append("pressure", pressure, field.size());
   target.append("height", field.height, field.size());
-  append_weights(field);
+  append_optional(recording::weight_column(), field, field.weight);
+  append_optional(recording::smoke_column(), field, field.smoke);
+  append_optional(recording::movement_column(), field, field.movement);
   ++patches;
   cells += static_cast<std::int64_t>(field.size());
 }
 
-/// The table of weights is there from the first patch that has some; what was before has none.
-void Recorder::Impl::append_weights(const TargetField& field) {
-  const bool first = !target.has("weight");
-  if (first && field.weight.empty()) return;
-  std::vector<double> weight(field.size(), kNan);
-  for (std::size_t i = 0; i < field.weight.size(); ++i) {
-    if (field.skin[i] != 0) weight[i] = field.weight[i];
+/// Appends a value a cell, or none. The table is there from the first patch that has some; what was
+/// before has none.
+void Recorder::Impl::append_optional(const h5::Column& column, const TargetField& field,
+                                     const std::vector<double>& values) {
+  const bool first = !target.has(column.name);
+  if (first && values.empty()) return;
+  std::vector<double> on_skin(field.size(), kNan);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (field.skin[i] != 0) on_skin[i] = values[i];
   }
-  if (first && target.add(recording::weight_column())) {
+  if (first && target.add(column)) {
     constexpr std::int64_t kRows = 1 << 16;
     const std::vector<double> none(kRows, kNan);
     for (std::int64_t left = cells; left > 0; left -= kRows) {
-      target.append("weight", none, static_cast<hsize_t>(std::min(left, kRows)));
+      target.append(column.name, none, static_cast<hsize_t>(std::min(left, kRows)));
     }
   }
-  target.append("weight", weight, field.size());
+  target.append(column.name, on_skin, field.size());
 }
 
 void Recorder::Impl::append_hands(const HandFrame& hands) {

@@ -72,12 +72,12 @@ struct RecordingReader::Impl {
   std::size_t checked(int i) const;
   void read_index();
   TargetField read_patch(std::size_t i) const;
-  void read_weights(hsize_t first, TargetField& field) const;
+  std::vector<double> read_optional(const char* name, hsize_t first,
+                                    const TargetField& field) const;
   void read_paths(std::size_t i, std::size_t count, Plan& plan) const;
   void read_foci(std::size_t i, std::size_t count, Plan& plan) const;
   PlanStats read_stats(std::size_t i) const;
   FieldShape read_shape(std::size_t i) const;
-  bool has_weights = false;  // any patch
 };
 
 template <class T>
@@ -124,7 +124,6 @@ void RecordingReader::Impl::read_index() {
   read("/target/cell", H5T_NATIVE_DOUBLE, {}, 1, all, cell);
   read("/target/origin", H5T_NATIVE_DOUBLE, {2}, 2, all, origin);
   read("/target/pose", H5T_NATIVE_DOUBLE, {4, 4}, 16, all, pose);
-  has_weights = H5Lexists(file.get(), "/target/weight", H5P_DEFAULT) > 0;
 
   // frames refer to patches that are there
   for (std::size_t i = 0; i < frames; ++i) {
@@ -163,23 +162,27 @@ TargetField RecordingReader::Impl::read_patch(std::size_t i) const {
     field.skin[k] = std::isnan(field.pressure[k]) ? 0 : 1;
     if (field.skin[k] == 0) field.pressure[k] = 0.0;
   }
-  if (has_weights) read_weights(first, field);
+  field.weight = read_optional("/target/weight", first, field);
+  field.smoke = read_optional("/target/smoke", first, field);
+  field.movement = read_optional("/target/movement", first, field);
   return field;
 }
 
-/// A patch whose skin has NaN throughout has no weights. @param first cell of the patch.
-void RecordingReader::Impl::read_weights(hsize_t first, TargetField& field) const {
-  field.weight.resize(field.size());
-  if (!h5::read_rows(file.get(), "/target/weight", H5T_NATIVE_DOUBLE, {}, first, field.size(),
-                     field.weight.data())) {
+/// Reads a value a cell, if the recording has some and the patch is not NaN on all its skin.
+/// @param first cell of the patch.
+std::vector<double> RecordingReader::Impl::read_optional(const char* name, hsize_t first,
+                                                         const TargetField& field) const {
+  if (H5Lexists(file.get(), name, H5P_DEFAULT) <= 0) return {};
+  std::vector<double> values(field.size());
+  if (!h5::read_rows(file.get(), name, H5T_NATIVE_DOUBLE, {}, first, field.size(), values.data())) {
     broken();
   }
   bool any = false;
   for (std::size_t k = 0; k < field.size(); ++k) {
-    if (field.skin[k] == 0) field.weight[k] = 0.0;
-    any = any || (field.skin[k] != 0 && !std::isnan(field.weight[k]));
+    if (field.skin[k] == 0) values[k] = 0.0;
+    any = any || (field.skin[k] != 0 && !std::isnan(values[k]));
   }
-  if (!any) field.weight.clear();
+  return any ? values : std::vector<double>();
 }
 
 void RecordingReader::Impl::read_paths(std::size_t i, std::size_t count, Plan& plan) const {

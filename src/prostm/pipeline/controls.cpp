@@ -13,7 +13,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kLeastGrid = 32, kMostGrid = 160, kGridStep = 16;  // [cells]
+constexpr double kLeastGrid = 32, kMostGrid = 160;  // [cells]
 
 // ---- lists of choices ----
 
@@ -176,8 +176,14 @@ std::vector<RunControl> make_controls() {
       [](S& s, double v) { s.pipeline.fluid_pressure.part = static_cast<PressurePart>(v); }, always,
       "All of the air's pressure, the smoke's share of it, or that of the hand's own movement in "
       "still air. A part takes twice the smoke's time.");
+  toggle(
+      "Smoke", "parts", "Both parts",
+      [](const S& s) { return s.pipeline.fluid_pressure.parts ? 1.0 : 0.0; },
+      [](S& s, double v) { s.pipeline.fluid_pressure.parts = v != 0.0; }, always,
+      "Shows the force of the smoke and that of the hand's own movement apart, whichever is felt, "
+      "and records both. It takes twice the smoke's time.");
   number(
-      "Smoke", "grid", "Grid", "cells", kLeastGrid, kMostGrid, kGridStep,
+      "Smoke", "grid", "Grid", "cells", kLeastGrid, kMostGrid, 1,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },
       [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, always,
       "Cells along each edge of the smoke's box. Fewer are coarser, and cost less time. The smoke "

@@ -135,7 +135,8 @@ void WorldStage::meet(std::int64_t step, double due, double dt, WorldFrame& out)
   if (out.targeted) {
     const double since = dt * steps_per_plan_;
     const PressureSource& pressure = world_->pressure(since);
-    out.contact_stats = contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target);
+    out.contact_stats =
+        contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target, world_->parts());
     out.stimulus = world_->stimulus();
     world_->hear(out.hands, out.target, since);
   }

@@ -52,7 +52,7 @@ SmokeInflow wind() {
 /// Tuned on a flat closed hand whose skin is 0.2 m above the array, so that all press with the same
 /// force (docs/design.md, section 3.6).
 std::vector<Scene> make_scenes() {
-  constexpr double kAside = 24.2_mm, kAround = 31.4_mm;
+  constexpr double kAside = 24.2_mm, kAround = 30.6_mm;
   // a hand is wider at its knuckles than at its heel, and turns jets outwards there
   constexpr double kHeel = kAside + 0.86_mm, kKnuckles = kAside - 0.86_mm;
   const double x = kAround * std::cos(kPi / 6.0), y = 0.5 * kAround;
@@ -63,7 +63,7 @@ std::vector<Scene> make_scenes() {
   // one and four have the same full scale: the same force is then played with the same strength
   return {{"one-plume", "One wide plume", wide_plume(), 0.11, {1, 88e-4, kForce}},
           {"two-plumes", "Two thin plumes", thin_plumes(two, 0.58), 0.17, {2, 0.0, kForce}},
-          {"three-plumes", "Three thin plumes", thin_plumes(three, 0.53), 0.12, {3, 0.0, kForce}},
+          {"three-plumes", "Three thin plumes", thin_plumes(three, 0.516), 0.12, {3, 0.0, kForce}},
           {"four-plumes", "Four thin plumes", thin_plumes(four, 0.54), 0.11, {4, 64e-4, kForce}},
           {"ring", "A ring of six plumes", ring_of_plumes(), 0.17, {}},
           {"pulsing", "A pulsing plume", pulsing_plume(), 0.36, {}, {1.0, 0.9}},

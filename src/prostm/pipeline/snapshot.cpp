@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <span>
 
 #include "prostm/emit/played.hpp"
@@ -10,34 +12,54 @@
 namespace prostm {
 namespace {
 
+constexpr std::size_t kMostCells = 160;  // along an edge of the fluid's box
+
 /// σ that a patch was planned with [m].
 double sigma_of(const PipelineSettings& settings, const TargetField& target) {
   const bool by_place = settings.array_width && settings.method != Method::Am;
   return by_place ? settings.plan.sigma_on(target) : settings.sigma();
 }
 
-/// Means over blocks of B³ cells, of n³ blocks. Smoke is never negative: advection weighs it with
-/// weights from 0 to 1.
-template <std::size_t B>
-void average(std::span<const float> smoke, std::size_t n, std::span<std::uint8_t> out) {
-  constexpr float kScale = 255.0F / static_cast<float>(B * B * B);
-  const std::size_t width = n * B;
-  std::array<float, B * kSmokeViewCells> row;  // sums over the rows that a row of blocks takes
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t j = 0; j < n; ++j) {
+/// The force of pressures on square cells [N]; NaN without any.
+double force_of(const std::vector<double>& pressures, double cell) {
+  if (pressures.empty()) return std::numeric_limits<double>::quiet_NaN();
+  return cell * cell * std::accumulate(pressures.begin(), pressures.end(), 0.0);
+}
+
+/// Where blocks of cells begin and end along an edge, n of them.
+struct Blocks {
+  explicit Blocks(std::size_t all) : cells(all) {
+    const std::size_t widest = (cells + kSmokeViewCells - 1) / kSmokeViewCells;
+    n = (cells + widest - 1) / widest;
+    for (std::size_t i = 0; i <= n; ++i) edges[i] = i * cells / n;
+  }
+  std::size_t width(std::size_t i) const { return edges[i + 1] - edges[i]; }
+
+  std::size_t cells, n = 0;
+  std::array<std::size_t, kSmokeViewCells + 1> edges = {};
+};
+
+/// Means over blocks. Smoke is never negative: advection weighs it with weights from 0 to 1.
+void average(std::span<const float> smoke, const Blocks& blocks, std::span<std::uint8_t> out) {
+  const auto& edges = blocks.edges;
+  std::array<float, kMostCells> row;  // sums over the rows that a row of blocks takes
+  auto to = out.begin();
+  for (std::size_t k = 0; k < blocks.n; ++k) {
+    for (std::size_t j = 0; j < blocks.n; ++j) {
       row.fill(0.0F);
-      for (std::size_t z = k * B; z < (k + 1) * B; ++z) {
-        for (std::size_t y = j * B; y < (j + 1) * B; ++y) {
-          const float* cells = smoke.data() + (z * width + y) * width;
-          for (std::size_t x = 0; x < width; ++x) row[x] += cells[x];
+      for (std::size_t z = edges[k]; z < edges[k + 1]; ++z) {
+        for (std::size_t y = edges[j]; y < edges[j + 1]; ++y) {
+          const float* from = smoke.data() + (z * blocks.cells + y) * blocks.cells;
+          for (std::size_t x = 0; x < blocks.cells; ++x) row[x] += from[x];
         }
       }
-      std::uint8_t* to = out.data() + (k * n + j) * n;
-      for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t i = 0; i < blocks.n; ++i, ++to) {
         float sum = 0.0F;
-        for (std::size_t x = 0; x < B; ++x) sum += row[i * B + x];
+        for (std::size_t x = edges[i]; x < edges[i + 1]; ++x) sum += row[x];
+        const auto count = static_cast<float>(blocks.width(k) * blocks.width(j) * blocks.width(i));
         // via int: float to int is one instruction, float to uint8 has none
-        to[i] = static_cast<std::uint8_t>(static_cast<int>(std::min(sum * kScale + 0.5F, 255.0F)));
+        *to = static_cast<std::uint8_t>(
+            static_cast<int>(std::min(255.0F * sum / count + 0.5F, 255.0F)));
       }
     }
   }
@@ -47,26 +69,12 @@ void average(std::span<const float> smoke, std::size_t n, std::span<std::uint8_t
 
 void view_smoke(const Fluid& fluid, SmokeView& out) {
   const GridShape& grid = fluid.grid();
-  // whole blocks: the cells along an edge are a multiple of 16, and at most 160
-  int block = 1;
-  while (grid.nx / block > kSmokeViewCells || grid.nx % block != 0) ++block;
-  out.n = grid.nx / block;
+  const Blocks blocks(static_cast<std::size_t>(grid.nx));
+  out.n = static_cast<int>(blocks.n);
   out.p_DF = grid.p_DF;
   out.edge = grid.cell * grid.nx;
-  const auto n = static_cast<std::size_t>(out.n);
-  out.density.resize(n * n * n);
-  switch (block) {
-    case 1:
-      return average<1>(fluid.smoke(), n, out.density);
-    case 2:
-      return average<2>(fluid.smoke(), n, out.density);
-    case 3:
-      return average<3>(fluid.smoke(), n, out.density);
-    case 4:
-      return average<4>(fluid.smoke(), n, out.density);
-    default:
-      return average<5>(fluid.smoke(), n, out.density);
-  }
+  out.density.resize(blocks.n * blocks.n * blocks.n);
+  average(fluid.smoke(), blocks, out.density);
 }
 
 void Snapshots::step(const WorldFrame& frame, const WorldStage& stage) {
@@ -109,7 +117,7 @@ void Snapshots::plan(const WorldFrame& contact, const PlanFrame& plan, double la
 
 void render(const PlanSnapshot& plan, RenderedPlan& out) {
   out.metrics = out.metrics_at_setting = {};
-  out.max_target = 0.0;
+  out.max_target = out.force = out.smoke_force = out.movement_force = 0.0;
   SegmentPressures played;
   if (plan.planned) {
     EmitSettings emit = plan.settings->emit;
@@ -122,6 +130,9 @@ void render(const PlanSnapshot& plan, RenderedPlan& out) {
     const int patch = static_cast<int>(i);
     out.field[i].assign(target.size(), 0.0);
     out.max_target = std::max(out.max_target, max_pressure(target));
+    out.force += force_of(target.pressure, target.cell);
+    out.smoke_force += force_of(target.smoke, target.cell);
+    out.movement_force += force_of(target.movement, target.cell);
     if (!plan.planned) continue;
     const double sigma = sigma_of(*plan.settings, target);
     const GainLaw gain = plan.settings->plan.gain_law();

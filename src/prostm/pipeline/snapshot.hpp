@@ -19,8 +19,8 @@ namespace prostm {
 
 inline constexpr int kSmokeViewCells = 32;  ///< along each edge
 
-/// The smoke in cells of at least 1/kSmokeViewCells of the box, 0 clear to 255: x fastest, then y,
-/// then z.
+/// The smoke in n³ cells of the box, at most kSmokeViewCells along an edge, 0 clear to 255: x
+/// fastest, then y, then z.
 struct SmokeView {
   int n = 0;                 ///< cells along an edge
   Vec3 p_DF = Vec3::Zero();  ///< corner of the box [m]
@@ -121,6 +121,9 @@ struct RenderedPlan {
   double sigma = 0.0;                                  ///< that they are at [m]
   Metrics metrics_at_setting;                          ///< the same at [plan] sigma
   double max_target = 0.0;                             ///< over all patches [Pa]
+  /// total forces of the target, of the smoke and of the hands' own movement [N]; NaN where the two
+  /// are not known apart
+  double force = 0.0, smoke_force = 0.0, movement_force = 0.0;
 };
 
 /// For the onlooker's thread: this takes about as long as a plan.

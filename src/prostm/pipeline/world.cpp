@@ -12,6 +12,28 @@
 namespace prostm {
 namespace {
 
+/// The pressure of hands' own movement, found in air that nothing blows, and the smoke's, the rest.
+struct PartsApart {
+  PartsApart(const PipelineSettings& settings, WorkerPool& pool)
+      : still_air(settings.fluid, SmokeInflow(), pool),
+        smoke(settings.fluid_pressure, still_air.grid()),
+        movement(settings.fluid_pressure, still_air.grid()),
+        rest(still_air.grid().cell_count()) {}
+  /// Takes the pressure among the same hands, with smoke in `all`.
+  void take(const Fluid& all, double dt) {
+    for (FluidPressure* part : {&smoke, &movement}) part->move_to(all.grid().p_DF);
+    const std::span<const float> own = still_air.pressure();
+    std::transform(all.pressure().begin(), all.pressure().end(), own.begin(), rest.begin(),
+                   std::minus<>());
+    smoke.take(rest, all.fluid_cells(), dt);
+    movement.take(own, all.fluid_cells(), dt);
+  }
+
+  Fluid still_air;
+  FluidPressure smoke, movement;
+  std::vector<float> rest;  // the smoke's, a value a cell [Pa]
+};
+
 class Smoke final : public World {
  public:
   Smoke(const PipelineSettings& settings, WorkerPool& pool)
@@ -25,9 +47,8 @@ class Smoke final : public World {
         blown_(scene_.smoke),
         trim_(settings.jets, scene_.smoke.jets.size()),
         part_(settings.fluid_pressure.part) {
-    if (part_ == PressurePart::All) return;
-    still_air_.emplace(settings.fluid, SmokeInflow(), pool);
-    part_pressure_.resize(grid().cell_count());
+    if (part_ == PressurePart::All && !settings.fluid_pressure.parts) return;
+    apart_.emplace(settings, pool);
     changed_ = true;
   }
 
@@ -39,23 +60,31 @@ class Smoke final : public World {
     const CellShift shift = follower_.shift(hands_, fluid_.grid());
     fluid_.prepare(dt);
     fluid_.move_box(shift);
-    if (!still_air_) return;
-    still_air_->prepare(dt);
-    still_air_->move_box(shift);
+    if (!apart_) return;
+    apart_->still_air.prepare(dt);
+    apart_->still_air.move_box(shift);
   }
   void meet(const HandRaster& raster) noexcept override {
     fluid_.meet(raster);
-    if (still_air_) still_air_->meet(raster);
+    if (apart_) apart_->still_air.meet(raster);
   }
   WorldStats settle() noexcept override {
     const FluidStats stats = fluid_.settle();
-    const bool reset = still_air_ && still_air_->settle().reset;
+    const bool reset = apart_ && apart_->still_air.settle().reset;
     return {stats.divergence_rms, stats.pressure_error, stats.reset || reset};
   }
   const PressureSource& pressure(double dt) noexcept override {
     pressure_.move_to(fluid_.grid().p_DF);
-    pressure_.take(felt_part(), fluid_.fluid_cells(), dt);
-    return pressure_;
+    pressure_.take(fluid_.pressure(), fluid_.fluid_cells(), dt);
+    if (!apart_) return pressure_;
+    apart_->take(fluid_, dt);
+    return part_ == PressurePart::All     ? pressure_
+           : part_ == PressurePart::Smoke ? apart_->smoke
+                                          : apart_->movement;
+  }
+  std::optional<PressureParts> parts() const override {
+    if (!apart_) return {};
+    return PressureParts{apart_->smoke, apart_->movement};
   }
   void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept override {
     hands_ = hands;
@@ -69,8 +98,8 @@ class Smoke final : public World {
     if (other.fluid() != nullptr) go_on_from(*other.fluid());
     const auto* smoke = dynamic_cast<const Smoke*>(&other);
     if (smoke == nullptr) return;
-    if (still_air_ && smoke->still_air_ && smoke->still_air_->grid() == still_air_->grid())
-      still_air_->copy_state(*smoke->still_air_);
+    if (apart_ && smoke->apart_ && smoke->apart_->still_air.grid() == apart_->still_air.grid())
+      apart_->still_air.copy_state(smoke->apart_->still_air);
     if (&smoke->scene_ != &scene_) return;
     // a place and gains that were found stay, whatever else was changed
     if (smoke->settings_.place == settings_.place) {
@@ -97,16 +126,7 @@ class Smoke final : public World {
     const CellShift by = whole_cells(there.p_DF - fluid_.grid().p_DF, there.cell);
     fluid_.move_box(by);
     fluid_.copy_state(before);
-    if (still_air_) still_air_->move_box(by);
-  }
-  /// The part of the pressure that the settings ask for [Pa].
-  std::span<const float> felt_part() {
-    if (!still_air_) return fluid_.pressure();
-    const std::span<const float> all = fluid_.pressure(), movement = still_air_->pressure();
-    if (part_ == PressurePart::Movement) return movement;
-    std::transform(all.begin(), all.end(), movement.begin(), part_pressure_.begin(),
-                   std::minus<>());
-    return part_pressure_;
+    if (apart_) apart_->still_air.move_box(by);
   }
   void blow_at(const ScenePlace& place) {
     place_ = place;
@@ -121,7 +141,7 @@ class Smoke final : public World {
     for (std::size_t q = 0; q < blown_.jets.size(); ++q)
       blown_.jets[q].speed *= swell * trim_.gains()[q];
     fluid_.set_inflow(blown_);
-    if (still_air_) still_air_->set_inflow({{}, 0.0, blown_.viscosity});
+    if (apart_) apart_->still_air.set_inflow({{}, 0.0, blown_.viscosity});
     changed_ = false;
   }
 
@@ -136,10 +156,9 @@ class Smoke final : public World {
   SmokeInflow placed_, blown_;  // under the hand, and with the trim's gains
   JetTrim trim_;
   PressurePart part_;
-  std::optional<Fluid> still_air_;    // among the same hands, unless all of the pressure is felt
-  std::vector<float> part_pressure_;  // the smoke's, a value a cell [Pa]
-  double time_ = 0.0;                 // since the scene began [s]
-  bool changed_ = false;              // since the fluid was told
+  std::optional<PartsApart> apart_;
+  double time_ = 0.0;     // since the scene began [s]
+  bool changed_ = false;  // since the fluid was told
 };
 
 }  // namespace

@@ -39,6 +39,8 @@ class World {
   virtual void meet(const HandRaster& raster) noexcept = 0;
   /// Returns the pressure on the skin now. @param dt since the last call [s].
   virtual const PressureSource& pressure(double dt) noexcept = 0;
+  /// The parts of that pressure, where they are known apart. @pre pressure() was called.
+  virtual std::optional<PressureParts> parts() const { return {}; }
   /// Hears what the hands got, before settle(). @param target made from pressure().  @param dt
   /// since the last call [s].
   virtual void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept {

@@ -54,6 +54,14 @@ void validate_shape(const TargetField& field) {
                                 " cells must have as many weights or none, not " +
                                 std::to_string(field.weight.size()));
   }
+  if (field.smoke.size() != field.movement.size() ||
+      (!field.smoke.empty() && field.smoke.size() != cells)) {
+    throw std::invalid_argument("a raster of " + size_text +
+                                " cells must have as many values of each part of its pressure or "
+                                "none, not " +
+                                std::to_string(field.smoke.size()) + " and " +
+                                std::to_string(field.movement.size()));
+  }
   if (!std::isfinite(field.cell) || field.cell <= 0.0) {
     throw std::invalid_argument("cell = " + text(field.cell) + " m must be positive and finite");
   }
@@ -95,6 +103,15 @@ void validate_weights(const TargetField& field) {
   }
 }
 
+void validate_part(const TargetField& field, const char* name, const std::vector<double>& part) {
+  const auto wrong =
+      std::find_if_not(part.begin(), part.end(), [](double p) { return std::isfinite(p); });
+  if (wrong == part.end()) return;
+  const auto at = static_cast<int>(wrong - part.begin());
+  throw std::invalid_argument(std::string(name) + " = " + text(*wrong) + " at " +
+                              cell_name(at / field.cols, at % field.cols) + " must be finite");
+}
+
 }  // namespace
 
 void TargetField::resize(int new_rows, int new_cols) {
@@ -105,6 +122,8 @@ void TargetField::resize(int new_rows, int new_cols) {
   skin.assign(cells, 0);
   height.assign(cells, 0.0);
   weight.clear();
+  smoke.clear();
+  movement.clear();
 }
 
 Pose TargetField::default_plane() {
@@ -135,6 +154,8 @@ void validate(const TargetField& field) {
     }
   }
   validate_weights(field);
+  validate_part(field, "smoke", field.smoke);
+  validate_part(field, "movement", field.movement);
 }
 
 double max_pressure(const TargetField& field) {

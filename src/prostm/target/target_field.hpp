@@ -30,7 +30,11 @@ struct TargetField {
   std::vector<std::uint8_t> skin;  ///< rows·cols, 1 where there is skin
   std::vector<double> height;      ///< rows·cols [m], finite everywhere (see fill_heights)
   std::vector<double> weight;      ///< empty: 1 everywhere; else rows·cols, >= 0, dimensionless
-  Pose X_DP = default_plane();     ///< the plane in frame D: normal is P's z axis
+  /// Parts of the air's pressure, of either sign: that of the smoke that blows, and that of the
+  /// hand's own movement. The pressure is one of them or their sum, where that is above 0. Empty,
+  /// both, where they are not known apart; else rows·cols, 0 where there is no skin.
+  std::vector<double> smoke, movement;
+  Pose X_DP = default_plane();  ///< the plane in frame D: normal is P's z axis
 
   std::size_t size() const { return pressure.size(); }
   std::size_t index(int row, int col) const {
@@ -44,8 +48,8 @@ struct TargetField {
     return position(static_cast<int>(index / width), static_cast<int>(index % width));
   }
 
-  /// Sets the shape and clears every cell to no skin, pressure 0, height 0, without weights.
-  /// Allocates only when it grows.
+  /// Sets the shape and clears every cell to no skin, pressure 0, height 0, without weights and
+  /// parts. Allocates only when it grows.
   void resize(int new_rows, int new_cols);
 
   /// The plane parallel to the array, 200 mm above its centre.
@@ -57,7 +61,7 @@ struct TargetField {
 /// disagree, an empty or too large raster, a cell size that is not positive and finite, a pressure
 /// that is negative or not finite, pressure where there is no skin, a height or plane that is not
 /// finite, a plane whose axes are not orthonormal, a weight that is negative or not finite, weights
-/// that are 0 on all skin.
+/// that are 0 on all skin, a part that is not finite.
 void validate(const TargetField& field);
 
 /// Largest pressure; 0 for a field without skin.

@@ -28,7 +28,9 @@ constexpr std::array<std::string_view, kPlacedNumbers> kPlaced = {
     "laps_completed", "tracker_age_ms",
     "intensity",      "saturated",
     "sigma_mm",       "setting_sigma_mm",
-    "setting_rmse",   "setting_correlation"};
+    "setting_rmse",   "setting_correlation",
+    "felt_skill",     "force_mn",
+    "smoke_mn",       "movement_mn"};
 
 struct Numbers {
   std::vector<std::string_view> names{kPlaced.begin(), kPlaced.end()};

@@ -51,6 +51,10 @@ enum ViewNumber : int {
   kSettingSigmaMm,
   kSettingRmse,
   kSettingCorrelation,
+  kFeltSkill,
+  kForceMn,
+  kSmokeMn,
+  kMovementMn,
   kPlacedNumbers
 };
 

@@ -61,6 +61,13 @@ export const kStrips: StripSpec[] = [
     ],
   },
   {
+    id: "force", title: "Force on the hands", unit: "mN", atLeast: 0.5, series: [
+      { label: "target", value: of("force_mn"), colour: kBlue },
+      { label: "smoke", value: of("smoke_mn"), colour: kGreen, dash: [6, 4] },
+      { label: "movement", value: of("movement_mn"), colour: kOrange, dash: [6, 4] },
+    ],
+  },
+  {
     id: "quality", title: "Quality", unit: "", better: "higher", atLeast: 1, atMost: 1, series: [
       { label: "correlation", value: of("correlation"), colour: kBlue, digits: 2 },
       { label: "coverage", value: of("coverage"), colour: kGreen, digits: 2 },

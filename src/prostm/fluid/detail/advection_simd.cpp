@@ -39,7 +39,8 @@ struct Particles {
 /// A few rows of one vector, from which lane shifts −d go to whole shifts `first` to `last`.
 struct Block {
   int i = 0, j = 0, k = 0, rows = 0;
-  Index at = 0;  // of its first value
+  Index number = 0;  // in its row
+  Index at = 0;      // of its first value
   alignas(16) std::int32_t first[4] = {0, 0, 0, 0};
   alignas(16) std::int32_t last[4] = {0, 0, 0, 0};
   bool clamped = false;  // a lane may leave the field's range
@@ -51,10 +52,10 @@ Index lanes() {
   return static_cast<Index>(hn::Lanes(D()));
 }
 
-/// Index of the range of the block that holds cell (i, j, k).
-HWY_INLINE std::size_t range_index(const PaddedGrid& grid, Index i, Index j, Index k) {
+/// Index of the range of block `block` of the row that holds cell (·, j, k).
+HWY_INLINE std::size_t range_index(const PaddedGrid& grid, Index block, Index j, Index k) {
   const Index across = grid.width() / lanes(), up = (grid.n + kBlockRows - 1) / kBlockRows;
-  return static_cast<std::size_t>((k * up + j / kBlockRows) * across + i / lanes());
+  return static_cast<std::size_t>((k * up + j / kBlockRows) * across + block);
 }
 
 /// The range of the shifts −factor·d in a block.
@@ -263,8 +264,12 @@ HWY_INLINE void over_blocks(const PaddedGrid& grid, int rows, int k0, int k1, co
   for (block.k = k0; block.k < k1; ++block.k) {
     for (block.j = 0; block.j < rows; block.j += kBlockRows) {
       block.rows = std::min(kBlockRows, rows - block.j);
-      block.at = grid.index(0, block.j, block.k);
-      for (block.i = 0; block.i < grid.n; block.i += step, block.at += step) f(block);
+      for (block.number = 0; block.number * step < grid.n; ++block.number) {
+        // the last block overlaps the one before where rows are not of whole vectors
+        block.i = std::min(static_cast<int>(block.number) * step, grid.n - step);
+        block.at = grid.index(block.i, block.j, block.k);
+        f(block);
+      }
     }
   }
 }
@@ -283,7 +288,8 @@ void Trace(const PaddedGrid& grid, const float* const velocity[3], Displacements
     set_shifts(half, half, block);
     clamp_shifts(place, block);
     interpolate<3>(from, block, velocity, out);
-    moved.ranges[range_index(grid, block.i, block.j, block.k)] = range_of(from, block, out, 1.0F);
+    moved.ranges[range_index(grid, block.number, block.j, block.k)] =
+        range_of(from, block, out, 1.0F);
   });
   for (float* d : out) extend_plane(grid, d, k0, k1);
 }
@@ -295,7 +301,9 @@ void Sample(const PaddedGrid& grid, const Placement& place, const Displacements&
   const Index end = grid.n - 1;
   over_blocks(grid, place.count[1], k0, k1, [&](Block& block) HWY_ATTR {
     // the halo before the first cell and after the last one holds its copy
-    const Index own[3] = {block.i, std::min<Index>(block.j, end), std::min<Index>(block.k, end)};
+    const Index own[3] = {block.number, std::min<Index>(block.j, end),
+                          std::min<Index>(block.k, end)};
+    // along x the block before holds the cell before
     Index before[3] = {own[0], own[1], own[2]};
     if (place.axis >= 0) before[place.axis] = std::max<Index>(own[place.axis] - 1, 0);
     set_shifts(moved.ranges[range_index(grid, own[0], own[1], own[2])],

@@ -157,7 +157,7 @@ void ProlongAdd(const PressureLevel& coarse, const float* HWY_RESTRICT e, const 
   const D d;
   constexpr Index kPad = PaddedGrid::kLane;
   alignas(64) float blend[PressureLevel::kMaxCells + 3 * kPad];
-  alignas(64) float value[2 * PressureLevel::kMaxCells + 4 * kPad];
+  alignas(64) float value[2 * PressureLevel::kMaxCells + 4 * kPad] = {};
   const Index row = coarse.grid.row(), plane = coarse.grid.plane(), step = lanes();
   const Index width = coarse.grid.width();
   for (int k = k0; k < k1; ++k) {
@@ -181,6 +181,8 @@ void ProlongAdd(const PressureLevel& coarse, const float* HWY_RESTRICT e, const 
                               hn::MulAdd(quarter, hn::LoadU(d, blend + kPad + i + 1), own), d,
                               value + 2 * i);
       }
+      // an odd row may be one cell longer than all pairs; that cell's own parent is a 0 of the halo
+      value[2 * width] = 0.25F * blend[kPad + width - 1];
       const RowSpan span = fine.span(j, k);
       const Index c = fine.grid.index(0, j, k);
       const float* table = fine.table_inverse(j, k);

@@ -1,5 +1,7 @@
 #include "prostm/fluid/detail/pressure_level.hpp"
 
+#include <algorithm>
+
 namespace prostm::fluid {
 namespace {
 
@@ -7,22 +9,28 @@ constexpr int kSmallLevel = 9;  // below this, tables are not worth their branch
 
 }  // namespace
 
-PressureLevel::PressureLevel(int n)
+PressureLevel::PressureLevel(int n, float last_to_side)
     : grid{n},
       open{Field(grid, 1.0F), Field(grid, 1.0F), Field(grid, 1.0F)},
       diagonal(grid),
       inverse(grid),
       spans(static_cast<std::size_t>(n) * static_cast<std::size_t>(n)),
-      always_full(n <= kSmallLevel) {
+      always_full(n <= kSmallLevel),
+      side_weight_(1.0F / last_to_side) {
   for (int j = 0; j < n; ++j) std::fill_n(open[2].data() + grid.index(0, j, 0), n, 0.0F);
-  for (int t = 0; t < 4; ++t) {
-    auto& d = diagonal_tables[t];
-    auto& inv = inverse_tables[t];
-    d.assign(static_cast<std::size_t>(grid.width()), static_cast<float>(5 + t));
-    d[0] += 1.0F;
-    d[static_cast<std::size_t>(n - 1)] += 1.0F;
-    inv.assign(d.size(), 0.0F);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) inv[i] = 1.0F / d[i];
+  for (const int k : {0, 1, n - 1}) {
+    for (const int j : {0, 1, n - 1}) {
+      auto& d = diagonal_tables[table(j, k)];
+      auto& inv = inverse_tables[table(j, k)];
+      d.assign(static_cast<std::size_t>(grid.width()), 0.0F);
+      inv = d;
+      const float across = before(j) + after(j) + (k == 0 ? 0.0F : 1.0F) + after(k);
+      for (int i = 0; i < n; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        d[at] = before(i) + after(i) + across;
+        inv[at] = 1.0F / d[at];
+      }
+    }
   }
   open_all();
 }
@@ -51,7 +59,7 @@ void PressureLevel::coarsen_from(const PressureLevel& fine) {
   if (fine.box.empty()) return;
   for (int a = 0; a < 3; ++a) {
     box.lower[a] = fine.box.lower[a] / 2;
-    box.upper[a] = (fine.box.upper[a] + 1) / 2;
+    box.upper[a] = std::min((fine.box.upper[a] + 1) / 2, grid.n);
   }
   for (int axis = 0; axis < 3; ++axis) {
     const Index s = fine.grid.stride((axis + 1) % 3), t = fine.grid.stride((axis + 2) % 3);
@@ -104,9 +112,8 @@ void PressureLevel::fill_diagonal(int k) {
     for (int i = s.begin; i < s.end; ++i) {
       float sum = 0.0F;
       if (i < n) {
-        sum = x[i] * (i == 0 ? 2.0F : 1.0F) + x[i + 1] * (i == n - 1 ? 2.0F : 1.0F) +
-              y[i] * (j == 0 ? 2.0F : 1.0F) + y[i + row] * (j == n - 1 ? 2.0F : 1.0F) + z[i] +
-              z[i + plane] * (k == n - 1 ? 2.0F : 1.0F);
+        sum = x[i] * before(i) + x[i + 1] * after(i) + y[i] * before(j) + y[i + row] * after(j) +
+              z[i] + z[i + plane] * after(k);
       }
       const bool solid = sum < kClosed;
       diagonal[c + i] = solid ? 0.0F : sum;

@@ -19,13 +19,15 @@ struct RowSpan {
 };
 
 /// Σ_f a_f (p − p_f) = b over the six faces of a cell, (F5) and (F6) of docs/design.md: a_f is the
-/// open fraction, doubled on the box's open sides, where p_f = 0 on the face itself, and 0 on the
-/// floor. The neighbour sum needs no special case there because halos of p stay 0; only the
-/// diagonal Σ a_f differs. Far from hands the diagonal takes few values, kept in tables. Face
-/// fractions and stored diagonals are read only in the rows' spans, which saves most of the memory
-/// traffic.
+/// open fraction, over the distance in cells from the centre to the box's open side where the face
+/// belongs to one, where p_f = 0, and 0 on the floor. The neighbour sum needs no special case there
+/// because halos of p stay 0; only the diagonal Σ a_f differs. Far from hands the diagonal takes
+/// few values, kept in tables. Face fractions and stored diagonals are read only in the rows'
+/// spans, which saves most of the memory traffic.
 struct PressureLevel {
-  explicit PressureLevel(int n);
+  /// @param last_to_side distance from the last cell's centre to the box's side [cells]: more than
+  /// half where the cells along an edge of the finest level are no multiple of a cell here.
+  explicit PressureLevel(int n, float last_to_side = 0.5F);
 
   /// Opens every cell: forgets the hands.
   void open_all();
@@ -51,8 +53,7 @@ struct PressureLevel {
     // a face is in the spans of the cells on both sides; the last one is beyond the box
     return span(j - (axis == 1 && j == box.upper[1]), k - (axis == 2 && k == box.upper[2]));
   }
-  /// Tables along x of the diagonal and its inverse (0 beyond n) for an uncut row: 5..8 and 1 more
-  /// at both ends.
+  /// Tables along x of the diagonal and its inverse (0 beyond n) for an uncut row.
   const float* table_diagonal(int j, int k) const { return diagonal_tables[table(j, k)].data(); }
   const float* table_inverse(int j, int k) const { return inverse_tables[table(j, k)].data(); }
   /// D⁻¹ of a cell, 0 where there is no equation: closed cells and everything outside the grid.
@@ -69,11 +70,17 @@ struct PressureLevel {
   bool always_full = false;    ///< a small level: spans cover every row
 
  private:
+  /// a_f of the faces before and after cell i of an axis, if open.
+  float before(int i) const { return i == 0 ? 2.0F : 1.0F; }
+  float after(int i) const { return i == grid.n - 1 ? side_weight_ : 1.0F; }
+  /// Rows at either side of the box and between them, along y and z.
   std::size_t table(int j, int k) const {
-    const int sides = (j == 0) + (j == grid.n - 1) + (k == grid.n - 1) - (k == 0);
-    return static_cast<std::size_t>(1 + sides);
+    const auto place = [&](int i) { return i == 0 ? 0 : i == grid.n - 1 ? 2 : 1; };
+    return static_cast<std::size_t>(place(j) + 3 * place(k));
   }
-  std::vector<float> diagonal_tables[4], inverse_tables[4];
+
+  float side_weight_;
+  std::vector<float> diagonal_tables[9], inverse_tables[9];
 };
 
 }  // namespace prostm::fluid

@@ -10,6 +10,7 @@ namespace {
 // relaxation factors of two Jacobi sweeps whose product is the Chebyshev polynomial on [0.3, 1.95],
 // the upper part of the spectrum of D⁻¹A: 1/ω = 1.125 ± 0.825 cos(π/4)
 constexpr float kOmega[2] = {0.585411F, 1.846479F};
+constexpr int kBottomCells = 5;   // the most along an edge of a level solved by sweeps alone
 constexpr int kSerialCells = 16;  // below this a region costs more than it saves
 
 /// Sets p to 0 where the fine level is closed, e.g. in cells that a hand covers now.
@@ -52,7 +53,13 @@ void extend_into_closed(const PressureLevel& level, Field& p) {
 PressureSolver::PressureSolver(int n, WorkerPool& pool, const PressureKernels& kernels)
     : pool_(pool), kernels_(kernels), convergence_(PaddedGrid{n}) {
   levels_.emplace_back(n);
-  while (n > 4 && n % 2 == 0) levels_.emplace_back(n /= 2);
+  // the last cell of an odd level has no parent; its parents' zeros beyond the grid correct it
+  float across = static_cast<float>(n);  // the box, in cells of a level
+  while (n > kBottomCells) {
+    n /= 2;
+    across /= 2.0F;
+    levels_.emplace_back(n, across - static_cast<float>(n) + 0.5F);
+  }
 }
 
 void PressureSolver::rebuild() {

@@ -40,7 +40,8 @@ class PressureSolver {
 
  private:
   struct Level {
-    explicit Level(int n) : problem(n), p(problem.grid), q(problem.grid), b(problem.grid) {}
+    explicit Level(int n, float last_to_side = 0.5F)
+        : problem(n, last_to_side), p(problem.grid), q(problem.grid), b(problem.grid) {}
     PressureLevel problem;
     Field p, q, b;  // unknown, its next iterate, right side
   };

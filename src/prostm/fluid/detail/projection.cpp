@@ -61,7 +61,7 @@ struct LaneSums {
   alignas(64) float squares[PaddedGrid::kLane] = {}, largest[PaddedGrid::kLane] = {};
 };
 
-/// Adds a row of n outflows. @pre n is a multiple of kLane.
+/// Adds a row of n outflows, beyond which there are zeros up to a multiple of kLane.
 HWY_INLINE void add_row(const float* outflow, Index n, LaneSums& sums) {
   const D d;
   for (Index lane = 0; lane < PaddedGrid::kLane; lane += static_cast<Index>(hn::Lanes(d))) {
@@ -80,7 +80,7 @@ DivergenceSum Divergence(const PressureLevel& level, const Obstacle& obstacle,
                          const Field velocity[3], int k, float scale, float* out) {
   const int n = level.grid.n;
   const Index row = level.grid.row(), plane = level.grid.plane();
-  alignas(64) float outflow[PressureLevel::kMaxCells];
+  alignas(64) float outflow[PressureLevel::kMaxCells] = {};
   LaneSums sums;
   for (int j = 0; j < n; ++j) {
     const Index c = level.grid.index(0, j, k);

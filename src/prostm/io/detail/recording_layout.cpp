@@ -109,6 +109,24 @@ h5::Column weight_column() {
           "how much the error of a cell counts, like pressure; NaN = no skin, or no weights"};
 }
 
+h5::Column smoke_column() {
+  return {
+      "smoke",
+      H5T_NATIVE_DOUBLE,
+      {},
+      "Pa",
+      "part of the smoke that blows, of either sign, like pressure; NaN = no skin, or not known"};
+}
+
+h5::Column movement_column() {
+  return {"movement",
+          H5T_NATIVE_DOUBLE,
+          {},
+          "Pa",
+          "part of the hand's own movement, of either sign, like pressure; NaN = no skin, or not "
+          "known"};
+}
+
 std::vector<h5::Column> hand_columns() {
   return {
       {"id",

@@ -15,6 +15,8 @@ inline constexpr hsize_t kHands = 2;  ///< a row of /hand has room for
 std::vector<h5::Column> frame_columns();   ///< of /frame
 std::vector<h5::Column> target_columns();  ///< of /target, a row for each patch
 h5::Column weight_column();                ///< of /target too, once a patch has weights
+h5::Column smoke_column();                 ///< of /target too, once a patch has parts
+h5::Column movement_column();              ///< of /target too, once a patch has parts
 std::vector<h5::Column> hand_columns();    ///< of /hand, a row for each frame
 std::vector<h5::Column> plan_columns();    ///< of /plan, a row for each frame
 

@@ -9,7 +9,7 @@ namespace prostm::viewer {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMs = 1e3;
+constexpr double kMs = 1e3, kMn = 1e3;
 constexpr double kHeightScale = 1e-5;  // of the skin's heights on the wire [m]
 
 std::array<float, 3> floats(const Vec3& v) {
@@ -269,6 +269,9 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   set(frame, kQueueBlocks, run.device.queue_blocks);
   fill_scores(frame);
   set(frame, kMaxTargetPa, rendered_.max_target);
+  set(frame, kForceMn, kMn * rendered_.force);
+  set(frame, kSmokeMn, kMn * rendered_.smoke_force);
+  set(frame, kMovementMn, kMn * rendered_.movement_force);
   set(frame, kFullScalePa, run.full_scale_pressure);
   set(frame, kLapsCompleted,
       run.emit.laps_started > 0 ? 1.0 - static_cast<double>(run.emit.laps_cut) /
