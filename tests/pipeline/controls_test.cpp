@@ -15,6 +15,7 @@
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/pipeline/scene.hpp"
 #include "prostm/pipeline/snapshot.hpp"
+#include "support/smoke_of.hpp"
 
 namespace prostm {
 namespace {
@@ -168,14 +169,13 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   ASSERT_GT(pipeline.plan().plan.paths.size(), 2U);
   const std::int64_t blocks = pipeline.device_stats().blocks;
   const std::int64_t updates = pipeline.plan().id;
-  const auto smoke = pipeline.world_stage().world().fluid()->smoke();
-  const std::vector<float> before(smoke.begin(), smoke.end());
+  const auto smoke = [&] { return test::smoke_of(*pipeline.world_stage().world().fluid()); };
+  const std::vector<float> before = smoke();
 
   s.pipeline.plan.paths = 2;
   s.pipeline.fluid.jet_speed = 0.5;
   pipeline.reconfigure(s.pipeline);
-  const auto after = pipeline.world_stage().world().fluid()->smoke();
-  EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
+  EXPECT_EQ(smoke(), before);
   while (!pipeline.step(0.02)) {
   }
   EXPECT_EQ(pipeline.plan().id, updates + 1);
@@ -244,7 +244,7 @@ TEST(SmokeView, IsTheMeanOfBlocks) {
       for (int z = edge(k); z < edge(k + 1); ++z)
         for (int y = edge(j); y < edge(j + 1); ++y)
           for (int x = edge(i); x < edge(i + 1); ++x, ++count)
-            sum += static_cast<double>(fluid.smoke()[fluid.grid().cell_index(x, y, z)]);
+            sum += static_cast<double>(fluid.smoke_row(y, z)[static_cast<std::size_t>(x)]);
       return 255.0 * sum / count;
     };
     int brightest = 0;

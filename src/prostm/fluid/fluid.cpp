@@ -47,8 +47,9 @@ std::span<const float> Fluid::pressure() const {
 std::span<const std::uint8_t> Fluid::fluid_cells() const {
   return state_->fluid_cells;
 }
-std::span<const float> Fluid::smoke() const {
-  return state_->smoke_out;
+std::span<const float> Fluid::smoke_row(int j, int k) const {
+  return {state_->smoke.data() + state_->padded.index(0, j, k),
+          static_cast<std::size_t>(state_->padded.n)};
 }
 
 Vec3 Fluid::velocity(int i, int j, int k) const {
@@ -81,7 +82,6 @@ void Fluid::copy_state(const Fluid& other) {
   to.smoke.copy_from(from.smoke);
   to.solver.pressure().copy_from(from.solver.pressure());
   to.pressure_out = from.pressure_out;
-  to.smoke_out = from.smoke_out;
 }
 
 }  // namespace prostm

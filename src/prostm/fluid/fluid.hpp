@@ -112,7 +112,7 @@ class Fluid {
 
   /// Moves the box by whole cells, and carries the flow over: what is new takes the values of the
   /// nearest cell that there was. A box that moves by half of its edge or more begins anew at rest.
-  /// pressure(), fluid_cells() and smoke() are of the old place until meet(). Allocates nothing.
+  /// pressure() and fluid_cells() are of the old place until meet(). Allocates nothing.
   /// @pre between prepare() and meet(), where the last pressure has acted and the hands of the step
   /// before are taken away; or before the first step.
   void move_box(const CellShift& by) noexcept;
@@ -125,8 +125,8 @@ class Fluid {
   /// The same step in three parts, so that the hands may come late and their pressure is available
   /// early. step() calls the three in turn, so results agree to the bit. prepare() does what needs
   /// no hand (advection and forces); meet() places the hands and solves for the pressure, after
-  /// which pressure(), fluid_cells() and smoke() are of this step; settle() projects the velocity,
-  /// leaves the state for the next step and measures. @pre called in this order.
+  /// which pressure(), fluid_cells() and smoke_row() are of this step; settle() projects the
+  /// velocity, leaves the state for the next step and measures. @pre called in this order.
   void prepare(double dt) noexcept;
   void meet(const HandRaster& raster) noexcept;
   FluidStats settle() noexcept;
@@ -137,8 +137,9 @@ class Fluid {
   std::span<const float> pressure() const;
   /// 1 for cells whose centre is in the fluid (not inside a hand).
   std::span<const std::uint8_t> fluid_cells() const;
-  /// Smoke density 0..1 at cell centres.
-  std::span<const float> smoke() const;
+  /// Smoke density 0..1 at the centres of a row of cells along x, not copied: valid until the next
+  /// prepare().
+  std::span<const float> smoke_row(int j, int k) const;
   /// Velocity at a cell centre [m/s].
   Vec3 velocity(int i, int j, int k) const;
   /// Divergence of the velocity in a cell that no hand cuts [1/s].

@@ -157,15 +157,14 @@ void WorldStage::view_from_side(SideView& out) const {
   out.hand.assign(size, 0);
   const Fluid* fluid = world_->fluid();
   if (fluid == nullptr) return;
-  const auto smoke = fluid->smoke();
   const auto free = fluid->fluid_cells();
   for (int k = 0; k < g.nz; ++k) {
     for (int j = 0; j < g.ny; ++j) {
+      const auto smoke = fluid->smoke_row(j, k);
       for (int i = 0; i < g.nx; ++i) {
-        const std::size_t c = g.cell_index(i, j, k),
-                          pixel = g.cell_index(i, 0, 0) + static_cast<std::size_t>(k * g.nx);
-        out.smoke[pixel] = std::max(out.smoke[pixel], smoke[c]);
-        if (free[c] == 0) out.hand[pixel] = 1;
+        const std::size_t pixel = g.cell_index(i, 0, 0) + static_cast<std::size_t>(k * g.nx);
+        out.smoke[pixel] = std::max(out.smoke[pixel], smoke[static_cast<std::size_t>(i)]);
+        if (free[g.cell_index(i, j, k)] == 0) out.hand[pixel] = 1;
       }
     }
   }

@@ -40,7 +40,7 @@ struct Blocks {
 };
 
 /// Means over blocks. Smoke is never negative: advection weighs it with weights from 0 to 1.
-void average(std::span<const float> smoke, const Blocks& blocks, std::span<std::uint8_t> out) {
+void average(const Fluid& fluid, const Blocks& blocks, std::span<std::uint8_t> out) {
   const auto& edges = blocks.edges;
   std::array<float, kMostCells> row;  // sums over the rows that a row of blocks takes
   auto to = out.begin();
@@ -49,8 +49,8 @@ void average(std::span<const float> smoke, const Blocks& blocks, std::span<std::
       row.fill(0.0F);
       for (std::size_t z = edges[k]; z < edges[k + 1]; ++z) {
         for (std::size_t y = edges[j]; y < edges[j + 1]; ++y) {
-          const float* from = smoke.data() + (z * blocks.cells + y) * blocks.cells;
-          for (std::size_t x = 0; x < blocks.cells; ++x) row[x] += from[x];
+          const auto from = fluid.smoke_row(static_cast<int>(y), static_cast<int>(z));
+          for (std::size_t x = 0; x < from.size(); ++x) row[x] += from[x];
         }
       }
       for (std::size_t i = 0; i < blocks.n; ++i, ++to) {
@@ -74,7 +74,7 @@ void view_smoke(const Fluid& fluid, SmokeView& out) {
   out.p_DF = grid.p_DF;
   out.edge = grid.cell * grid.nx;
   out.density.resize(blocks.n * blocks.n * blocks.n);
-  average(fluid.smoke(), blocks, out.density);
+  average(fluid, blocks, out.density);
 }
 
 void Snapshots::step(const WorldFrame& frame, const WorldStage& stage) {

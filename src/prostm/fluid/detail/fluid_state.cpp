@@ -58,7 +58,6 @@ Fluid::State::State(const FluidSettings& s, const SmokeInflow& from, WorkerPool&
       shut{fluid::ShutFaces(padded), fluid::ShutFaces(padded), fluid::ShutFaces(padded)},
       sums(static_cast<std::size_t>(s.cells)),
       pressure_out(grid.cell_count()),
-      smoke_out(grid.cell_count()),
       fluid_cells(grid.cell_count(), 1) {
   if (s.solver == PressureMethod::Mgpcg) conjugate_gradients.emplace(solver, pool);
   surroundings.set_floor(obstacle.wall_velocity(2));
@@ -70,7 +69,6 @@ void Fluid::State::reset() {
   smoke.fill(0.0F);
   solver.pressure().fill(0.0F);
   std::fill(pressure_out.begin(), pressure_out.end(), 0.0F);
-  std::fill(smoke_out.begin(), smoke_out.end(), 0.0F);
   surroundings.set_floor(velocity[2]);  // the jets blow from the first step on
   acting.fill(0.0F);
   fastest = early = 0.0;
@@ -367,7 +365,8 @@ void Fluid::State::solve() {
     case PressureMethod::Jacobi:
       solver.jacobi(settings.jacobi_sweeps, settings.jacobi_warm);
   }
-  stats.pressure_error = solver.convergence().error();
+  // what acted early has no error here: it is known
+  stats.pressure_error = (1.0 - early) * solver.convergence().error();
 }
 
 /// The largest of the planes' `largest`.
@@ -415,7 +414,6 @@ bool Fluid::State::publish() {
         std::copy_n(solver.pressure().data() + c, n, felt);
         if (is_split()) blend(1.0F, acting.data() + c, late, felt, n);
         largest = std::max(largest, fluid::largest_bits(felt, felt + n));
-        std::copy_n(smoke.data() + c, n, smoke_out.data() + grid.cell_index(0, j, k));
       }
     }
   });

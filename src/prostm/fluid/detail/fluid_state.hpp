@@ -94,7 +94,7 @@ struct Fluid::State {
   double lowest_hand = std::numeric_limits<double>::infinity();
 
   // results for readers, without padding
-  std::vector<float> pressure_out, smoke_out;
+  std::vector<float> pressure_out;
   std::vector<std::uint8_t> fluid_cells;
 };
 

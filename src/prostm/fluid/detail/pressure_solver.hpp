@@ -2,6 +2,7 @@
 /// Solves the Poisson problem of a step: warm-started V-cycles, or plain Jacobi sweeps as in the
 /// paper.
 
+#include <span>
 #include <vector>
 
 #include "prostm/core/worker_pool.hpp"
@@ -10,7 +11,7 @@
 
 namespace prostm::fluid {
 
-/// The hierarchy n, n/2, … down to at most 4 (or to an odd number) of cells, and the solvers on it.
+/// The hierarchy n, n/2, … down to at most 5 cells, each rounded down, and the solvers on it.
 /// Section 3.4 of docs/design.md. Every result is independent of the number of threads, to the bit.
 class PressureSolver {
  public:
@@ -47,7 +48,8 @@ class PressureSolver {
   };
   template <class F>
   void over_planes(int n, F&& f);
-  void smooth_twice(Level& level);
+  void smooth(Level& level, std::span<const float> omegas);
+  void smooth_from_zero(Level& level, std::span<const float> omegas);
   void v_cycle(std::size_t l, bool from_zero);
   void solve_bottom(Level& level);
   template <class Iteration>
