@@ -13,6 +13,7 @@ namespace prostm {
 namespace {
 
 constexpr std::size_t kMostCells = 160;  // along an edge of the fluid's box
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// σ that a patch was planned with [m].
 double sigma_of(const PipelineSettings& settings, const TargetField& target) {
@@ -22,7 +23,7 @@ double sigma_of(const PipelineSettings& settings, const TargetField& target) {
 
 /// The force of pressures on square cells [N]; NaN without any.
 double force_of(const std::vector<double>& pressures, double cell) {
-  if (pressures.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (pressures.empty()) return kNone;
   return cell * cell * std::accumulate(pressures.begin(), pressures.end(), 0.0);
 }
 
@@ -117,7 +118,8 @@ void Snapshots::plan(const WorldFrame& contact, const PlanFrame& plan, double la
 
 void render(const PlanSnapshot& plan, RenderedPlan& out) {
   out.metrics = out.metrics_at_setting = {};
-  out.max_target = out.force = out.smoke_force = out.movement_force = 0.0;
+  out.max_target = out.force = 0.0;
+  out.smoke_force = out.movement_force = plan.target.patches.empty() ? kNone : 0.0;
   SegmentPressures played;
   if (plan.planned) {
     EmitSettings emit = plan.settings->emit;
