@@ -42,8 +42,9 @@ function drawTexts(context: CanvasRenderingContext2D, part: Element, frame: DOMR
   context.textBaseline = "alphabetic";
 }
 
-function drawPanels(context: CanvasRenderingContext2D, left: number, top: number): void {
-  const panels = find("panels"), side = panels.getBoundingClientRect();
+/// All of the panels, also what they have scrolled out of sight. @param corner of the picture's part for them.
+function drawPanels(context: CanvasRenderingContext2D, left: number, corner: number): void {
+  const panels = find("panels"), side = panels.getBoundingClientRect(), top = corner + panels.scrollTop;
   for (const part of panels.querySelectorAll<HTMLElement>("canvas, .swatch")) {
     const box = part.getBoundingClientRect(), x = left + box.left - side.left, y = top + box.top - side.top;
     context.fillStyle = part.style.getPropertyValue("--swatch");
@@ -67,7 +68,7 @@ function drawScene(context: CanvasRenderingContext2D, source: PictureSource, lef
 export function compose(source: PictureSource): HTMLCanvasElement {
   const style = getComputedStyle(document.documentElement);
   const colour = (name: string) => style.getPropertyValue(name).trim();
-  const view = source.canvas.getBoundingClientRect(), side = find("panels").getBoundingClientRect();
+  const view = source.canvas.getBoundingClientRect(), panels = find("panels"), side = panels.getBoundingClientRect();
   const { title, parts } = source.caption();
   const out = document.createElement("canvas");
   const context = out.getContext("2d");
@@ -76,7 +77,7 @@ export function compose(source: PictureSource): HTMLCanvasElement {
   const width = view.width + side.width + 3 * kGap;
   context.font = kText;
   const lines = wrapped(parts, width - 2 * kGap, (text) => context.measureText(text).width);
-  const top = kGap + 34, height = top + Math.max(view.height, side.height) + kGap + kLine * lines.length + kGap;
+  const top = kGap + 34, height = top + Math.max(view.height, panels.scrollHeight) + kGap + kLine * lines.length + kGap;
   const ratio = Math.max(1, Math.min(2, window.devicePixelRatio || 1));
   [out.width, out.height] = [Math.round(width * ratio), Math.round(height * ratio)];
   context.scale(ratio, ratio);

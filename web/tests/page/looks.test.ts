@@ -207,7 +207,9 @@ describe("what is read aloud", () => {
   it("keeps a strip's name apart from its unit", async () => {
     const heads = await page.locator(".strip-head").allTextContents();
     expect(heads[0]).toBe("Stages ms · ↓ better");
-    expect(await page.locator(".strip h3").allTextContents()).toEqual(["Stages", "Rates", "Latency", "Blocks", "Quality", "RMSE"]);
+    expect(await page.locator(".strip h3").allTextContents()).toEqual(
+      ["Stages", "Rates", "Latency", "Blocks", "Force on the hands", "Quality", "RMSE"],
+    );
   });
   afterAll(() => page.close());
 });
