@@ -143,7 +143,7 @@ double difference(const Outcome& one, const Outcome& other) {
 }
 
 // every control changes the plan or its emission, except the source of hands and their prediction,
-// which the source decides
+// which the source decides, and what is computed beside the plan
 TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
   for (const Method method : {Method::ProStm, Method::Am}) {
     LiveSettings s = small_settings();
@@ -152,12 +152,26 @@ TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
     const Outcome as_it_was = outcome_of(s, s);
     EXPECT_EQ(difference(as_it_was, outcome_of(s, s)), 0.0) << "runs must be repeatable";
     for (const RunControl& c : run_controls()) {
-      if (c.group == "Hand" || !c.enabled(s)) continue;
+      if (c.group == "Hand" || c.id == "parts" || !c.enabled(s)) continue;
       LiveSettings wanted = s;
       c.set(wanted, c.get(s) == c.low ? c.high : c.low);
       EXPECT_GT(difference(as_it_was, outcome_of(s, wanted)), 1e-4)
           << name_of(method) << ": " << c.id;
     }
+  }
+}
+
+TEST(Controls, BothPartsOfThePressureComeAndGo) {
+  LiveSettings s = small_settings();
+  Pipeline pipeline = pipeline_of(s);
+  const RunControl& parts = run_controls()[static_cast<std::size_t>(control_index("parts"))];
+  for (const double on : {0.0, 1.0, 0.0}) {
+    parts.set(s, on);
+    pipeline.reconfigure(s.pipeline);
+    for (int i = 0; i < 10; ++i) pipeline.step(0.02);
+    const TargetField& target = pipeline.contact().target.patches.at(0);
+    EXPECT_EQ(target.smoke.size(), on > 0.0 ? target.size() : 0U);
+    EXPECT_EQ(target.movement.size(), target.smoke.size());
   }
 }
 

@@ -52,7 +52,8 @@ template <>
 inline constexpr std::array<std::string_view, 2> kNames<HandFaces> = {"fractions", "voxels"};
 
 struct FluidSettings {
-  int cells = 64;       ///< cells along each edge of the box, 32..160
+  static constexpr int kLeastCells = 32, kMostCells = 160;
+  int cells = 64;       ///< cells along each edge of the box, kLeastCells to kMostCells
   double width = 0.36;  ///< edge of the box [m]; it stands on the array's plane, centred, until
                         ///< move_box()
   /// a step is so many of the fluid, each with its pressure solve; all but the last meet the hands

@@ -13,8 +13,6 @@
 namespace prostm {
 namespace {
 
-constexpr double kLeastGrid = 32, kMostGrid = 160;  // [cells]
-
 // ---- lists of choices ----
 
 /// Returns the names of an enum, with a label for each.
@@ -183,7 +181,7 @@ std::vector<RunControl> make_controls() {
       "Shows the force of the smoke and that of the hand's own movement apart, whichever is felt, "
       "and records both. It takes twice the smoke's time.");
   number(
-      "Smoke", "grid", "Grid", "cells", kLeastGrid, kMostGrid, 1,
+      "Smoke", "grid", "Grid", "cells", FluidSettings::kLeastCells, FluidSettings::kMostCells, 1,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },
       [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, always,
       "Cells along each edge of the smoke's box. Fewer are coarser, and cost less time. The smoke "

@@ -12,7 +12,6 @@
 namespace prostm {
 namespace {
 
-constexpr std::size_t kMostCells = 160;  // along an edge of the fluid's box
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// σ that a patch was planned with [m].
@@ -43,7 +42,8 @@ struct Blocks {
 /// Means over blocks. Smoke is never negative: advection weighs it with weights from 0 to 1.
 void average(const Fluid& fluid, const Blocks& blocks, std::span<std::uint8_t> out) {
   const auto& edges = blocks.edges;
-  std::array<float, kMostCells> row;  // sums over the rows that a row of blocks takes
+  std::array<float, FluidSettings::kMostCells>
+      row;  // sums over the rows that a row of blocks takes
   auto to = out.begin();
   for (std::size_t k = 0; k < blocks.n; ++k) {
     for (std::size_t j = 0; j < blocks.n; ++j) {

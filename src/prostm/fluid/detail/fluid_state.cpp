@@ -21,6 +21,8 @@ using fluid::Index;
 
 namespace {
 
+static_assert(FluidSettings::kMostCells <= fluid::PressureLevel::kMaxCells);
+
 constexpr float kAbsurd = 1e6F;  // [m/s]; a state with a larger value is unusable
 
 /// y ← a x + b y

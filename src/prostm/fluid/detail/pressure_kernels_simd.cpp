@@ -157,6 +157,7 @@ void ProlongAdd(const PressureLevel& coarse, const float* HWY_RESTRICT e, const 
   const D d;
   constexpr Index kPad = PaddedGrid::kLane;
   alignas(64) float blend[PressureLevel::kMaxCells + 3 * kPad];
+  // a fine row's padding reads beyond the coarse row's
   alignas(64) float value[2 * PressureLevel::kMaxCells + 4 * kPad] = {};
   const Index row = coarse.grid.row(), plane = coarse.grid.plane(), step = lanes();
   const Index width = coarse.grid.width();

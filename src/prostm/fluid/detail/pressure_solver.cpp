@@ -59,7 +59,8 @@ void extend_into_closed(const PressureLevel& level, Field& p) {
 PressureSolver::PressureSolver(int n, WorkerPool& pool, const PressureKernels& kernels)
     : pool_(pool), kernels_(kernels), convergence_(PaddedGrid{n}) {
   levels_.emplace_back(n);
-  // the last cell of an odd level has no parent; its parents' zeros beyond the grid correct it
+  // a level of odd n is one cell longer than its parents, whose halo of zeros stands for the open
+  // side there
   float across = static_cast<float>(n);  // the box, in cells of a level
   while (n > kBottomCells) {
     n /= 2;

@@ -8,7 +8,9 @@ namespace {
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
-  v.field({"cells", "", 32, 160, "cells along each edge of the box"}, s.cells);
+  v.field({"cells", "", FluidSettings::kLeastCells, FluidSettings::kMostCells,
+           "cells along each edge of the box"},
+          s.cells);
   v.field({"width", "m", 0.05, 5,
            "edge of the box, which stands on the array unless [box] follow moves it"},
           s.width);
