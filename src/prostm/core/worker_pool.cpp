@@ -76,6 +76,7 @@ void WorkerPool::run_erased(int n, Call call, void* context) {
 }
 
 void WorkerPool::drain(std::uint64_t region, std::size_t self) {
+  int done = 0;
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     std::atomic<std::uint64_t>& ticket = parts_[(self + part) % parts_.size()].ticket;
     std::uint64_t seen = ticket.load(std::memory_order_acquire);
@@ -86,10 +87,12 @@ void WorkerPool::drain(std::uint64_t region, std::size_t self) {
         continue;
       const Call call = call_.load(std::memory_order_relaxed);
       call(context_.load(std::memory_order_relaxed), static_cast<int>(seen & kIndexMask));
-      pending_.fetch_sub(1, std::memory_order_acq_rel);
+      ++done;
       seen = ticket.load(std::memory_order_acquire);
     }
   }
+  // once, because all threads write here
+  if (done > 0) pending_.fetch_sub(done, std::memory_order_acq_rel);
 }
 
 void WorkerPool::work(const std::stop_token& stop, std::size_t self) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/fluid/detail/bytes.hpp"
 #include "prostm/fluid/detail/carry_over.hpp"
 #include "prostm/fluid/detail/extrapolation.hpp"
 #include "prostm/fluid/detail/forces.hpp"
@@ -304,15 +305,16 @@ void Fluid::State::push_swept(const HandRaster& raster) {
   const CellBox& box = raster.box;
   for (int k = box.lower[2]; k < box.upper[2]; ++k) {
     for (int j = box.lower[1]; j < box.upper[1]; ++j) {
-      for (int i = box.lower[0]; i < box.upper[0]; ++i) {
-        const std::size_t cell = grid.cell_index(i, j, k);
+      const std::size_t row = grid.cell_index(0, j, k);
+      fluid::for_bytes(raster.swept.data() + row, box.lower[0], box.upper[0], 1, [&](int i) {
+        const std::size_t cell = row + static_cast<std::size_t>(i);
         const Index c = padded.index(i, j, k);
-        if (raster.swept[cell] == 0 || obstacle.closed(c)) continue;
+        if (obstacle.closed(c)) return;
         for (int axis = 0; axis < 3; ++axis) {
           velocity[axis][c + padded.stride(axis)] = raster.velocity[axis][cell];
           if (axis != 2 || k > 0) velocity[axis][c] = raster.velocity[axis][cell];
         }
-      }
+      });
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "prostm/fluid/detail/bytes.hpp"
 #include "prostm/fluid/detail/largest.hpp"
 
 namespace prostm::fluid {
@@ -87,25 +88,30 @@ void Obstacle::forget() {
       std::fill(state_.data() + row + box_.lower[0], state_.data() + row + box_.upper[0], kReached);
     }
   }
-  closed_cells_ = 0;
 }
 
 void Obstacle::update(const HandRaster& raster, PressureLevel& level) {
   forget();
   level.open_all();
+  closed_cells_ = 0;
   box_ = raster.box;
   if (box_.empty()) return;
   level.box = box_;
   const int planes = box_.upper[2] - box_.lower[2];
   pool_.run(planes + 1, [&](int task) { find_inside(raster, box_.lower[2] + task); });
-  pool_.run(planes + 1, [&](int task) { cut_faces(raster, level, box_.lower[2] + task); });
+  pool_.run(planes + 1, [&](int task) { cut(raster, level, box_.lower[2] + task); });
   pool_.run(planes, [&](int task) {
-    level.find_spans(box_.lower[2] + task);
-    classify(level, box_.lower[2] + task);
+    const int k = box_.lower[2] + task;
+    for (int j = box_.lower[1]; j < box_.upper[1]; ++j) level.span(j, k) = cut_cells(j, k);
+    level.narrow_spans(k);
+    classify(level, k);
   });
   close_narrow(level);
   close_pockets(level);
-  pool_.run(planes, [&](int task) { level.fill_diagonal(box_.lower[2] + task); });
+  pool_.run(planes, [&](int task) {
+    level.fill_diagonal(box_.lower[2] + task);
+    count_closed(level, box_.lower[2] + task);
+  });
 }
 
 void Obstacle::find_inside(const HandRaster& raster, int k) {
@@ -118,27 +124,34 @@ void Obstacle::find_inside(const HandRaster& raster, int k) {
   }
 }
 
+/// From the first node in a hand to the last one, along x, of four rows.
+RowSpan Obstacle::nodes_inside(int j0, int j1, int k0, int k1) const {
+  return join(join(inside(j0, k0), inside(j1, k0)), join(inside(j0, k1), inside(j1, k1)));
+}
+
+/// The cells of row (j, k) of which a hand may shut a face.
+RowSpan Obstacle::cut_cells(int j, int k) const {
+  const auto lower = static_cast<std::int16_t>(box_.lower[0]),
+             upper = static_cast<std::int16_t>(box_.upper[0]);
+  if (faces_ == HandFaces::Voxels) return {lower, upper};
+  const RowSpan nodes = nodes_inside(j, j + 1, k, k + 1);
+  if (nodes.empty()) return nodes;
+  return {std::max<std::int16_t>(nodes.begin - 1, lower), std::min(nodes.end, upper)};
+}
+
 /// The faces of an axis in row (j, k) that a hand may shut.
-RowSpan Obstacle::cut_span(int axis, int j, int k) const {
+RowSpan Obstacle::cut_faces(int axis, int j, int k) const {
   const auto lower = static_cast<std::int16_t>(box_.lower[0]),
              upper = static_cast<std::int16_t>(box_.upper[0] + (axis == 0));
   if (faces_ == HandFaces::Voxels) return {lower, upper};
-  RowSpan span = inside(j, k);
-  const auto join = [&](RowSpan other) {
-    if (other.empty()) return;
-    if (span.empty()) span = other;
-    span = {std::min(span.begin, other.begin), std::max(span.end, other.end)};
-  };
-  if (axis != 1) join(inside(j + 1, k));
-  if (axis != 2) join(inside(j, k + 1));
-  if (axis == 0) join(inside(j + 1, k + 1));
+  RowSpan span = nodes_inside(j, j + (axis != 1), k, k + (axis != 2));
   // faces of the other axes reach from node to node along x
   if (axis != 0 && !span.empty()) span.begin = std::max<std::int16_t>(span.begin - 1, lower);
   span.end = std::min(span.end, upper);
   return span;
 }
 
-void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) {
+void Obstacle::cut(const HandRaster& raster, PressureLevel& level, int k) {
   const GridShape& g = raster.grid;
   const auto row = static_cast<Index>(g.nx + 1), plane = row * (g.ny + 1);
   const Index node_stride[3] = {1, row, plane};
@@ -152,7 +165,7 @@ void Obstacle::cut_faces(const HandRaster& raster, PressureLevel& level, int k) 
       float* open = level.open[axis].data() + grid_.index(0, j, k);
       float* wall = wall_[axis].data() + grid_.index(0, j, k);
       const float* phi = raster.node_distance.data() + g.node_index(0, j, k);
-      const RowSpan span = cut_span(axis, j, k);
+      const RowSpan span = cut_faces(axis, j, k);
       for (int i = span.begin; i < span.end; ++i) {
         const bool is_out =
             phi[i] > 0.0F && phi[i + s] > 0.0F && phi[i + s + t] > 0.0F && phi[i + t] > 0.0F;
@@ -182,7 +195,7 @@ void Obstacle::classify(const PressureLevel& level, int k) {
       const Index c = grid_.index(i, j, k);
       const Field* a = level.open;
       const float sum = a[0][c] + a[0][c + 1] + a[1][c] + a[1][c + row] + a[2][c] + a[2][c + plane];
-      state_[c] = sum < kMinOpening ? kClosed : kOpen;
+      state_[c] = sum == 0.0F ? kClosed : sum < kMinOpening ? kNarrow : kOpen;
     }
   }
 }
@@ -194,14 +207,26 @@ RowSpan Obstacle::cells_of(const PressureLevel& level, int j, int k) const {
           std::min(span.end, static_cast<std::int16_t>(box_.upper[0]))};
 }
 
+/// Calls f(c) for the cells that are in a state when their turn comes.
 template <class F>
-void Obstacle::for_cut_cells(const PressureLevel& level, F&& f) {
+void Obstacle::for_cells(const PressureLevel& level, CellState state, F&& f) {
   for (int k = box_.lower[2]; k < box_.upper[2]; ++k) {
     for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
       const RowSpan span = cells_of(level, j, k);
-      for (int i = span.begin; i < span.end; ++i) f(grid_.index(i, j, k));
+      const Index row = grid_.index(0, j, k);
+      for_bytes(state_.data() + row, span.begin, span.end, state, [&](int i) { f(row + i); });
     }
   }
+}
+
+void Obstacle::count_closed(const PressureLevel& level, int k) {
+  std::ptrdiff_t closed = 0;
+  for (int j = box_.lower[1]; j < box_.upper[1]; ++j) {
+    const RowSpan span = cells_of(level, j, k);
+    const std::uint8_t* const row = state_.data() + grid_.index(0, j, k);
+    if (!span.empty()) closed += std::count(row + span.begin, row + span.end, kClosed);
+  }
+  closed_cells_ += static_cast<int>(closed);
 }
 
 void Obstacle::close(PressureLevel& level, Index c) {
@@ -210,7 +235,6 @@ void Obstacle::close(PressureLevel& level, Index c) {
     level.open[axis][c + grid_.stride(axis)] = 0.0F;
   }
   state_[c] = kClosed;
-  ++closed_cells_;
 }
 
 void Obstacle::close_narrow(PressureLevel& level) {
@@ -220,8 +244,7 @@ void Obstacle::close_narrow(PressureLevel& level) {
     return a[0][c] + a[0][c + 1] + a[1][c] + a[1][c + row] + a[2][c] + a[2][c + plane];
   };
   std::size_t top = 0;
-  for_cut_cells(level, [&](Index c) {
-    if (state_[c] != kClosed) return;
+  for_cells(level, kNarrow, [&](Index c) {
     close(level, c);
     stack_[top++] = c;
   });
@@ -275,8 +298,7 @@ void Obstacle::close_pockets(PressureLevel& level) {
   // faces are shut
   const int planes = box_.upper[2] - box_.lower[2];
   pool_.run(planes, [&](int task) { reach_along_rows(level, box_.lower[2] + task); });
-  for_cut_cells(level, [&](Index c) {
-    if (state_[c] != kOpen) return;
+  for_cells(level, kOpen, [&](Index c) {
     bool touches = false;
     for (int axis = 0; axis < 3; ++axis) {
       const Index s = grid_.stride(axis);
@@ -285,9 +307,7 @@ void Obstacle::close_pockets(PressureLevel& level) {
     }
     if (touches) flood(level, c);
   });
-  for_cut_cells(level, [&](Index c) {
-    if (state_[c] == kOpen) close(level, c);
-  });
+  for_cells(level, kOpen, [&](Index c) { close(level, c); });
 }
 
 double lowest_of(const HandRaster& raster) {

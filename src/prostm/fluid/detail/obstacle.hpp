@@ -1,6 +1,7 @@
 #pragma once
 /// Hands in the fluid: open fractions of faces, closed cells, and the velocity of the walls.
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -40,11 +41,14 @@ class Obstacle {
   static constexpr float kMinFraction = 0.02F;  // a smaller gap is shut
 
  private:
-  enum CellState : std::uint8_t { kReached, kOpen, kClosed };
+  /// A narrow cell has too little open face and is about to be closed.
+  enum CellState : std::uint8_t { kReached, kOpen, kNarrow, kClosed };
 
   void forget();
   void find_inside(const HandRaster& raster, int k);
-  RowSpan cut_span(int axis, int j, int k) const;
+  RowSpan nodes_inside(int j0, int j1, int k0, int k1) const;
+  RowSpan cut_cells(int j, int k) const;
+  RowSpan cut_faces(int axis, int j, int k) const;
   RowSpan cells_of(const PressureLevel& level, int j, int k) const;
   /// The nodes of a row from the first one in a hand to the last one.
   RowSpan inside(int j, int k) const { return inside_[node_row(j, k)]; }
@@ -53,15 +57,16 @@ class Obstacle {
     return static_cast<std::size_t>(k) * static_cast<std::size_t>(grid_.n + 1) +
            static_cast<std::size_t>(j);
   }
-  void cut_faces(const HandRaster& raster, PressureLevel& level, int k);
+  void cut(const HandRaster& raster, PressureLevel& level, int k);
   void classify(const PressureLevel& level, int k);
   void close(PressureLevel& level, Index c);
   void reach_along_rows(const PressureLevel& level, int k);
   void close_narrow(PressureLevel& level);
   void close_pockets(PressureLevel& level);
+  void count_closed(const PressureLevel& level, int k);
   void flood(const PressureLevel& level, Index seed);
   template <class F>
-  void for_cut_cells(const PressureLevel& level, F&& f);
+  void for_cells(const PressureLevel& level, CellState state, F&& f);
 
   PaddedGrid grid_;
   WorkerPool& pool_;
@@ -71,7 +76,7 @@ class Obstacle {
   std::vector<RowSpan> inside_;      // a row of nodes each, where the box has some
   std::vector<Index> stack_;         // room for all cells
   CellBox box_;
-  int closed_cells_ = 0;
+  std::atomic<int> closed_cells_{0};
 };
 
 /// Whether a cell's centre is in a hand, by the mean distance of its nodes.

@@ -61,34 +61,50 @@ void PressureLevel::coarsen_from(const PressureLevel& fine) {
     box.lower[a] = fine.box.lower[a] / 2;
     box.upper[a] = std::min((fine.box.upper[a] + 1) / 2, grid.n);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const Index s = fine.grid.stride((axis + 1) % 3), t = fine.grid.stride((axis + 2) % 3);
-    const float* from = fine.open[axis].data();
-    for (int k = box.lower[2]; k < box.upper[2] + (axis == 2); ++k) {
-      for (int j = box.lower[1]; j < box.upper[1] + (axis == 1); ++j) {
-        float* to = open[axis].data() + grid.index(0, j, k);
-        for (int i = box.lower[0]; i < box.upper[0] + (axis == 0); ++i) {
-          const float* f = from + fine.grid.index(2 * i, 2 * j, 2 * k);
-          to[i] = 0.25F * ((f[0] + f[s]) + (f[t] + f[s + t]));
-        }
-      }
+  for (int k = box.lower[2]; k < box.upper[2] && !always_full; ++k) {
+    for (int j = box.lower[1]; j < box.upper[1]; ++j) {
+      const RowSpan four = join(join(fine.span(2 * j, 2 * k), fine.span(2 * j + 1, 2 * k)),
+                                join(fine.span(2 * j, 2 * k + 1), fine.span(2 * j + 1, 2 * k + 1)));
+      span(j, k) = {static_cast<std::int16_t>(four.begin / 2),
+                    static_cast<std::int16_t>((four.end + 1) / 2)};
     }
   }
+  for (int axis = 0; axis < 3; ++axis) coarsen_faces(fine, axis);
   for (int k = always_full ? 0 : box.lower[2]; k < (always_full ? grid.n : box.upper[2]); ++k) {
-    find_spans(k);
+    narrow_spans(k);
     fill_diagonal(k);
   }
 }
 
-void PressureLevel::find_spans(int k) {
-  if (always_full || k < box.lower[2] || k >= box.upper[2]) return;
+void PressureLevel::coarsen_faces(const PressureLevel& fine, int axis) {
+  const Index s = fine.grid.stride((axis + 1) % 3), t = fine.grid.stride((axis + 2) % 3);
+  for (int k = box.lower[2]; k < box.upper[2] + (axis == 2); ++k) {
+    for (int j = box.lower[1]; j < box.upper[1] + (axis == 1); ++j) {
+      const RowSpan cut = face_span(axis, j, k);
+      if (cut.empty()) continue;
+      float* to = open[axis].data() + grid.index(0, j, k);
+      const float* from = fine.open[axis].data() + fine.grid.index(0, 2 * j, 2 * k);
+      const int end = std::min<int>(cut.end, box.upper[0]) + (axis == 0);
+      for (int i = std::max<int>(cut.begin, box.lower[0]); i < end; ++i) {
+        const float* f = from + 2 * i;
+        to[i] = 0.25F * ((f[0] + f[s]) + (f[t] + f[s + t]));
+      }
+    }
+  }
+}
+
+void PressureLevel::narrow_spans(int k) {
+  if (always_full) return;
   const Index row = grid.row(), plane = grid.plane();
   const float lowest = k == 0 ? 0.0F : 1.0F;  // the floor is shut
   for (int j = box.lower[1]; j < box.upper[1]; ++j) {
     const Index c = grid.index(0, j, k);
     const float *x = open[0].data() + c, *y = open[1].data() + c, *z = open[2].data() + c;
+    RowSpan& cut = span(j, k);
     int first = grid.n, last = -1;
-    for (int i = box.lower[0]; i < box.upper[0]; ++i) {
+    const int begin = std::max<int>(cut.begin, box.lower[0]),
+              end = std::min<int>(cut.end, box.upper[0]);
+    for (int i = begin; i < end; ++i) {
       const bool is_open = x[i] == 1.0F && x[i + 1] == 1.0F && y[i] == 1.0F && y[i + row] == 1.0F &&
                            z[i] == lowest && z[i + plane] == 1.0F;
       if (is_open) continue;
@@ -96,9 +112,9 @@ void PressureLevel::find_spans(int k) {
       last = i;
     }
     const auto lane = static_cast<int>(PaddedGrid::kLane);
-    span(j, k) = last < 0 ? RowSpan{}
-                          : RowSpan{static_cast<std::int16_t>(first / lane * lane),
-                                    static_cast<std::int16_t>((last / lane + 1) * lane)};
+    cut = last < 0 ? RowSpan{}
+                   : RowSpan{static_cast<std::int16_t>(first / lane * lane),
+                             static_cast<std::int16_t>((last / lane + 1) * lane)};
   }
 }
 

@@ -2,6 +2,7 @@
 /// The discrete Poisson problem on one grid of the hierarchy: open fractions of faces around the
 /// hands, and the diagonal.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,13 @@ struct RowSpan {
   bool empty() const { return begin >= end; }
 };
 
+/// The smallest span with both.
+inline RowSpan join(RowSpan a, RowSpan b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
+}
+
 /// Σ_f a_f (p − p_f) = b over the six faces of a cell, (F5) and (F6) of docs/design.md: a_f is the
 /// open fraction, over the distance in cells from the centre to the box's open side where the face
 /// belongs to one, where p_f = 0, and 0 on the floor. The neighbour sum needs no special case there
@@ -33,8 +41,8 @@ struct PressureLevel {
   void open_all();
   /// Sets fractions, as means of the four faces of `fine` (Weber et al. 2015), spans and diagonals.
   void coarsen_from(const PressureLevel& fine);
-  /// Finds the spans of plane k from the fractions in `box`.
-  void find_spans(int k);
+  /// Narrows the spans of plane k to the cells that have a face that is not open.
+  void narrow_spans(int k);
   /// Sets the diagonals in the spans of plane k. A cell whose diagonal is below `kClosed` is solid:
   /// no equation, p = 0.
   void fill_diagonal(int k);
@@ -78,6 +86,8 @@ struct PressureLevel {
     const auto place = [&](int i) { return i == 0 ? 0 : i == grid.n - 1 ? 2 : 1; };
     return static_cast<std::size_t>(place(j) + 3 * place(k));
   }
+
+  void coarsen_faces(const PressureLevel& fine, int axis);
 
   float side_weight_;
   std::vector<float> diagonal_tables[9], inverse_tables[9];

@@ -1,5 +1,6 @@
 #include "prostm/fluid/detail/pressure_solver.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -11,11 +12,10 @@ namespace {
 // Relaxation factors of m Jacobi sweeps whose product is the Chebyshev polynomial on [0.25, 1.95],
 // the upper part of the spectrum of D⁻¹A: 1/ω = 1.1 + 0.85 cos(π(i − 1/2)/m), in an order that
 // keeps errors small on the way. Sweeps after the coarse grid's correction do more than those
-// before it. Coarser levels start from 0, and sweeps are cheap there.
+// before it.
 constexpr std::array kBefore = {0.909091F};
 constexpr std::array kBeforeFromZero = {0.587875F, 2.004172F};
-constexpr std::array kAfter = {0.544626F, 2.748171F, 0.909091F};
-constexpr std::array kAfterCoarse = {0.530420F, 3.177605F, 0.701616F, 1.290790F};
+constexpr std::array kAfter = {0.530420F, 3.177605F, 0.701616F, 1.290790F};
 constexpr int kBottomCells = 5;   // the most along an edge of a level solved by sweeps alone
 constexpr int kSerialCells = 16;  // below this a region costs more than it saves
 
@@ -37,11 +37,11 @@ void extend_into_closed(const PressureLevel& level, Field& p) {
                                      {0, 1, 0},  {0, 0, -1}, {0, 0, 1}};
   for (int k = level.box.lower[2]; k < level.box.upper[2]; ++k) {
     for (int j = level.box.lower[1]; j < level.box.upper[1]; ++j) {
-      if (level.span(j, k).empty()) continue;
-      for (int i = level.box.lower[0]; i < level.box.upper[0]; ++i) {
+      const RowSpan s = level.span(j, k);
+      const int end = std::min<int>(s.end, level.box.upper[0]);
+      for (int i = std::max<int>(s.begin, level.box.lower[0]); i < end; ++i) {
         const Index c = level.grid.index(i, j, k);
-        const RowSpan s = level.span(j, k);
-        if (i < s.begin || i >= s.end || level.inverse[c] != 0.0F) continue;
+        if (level.inverse[c] != 0.0F) continue;
         float sum = 0.0F, count = 0.0F;
         for (const auto& o : kNeighbours) {
           if (level.inverse_at(i + o[0], j + o[1], k + o[2]) == 0.0F) continue;
@@ -125,11 +125,7 @@ void PressureSolver::v_cycle(std::size_t l, bool from_zero) {
   over_planes(level.problem.grid.n, [&](int k0, int k1) {
     kernels_.prolong_add(coarse.problem, coarse.p.data(), level.problem, level.p.data(), k0, k1);
   });
-  if (l == 0) {
-    smooth(level, kAfter);
-  } else {
-    smooth(level, kAfterCoarse);
-  }
+  smooth(level, kAfter);
 }
 
 void PressureSolver::solve_bottom(Level& level) {

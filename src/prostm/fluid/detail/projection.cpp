@@ -18,18 +18,18 @@ using D = hn::CappedTag<float, 16>;
 /// Computes the outflow of cells [begin, end) of the row at c where hands cut faces.
 HWY_INLINE void cut_outflow(const PressureLevel& level, const Obstacle& obstacle,
                             const Field velocity[3], Index c, int begin, int end, float* out) {
-  for (int i = begin; i < end; ++i) {
-    float sum = 0.0F;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Field& a = level.open[axis];
-      const Field& u = velocity[axis];
-      const Field& wall = obstacle.wall_velocity(axis);
-      const Index low = c + i, high = low + level.grid.stride(axis);
-      sum += (a[high] * u[high] + (1.0F - a[high]) * wall[high]) -
-             (a[low] * u[low] + (1.0F - a[low]) * wall[low]);
+  float sum[PressureLevel::kMaxCells] = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Index s = level.grid.stride(axis);
+    const float *a = level.open[axis].data() + c, *u = velocity[axis].data() + c,
+                *wall = obstacle.wall_velocity(axis).data() + c;
+    for (int i = begin; i < end; ++i) {
+      sum[i] += (a[i + s] * u[i + s] + (1.0F - a[i + s]) * wall[i + s]) -
+                (a[i] * u[i] + (1.0F - a[i]) * wall[i]);
     }
-    out[i] = level.inverse[c + i] > 0.0F ? sum : 0.0F;
   }
+  const float* inverse = level.inverse.data() + c;
+  for (int i = begin; i < end; ++i) out[i] = inverse[i] > 0.0F ? sum[i] : 0.0F;
 }
 
 /// Subtracts the gradient from n faces u; `below` is the distance from the cell above a face to the
@@ -89,7 +89,8 @@ DivergenceSum Divergence(const PressureLevel& level, const Obstacle& obstacle,
     for (int i = 0; i < n; ++i)
       outflow[i] = ((u[i + 1] - u[i]) + (v[i + row] - v[i])) + (w[i + plane] - w[i]);
     const RowSpan span = level.span(j, k);
-    cut_outflow(level, obstacle, velocity, c, span.begin, std::min<int>(span.end, n), outflow);
+    if (!span.empty())
+      cut_outflow(level, obstacle, velocity, c, span.begin, std::min<int>(span.end, n), outflow);
     add_row(outflow, n, sums);
     if (out == nullptr) continue;
     for (int i = 0; i < n; ++i) out[c + i] = scale * outflow[i];
