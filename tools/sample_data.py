@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Makes the samples in data/: three fields and the recording of a hand.
+"""Makes the samples in data/: three fields, the recording of a hand, and made-up answers.
 
 usage: sample_data.py PROSTM [FOLDER]
 
 PROSTM is the program, FOLDER where the files go; default: data. The fields are targets of the scripted hand in smoke and a
-drawn picture, the recording is the scripted hand at 50 frames a second.
+drawn picture, the recording is the scripted hand at 50 frames a second. No person gave the answers: they are drawn at
+random.
 """
 
 import json
+import random
 import struct
 import subprocess
 import sys
@@ -118,6 +120,25 @@ def flat(values, digits):
     return [round(float(v), digits) for v in np.ravel(values)]
 
 
+def write_answers(path):
+    """Answers of 16 participants who do not exist, eight with each method. Each has a share of right answers of its
+    own, around the method's."""
+    draw = random.Random(5)
+    scenes = ("one-plume", "four-plumes")
+    lines = ["participant,trial,method,scene,question,answer,correct,response_s"]
+    for method, letter_of, share in (("am", "A", 0.6), ("pro-stm", "S", 0.76)):
+        for person in range(1, 9):
+            own = draw.betavariate(6 * share, 6 * (1 - share))
+            trials = 4 * [(scene, question) for scene in scenes for question in scenes]
+            draw.shuffle(trials)
+            for number, (scene, question) in enumerate(trials, 1):
+                right = draw.random() < own
+                answer = (question == scene) == right
+                lines.append(f"{letter_of}{person},{number},{method},{scene},{question},{answer:d},{right:d},"
+                             f"{draw.lognormvariate(0.8, 0.4):.2f}")
+    path.write_text("\n".join(lines) + "\n")
+
+
 def main():
     if len(sys.argv) not in (2, 3):
         print("sample_data: give the program, and a folder; see its first lines", file=sys.stderr)
@@ -131,6 +152,7 @@ def main():
         write_field(strongest(four), out / "four-plumes.json")
         write_hands(one, out / "wave.hands.jsonl")
     write_png(letter(), out / "letter.png")
+    write_answers(out / "made-up-answers.csv")
     return 0
 
 

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <map>
 #include <memory>
 #include <system_error>
 
@@ -285,20 +284,37 @@ void add_check(CLI::App& app, Work& work) {
   command->callback([o, &work] { work = {&o->files, [o] { return check_command(*o); }}; });
 }
 
-/// Commands of the design that do not exist yet answer with a sentence, not with a usage error.
-void add_unbuilt(CLI::App& app) {
-  const std::map<std::string, std::string> commands = {
-      {"stim", "the stimuli of earlier studies"},
-      {"play", "play a plan, field or samples"},
-      {"study", "the perceptual study"},
-      {"report", "every table and figure of the paper"}};
-  for (const auto& [name, help] : commands) {
-    auto* command = app.add_subcommand(name, help + " (not built yet)");
-    command->prefix_command();
-    command->callback([name = name] {
-      throw prostm::InputError("prostm " + name + " is not built yet in this version");
-    });
-  }
+/// A command of the design that does not exist yet answers with a sentence, not with a usage error.
+void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help) {
+  auto* command = app.add_subcommand(name, help + " (not built yet)");
+  command->prefix_command();
+  command->callback([name, parent = app.get_name()] {
+    throw prostm::InputError("prostm " + (parent.empty() ? "" : parent + ' ') + name +
+                             " is not built yet in this version");
+  });
+}
+
+void add_study(CLI::App& app, Work& work) {
+  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
+  study->require_subcommand(1);
+  auto* command = study->add_subcommand("analyse", "what answers do and do not support");
+  auto o = std::make_shared<AnalyseOptionsGiven>();
+  add_input(*command, o->files, "answers", o->answers,
+            "answers (.csv, docs/study.md), or the scores of the paper's Fig. 4 (.json)")
+      ->required();
+  command->add_option("--chance", o->settings.chance, "share of right answers that guessing makes")
+      ->capture_default_str();
+  command->add_option("--level", o->settings.level, "of intervals; tests take 1 minus it")
+      ->capture_default_str();
+  command->add_option("--power", o->settings.power, "for which participants are planned")
+      ->capture_default_str();
+  command->add_option("--seed", o->settings.seed, "of random splits of many participants")
+      ->capture_default_str();
+  add_json(*command, o->files, o->json);
+  command->footer("Example:\n  prostm study analyse data/made-up-answers.csv");
+  command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
+  add_unbuilt(*study, "run", "the trials of a protocol");
+  add_unbuilt(*study, "simulate", "simulated observers in place of people");
 }
 
 /// Parses and runs a command. @return the exit status.
@@ -321,7 +337,10 @@ int obey(int argc, char** argv) {
   add_settings(app, work);
   add_help(app, work);
   add_check(app, work);
-  add_unbuilt(app);
+  add_study(app, work);
+  add_unbuilt(app, "stim", "the stimuli of earlier studies");
+  add_unbuilt(app, "play", "play a plan, field or samples");
+  add_unbuilt(app, "report", "every table and figure of the paper");
   try {
     if (argc < 2) {
       std::fputs(help_page(app, "").c_str(), stderr);

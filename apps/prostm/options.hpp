@@ -7,6 +7,7 @@
 
 #include "files.hpp"
 #include "prostm/io/field_file.hpp"
+#include "prostm/study/analysis.hpp"
 
 namespace prostm::app {
 
@@ -120,6 +121,12 @@ struct CheckOptionsGiven {
   std::string json;
 };
 
+struct AnalyseOptionsGiven {
+  Files files;
+  std::string answers, json;
+  AnalysisSettings settings;
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument. The files that the options name have been checked.
 int run_command(const RunOptionsGiven& options);
@@ -134,5 +141,6 @@ int selftest_command(const SelftestOptionsGiven& options);
 int soak_command(const SoakOptionsGiven& options);
 int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);
+int analyse_command(const AnalyseOptionsGiven& options);
 
 }  // namespace prostm::app

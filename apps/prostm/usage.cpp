@@ -50,6 +50,10 @@ std::string about_extras(const CLI::App& command, const std::string& name,
   const auto option = std::ranges::find_if(extras, is_dashed);
   const bool is_option = option != extras.end();
   const std::string& extra = is_option ? *option : extras.front();
+  const std::vector<std::string> inner = command_names(command);
+  if (!is_option && !inner.empty())
+    return fmt::format("{} has no command \"{}\"{}", name, shown_name(extra),
+                       did_you_mean(extra, inner));
   return fmt::format("{} {} \"{}\"{}", name, is_option ? "has no option" : "does not expect",
                      shown_name(extra),
                      did_you_mean(is_option ? extra : "--" + extra, option_names(command)));
@@ -86,7 +90,25 @@ std::string option_of(const std::string& what) {
   return what.substr(start, what.find_first_of(": ", start) - start);
 }
 
+/// The innermost command that was parsed, or the program where it has none.
+const CLI::App& parsed_command(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return *command;
+}
+
+/// Its name after those of the commands that it belongs to: "study analyse".
+std::string full_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  const bool is_inner = parent != nullptr && parent->get_parent() != nullptr;
+  return is_inner ? full_name(*parent) + ' ' + command.get_name() : command.get_name();
+}
+
 std::string about_error(const CLI::App& command, const CLI::ParseError& error) {
+  const std::vector<std::string> inner = command_names(command);
+  if (!inner.empty())
+    return fmt::format("{} needs one of its commands: {}", full_name(command),
+                       fmt::join(inner, ", "));
   const std::string what = error.what(), name = option_of(what);
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
     return reworded(what, " excludes ", " and ", " exclude each other; leave one of them out");
@@ -97,7 +119,7 @@ std::string about_error(const CLI::App& command, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     // those that stand without a name are files
     const std::string missing =
-        option->nonpositional() ? name + " is missing" : command.get_name() + " needs a file";
+        option->nonpositional() ? name + " is missing" : full_name(command) + " needs a file";
     return fmt::format("{}: {}", missing, option->get_description());
   }
   const bool of_value = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr ||
@@ -108,9 +130,9 @@ std::string about_error(const CLI::App& command, const CLI::ParseError& error) {
 }  // namespace
 
 std::string usage_sentence(const CLI::App& program, const CLI::ParseError& error) {
-  const auto parsed = program.get_subcommands();
-  const CLI::App& command = parsed.empty() ? program : *parsed.front();
-  const std::string name = parsed.empty() ? "the program" : command.get_name();
+  const CLI::App& command = parsed_command(program);
+  const bool is_program = &command == &program;
+  const std::string name = is_program ? "the program" : full_name(command);
   const std::vector<std::string> strays = extras_of(program), extras = extras_of(command);
   std::string sentence;
   if (!strays.empty() && !strays.front().starts_with("-")) {
@@ -120,7 +142,7 @@ std::string usage_sentence(const CLI::App& program, const CLI::ParseError& error
   } else {
     sentence = extras.empty() ? about_error(command, error) : about_extras(command, name, extras);
   }
-  const bool about_command = strays.empty() && !parsed.empty();
+  const bool about_command = strays.empty() && !is_program;
   return fmt::format("{}{} prostm{} --help", sentence, sentence.ends_with('?') ? " See" : "; see",
                      about_command ? " " + name : "");
 }

@@ -11,6 +11,8 @@ import h5py
 import numpy as np
 import pytest
 
+from conftest import ROOT
+
 GOOD = {
     "format": "prostm-field/1",
     "cell_mm": 5,
@@ -164,6 +166,14 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
         (["run", "--budget-ms", "5", "--preset", "fast"], ["budget", "best", "fast"]),
         (["capture", "--frames", "0", "--out", "x.h5"], ["frames"]),
         (["report", "--out", "x"], ["not built yet"]),
+        (["study"], ["study needs one of its commands: analyse", "prostm study --help"]),
+        (["study", "analize"], ['study has no command "analize"; did you mean "analyse"? See prostm study --help']),
+        (["study", "run", "p.toml"], ["prostm study run is not built yet"]),
+        (["study", "analyse"], ["study analyse needs a file", "prostm study analyse --help"]),
+        (["study", "analyse", "--levle", "0.9"], ['study analyse has no option "--levle"; did you mean "--level"?']),
+        (["study", "analyse", str(ROOT / "data" / "made-up-answers.csv"), "--level", "3"], ["level = 3", "0.9999"]),
+        (["study", "analyse", str(ROOT / "data" / "foci.json")], ["foci.json", "fig4"]),
+        (["study", "analyse", str(ROOT / "data" / "palm.npy")], ["palm.npy", ".csv"]),
     ],
 )
 def test_bad_options(refuses, args, words):

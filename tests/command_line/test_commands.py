@@ -545,3 +545,21 @@ def test_a_study_hand_has_its_own_size_and_others_do_not(prostm, refuses, tmp_pa
     assert 1.8 < areas[1] / areas[0] < 2.8  # the square of 1.5
     refuses("run", "--hand", "scripted", "--hand-size", "0.9", words=["--hand-size belongs to --hand study"])
     refuses("capture", "--hand", "study", "--hand-size", "2", "--frames", "1", "--out", "x.h5", words=["0.7", "1.3"])
+
+
+def test_answers_are_analysed(prostm, tmp_path):
+    answers = ROOT / "data" / "made-up-answers.csv"
+    said = prostm("study", "analyse", answers, "--json", "analysis.json").stdout
+    assert said.startswith("16 participants, each with one method\n") and said.endswith("wrote analysis.json\n")
+    analysis = json.loads((tmp_path / "analysis.json").read_text())
+    assert analysis["format"] == "prostm-analysis/1" and analysis["groups"] == "between"
+    assert [scene["scene"] for scene in analysis["scenes"]] == [None, "one-plume", "four-plumes"]
+    rows = [line.split(",") for line in answers.read_text().splitlines()[1:]]
+    for method in analysis["scenes"][0]["methods"]:
+        mine = [int(row[6]) for row in rows if row[2] == method["method"]]
+        assert (method["correct"], method["answers"]) == (sum(mine), len(mine))
+    assert " ".join(said.split()).count(analysis["words"]) == 1
+    # each participant with both methods
+    pairs = [line.replace("S", "A", 1) if line.startswith("S") else line for line in answers.read_text().splitlines()]
+    (tmp_path / "within.csv").write_text("\n".join(line.replace("trial", "note", 1) for line in pairs))
+    assert "8 participants, each with all methods" in prostm("study", "analyse", "within.csv").stdout

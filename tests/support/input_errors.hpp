@@ -52,8 +52,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Disables traps: converting a text like 1e999 overflows in the C library, which would stop a
-/// test.
+/// Disables traps, which would stop a test in a library: converting a text like 1e999 overflows in
+/// the C library, and Boost's noncentral t of two degrees of freedom compares a NaN on its way.
 class WithoutTraps {
  public:
   WithoutTraps() { std::feholdexcept(&environment_); }

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include "common.hpp"
+#include "prostm/study/analysis.hpp"
+
+namespace prostm::app {
+namespace {
+
+std::string p_text(double p) {
+  return p < 1e-4 ? std::string("<.0001") : fmt::format("{:.4f}", p);
+}
+
+std::string scene_name(const SceneResult& scene) {
+  return scene.scene.empty() ? std::string("all scenes") : scene.scene;
+}
+
+void print_methods(std::FILE* out, const Analysis& analysis) {
+  fmt::print(out, "  {:<14} {:<12} {:>9} {:>6} {:>15} {:>8} {:>7} {:>7}  {}\n", "scene", "method",
+             "right", "%", "interval %", "chance p", "χ²/df", "p", "d′, c");
+  for (const SceneResult& scene : analysis.scenes) {
+    for (const MethodResult& m : scene.methods) {
+      fmt::print(out, "  {:<14} {:<12} {:>4}/{:<4} {:>6.1f} {:>6.1f} to {:>5.1f} {:>8}",
+                 scene_name(scene), m.method, m.correct.successes, m.correct.trials,
+                 100.0 * m.correct.value(), 100.0 * m.interval.low, 100.0 * m.interval.high,
+                 p_text(m.p_chance));
+      fmt::print(out, " {:>7} {:>7}",
+                 m.dispersion ? fmt::format("{:.1f}", m.dispersion->statistic / m.dispersion->df)
+                              : std::string("-"),
+                 m.dispersion ? p_text(m.dispersion->p) : std::string("-"));
+      fmt::print(out, "  {}\n",
+                 m.sensitivity
+                     ? fmt::format("{:.2f}, {:.2f}", m.sensitivity->d_prime, m.sensitivity->bias)
+                     : std::string("-"));
+    }
+  }
+}
+
+void print_comparisons(std::FILE* out, const Analysis& analysis) {
+  const bool within = analysis.groups == Groups::Within;
+  fmt::print(out, "\n  {:<14} {:<22} {:>7} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n", "scene",
+             "methods", "z", "p", "exact p", "permutation", within ? "paired t" : "Welch's t", "d",
+             "needed");
+  for (const SceneResult& scene : analysis.scenes) {
+    for (const Comparison& c : scene.comparisons) {
+      fmt::print(out, "  {:<14} {:<22} {:>7.3f} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n",
+                 scene_name(scene), c.first + ", " + c.second, c.pooled_z.statistic,
+                 p_text(c.pooled_z.p), p_text(c.fisher_p), p_text(c.permutation.p),
+                 c.t ? fmt::format("{:.2f} (df {:.1f}) {}", c.t->statistic, c.t->df, p_text(c.t->p))
+                     : std::string("-"),
+                 c.d ? fmt::format("{:.2f}", *c.d) : std::string("-"),
+                 c.needed ? std::to_string(*c.needed) : std::string("-"));
+    }
+  }
+}
+
+nlohmann::ordered_json test_json(const std::optional<TestResult>& test) {
+  if (!test) return nullptr;
+  return {{"statistic", test->statistic}, {"df", test->df}, {"p", test->p}};
+}
+
+nlohmann::ordered_json method_json(const MethodResult& m) {
+  nlohmann::ordered_json json = {{"method", m.method},
+                                 {"correct", m.correct.successes},
+                                 {"answers", m.correct.trials},
+                                 {"interval", {m.interval.low, m.interval.high}},
+                                 {"chance_p", m.p_chance},
+                                 {"of_participants", m.of_participants},
+                                 {"dispersion", test_json(m.dispersion)}};
+  if (m.sensitivity) {
+    json["d_prime"] = m.sensitivity->d_prime;
+    json["bias"] = m.sensitivity->bias;
+  }
+  return json;
+}
+
+nlohmann::ordered_json comparison_json(const Comparison& c) {
+  nlohmann::ordered_json json = {{"first", c.first},
+                                 {"second", c.second},
+                                 {"z", c.pooled_z.statistic},
+                                 {"z_p", c.pooled_z.p},
+                                 {"fisher_p", c.fisher_p},
+                                 {"permutation_p", c.permutation.p},
+                                 {"permutation_splits", c.permutation.splits},
+                                 {"permutation_exact", c.permutation.exact},
+                                 {"t", test_json(c.t)}};
+  json["effect_size"] = c.d ? nlohmann::ordered_json(*c.d) : nullptr;
+  json["participants_needed"] = c.needed ? nlohmann::ordered_json(*c.needed) : nullptr;
+  return json;
+}
+
+nlohmann::ordered_json analysis_json(const Analysis& analysis, const std::string& words) {
+  nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
+  for (const SceneResult& scene : analysis.scenes) {
+    nlohmann::ordered_json methods = nlohmann::ordered_json::array(),
+                           comparisons = nlohmann::ordered_json::array();
+    for (const MethodResult& m : scene.methods) methods.push_back(method_json(m));
+    for (const Comparison& c : scene.comparisons) comparisons.push_back(comparison_json(c));
+    nlohmann::ordered_json& json = scenes.emplace_back();
+    if (scene.scene.empty()) {
+      json["scene"] = nullptr;
+    } else {
+      json["scene"] = scene.scene;
+    }
+    json["methods"] = methods;
+    json["comparisons"] = comparisons;
+  }
+  return {{"format", "prostm-analysis/1"},
+          {"groups", analysis.groups == Groups::Within ? "within" : "between"},
+          {"participants", analysis.participants},
+          {"chance", analysis.settings.chance},
+          {"level", analysis.settings.level},
+          {"power", analysis.settings.power},
+          {"seed", analysis.settings.seed},
+          {"scenes", scenes},
+          {"words", words}};
+}
+
+/// Breaks words into lines.
+std::string wrapped(const std::string& words) {
+  constexpr std::size_t kWidth = 100;
+  std::string out, line;
+  for (std::size_t at = 0; at < words.size();) {
+    const std::size_t end = std::min(words.find(' ', at), words.size());
+    if (!line.empty() && line.size() + 1 + end - at > kWidth) out += line + '\n', line.clear();
+    if (!line.empty()) line += ' ';
+    line += words.substr(at, end - at);
+    at = end + 1;
+  }
+  return out + line + '\n';
+}
+
+}  // namespace
+
+int analyse_command(const AnalyseOptionsGiven& options) {
+  const Analysis analysis = analyse(read_answers(options.answers), options.settings);
+  const std::string words = in_words(analysis);
+  std::FILE* out = prose(options.json);
+  fmt::print(out, "{} participants, {}\n\n", analysis.participants.size(),
+             analysis.groups == Groups::Within ? "each with all methods" : "each with one method");
+  print_methods(out, analysis);
+  if (!analysis.scenes.front().comparisons.empty()) print_comparisons(out, analysis);
+  fmt::print(out, "\n{}", wrapped(words));
+  write_json(options.json, analysis_json(analysis, words));
+  say_written(out, options.json);
+  return 0;
+}
+
+}  // namespace prostm::app

@@ -1,0 +1,32 @@
+/// Answers of a study: any text is answers with names, whose analysis is finite, or an error.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <set>
+#include <string>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/study/analysis.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace prostm;
+  try {
+    const auto answers = answers_from_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    std::set<std::string> participants;
+    for (const Answer& a : answers) {
+      if (a.participant.empty() || a.method.empty() || a.scene.empty()) std::abort();
+      participants.insert(a.participant);
+    }
+    constexpr std::size_t kFew = 8;  // more have too many splits for a fuzzer
+    if (participants.size() > kFew) return 0;
+    for (const SceneResult& scene : analyse(answers).scenes) {
+      for (const Comparison& c : scene.comparisons) {
+        const bool is_p = c.fisher_p >= 0.0 && c.fisher_p <= 1.0 && c.permutation.p > 0.0;
+        if (!is_p || !std::isfinite(c.pooled_z.statistic)) std::abort();
+      }
+    }
+  } catch (const InputError&) {
+    // the required answer to bad input
+  }
+  return 0;
+}

@@ -1,0 +1,164 @@
+#include "prostm/study/analysis.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/nearest_name.hpp"
+#include "prostm/core/require.hpp"
+
+namespace prostm {
+namespace {
+
+/// Names in the order in which they come first.
+template <class Name>
+std::vector<std::string> names_of(std::span<const Answer> answers, const Name& name) {
+  std::vector<std::string> out;
+  for (const Answer& a : answers) {
+    if (std::find(out.begin(), out.end(), name(a)) == out.end()) out.push_back(name(a));
+  }
+  return out;
+}
+
+std::string quoted(const std::string& name) {
+  return '"' + shown_name(name) + '"';
+}
+
+/// Each participant's right answers, by name.
+using Scores = std::map<std::string, Proportion>;
+
+/// @param scene empty: all.
+bool belongs(const Answer& a, const std::string& method, const std::string& scene) {
+  return a.method == method && (scene.empty() || a.scene == scene);
+}
+
+Scores scores_of(std::span<const Answer> answers, const std::string& method,
+                 const std::string& scene) {
+  Scores out;
+  for (const Answer& a : answers) {
+    if (!belongs(a, method, scene)) continue;
+    Proportion& score = out[a.participant];
+    ++score.trials;
+    score.successes += a.correct ? 1 : 0;
+  }
+  return out;
+}
+
+std::optional<Sensitivity> sensitivity_of(std::span<const Answer> answers,
+                                          const std::string& method, const std::string& scene) {
+  Proportion hits, false_alarms;
+  for (const Answer& a : answers) {
+    if (!belongs(a, method, scene)) continue;
+    if (a.question.empty()) return std::nullopt;
+    Proportion& of = a.question == a.scene ? hits : false_alarms;
+    ++of.trials;
+    of.successes += a.yes ? 1 : 0;
+  }
+  if (hits.trials == 0 || false_alarms.trials == 0) return std::nullopt;
+  return sensitivity(hits, false_alarms);
+}
+
+MethodResult method_result(std::span<const Answer> answers, const std::string& method,
+                           const std::string& scene, const AnalysisSettings& settings) {
+  MethodResult out;
+  out.method = method;
+  std::vector<Proportion> scores;
+  for (const auto& [participant, score] : scores_of(answers, method, scene)) {
+    scores.push_back(score);
+    out.of_participants.push_back(score.value());
+    out.correct.successes += score.successes;
+    out.correct.trials += score.trials;
+  }
+  out.interval = wilson_interval(out.correct, settings.level);
+  out.p_chance = binomial_p(out.correct, settings.chance);
+  out.dispersion = dispersion(scores);
+  out.sensitivity = sensitivity_of(answers, method, scene);
+  return out;
+}
+
+Comparison compare(const MethodResult& a, const MethodResult& b, Groups groups,
+                   const AnalysisSettings& settings) {
+  Comparison out;
+  out.first = a.method;
+  out.second = b.method;
+  out.pooled_z = two_proportions_z(a.correct, b.correct);
+  out.fisher_p = fisher_exact_p(a.correct, b.correct);
+  const std::span<const double> x = a.of_participants, y = b.of_participants;
+  const bool within = groups == Groups::Within;
+  out.permutation =
+      within ? paired_permutation(x, y, settings.seed) : permutation(x, y, settings.seed);
+  out.t = within ? paired_t(x, y) : welch_t(x, y);
+  out.d = within ? paired_effect_size(x, y) : effect_size(x, y);
+  if (out.d) out.needed = participants_needed(*out.d, groups, settings.power, 1.0 - settings.level);
+  return out;
+}
+
+/// Refuses answers of which a participant lacks a scene: shares of right answers over all scenes
+/// would mix what is hard with who was asked.
+void require_scenes(std::span<const Answer> answers, const std::vector<std::string>& methods,
+                    const std::vector<std::string>& scenes) {
+  for (const std::string& method : methods) {
+    const Scores all = scores_of(answers, method, {});
+    if (all.size() < 2) {
+      throw InputError("method " + quoted(method) + " has answers of one participant alone: " +
+                       "at least two are needed, since answers of one are alike");
+    }
+    for (const std::string& scene : scenes) {
+      const Scores some = scores_of(answers, method, scene);
+      for (const auto& [participant, score] : all) {
+        if (some.contains(participant)) continue;
+        throw InputError("participant " + quoted(participant) + " has answers with method " +
+                         quoted(method) + ", but none to the scene " + quoted(scene));
+      }
+    }
+  }
+}
+
+/// @throws InputError: some participants have several methods, others not all.
+Groups groups_of(std::span<const Answer> answers, const std::vector<std::string>& methods) {
+  std::map<std::string, std::size_t> count;
+  for (const std::string& method : methods) {
+    for (const auto& [participant, score] : scores_of(answers, method, {})) ++count[participant];
+  }
+  const std::size_t had = count.begin()->second;
+  for (const auto& [participant, methods_had] : count) {
+    if (methods_had == had && (had == 1 || had == methods.size())) continue;
+    throw InputError("participant " + quoted(participant) + " has " + std::to_string(methods_had) +
+                     " of " + std::to_string(methods.size()) +
+                     " methods: each must have all of them, or each one");
+  }
+  return had == 1 ? Groups::Between : Groups::Within;
+}
+
+}  // namespace
+
+Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings) {
+  require_between("chance", settings.chance, 0.01, 0.99);
+  require_between("level", settings.level, 0.5, 0.9999);
+  require_between("power", settings.power, 0.1, 0.999);
+  const auto methods = names_of(answers, [](const Answer& a) { return a.method; });
+  const auto scenes = names_of(answers, [](const Answer& a) { return a.scene; });
+  if (answers.empty()) throw InputError("there is no answer");
+  Analysis out;
+  out.settings = settings;
+  out.groups = groups_of(answers, methods);
+  out.participants = names_of(answers, [](const Answer& a) { return a.participant; });
+  require_scenes(answers, methods, scenes);
+  std::vector<std::string> parts = {""};
+  if (scenes.size() > 1) parts.insert(parts.end(), scenes.begin(), scenes.end());
+  for (const std::string& scene : parts) {
+    SceneResult& result = out.scenes.emplace_back();
+    result.scene = scene;
+    for (const std::string& method : methods)
+      result.methods.push_back(method_result(answers, method, scene, settings));
+    for (std::size_t b = 1; b < methods.size(); ++b) {
+      for (std::size_t a = 0; a < b; ++a) {
+        result.comparisons.push_back(
+            compare(result.methods[a], result.methods[b], out.groups, settings));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace prostm

@@ -1,0 +1,67 @@
+#pragma once
+/// The conclusions that the answers of a study do and do not support.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "prostm/study/scores.hpp"
+#include "prostm/study/statistics.hpp"
+
+namespace prostm {
+
+struct AnalysisSettings {
+  double chance = 0.5;     ///< share of right answers that guessing makes, 0..1
+  double level = 0.95;     ///< of intervals, 0..1; a test is significant below 1 − level
+  double power = 0.8;      ///< for which participants are planned, 0..1
+  std::uint64_t seed = 1;  ///< of random splits, where there are too many to take all
+};
+
+/// How one method did in one scene, or in all.
+struct MethodResult {
+  std::string method;
+  Proportion correct;                   ///< over all answers
+  Interval interval;                    ///< Wilson's, as if answers were independent
+  double p_chance = 1.0;                ///< of guessing, exact
+  std::vector<double> of_participants;  ///< each one's share of right answers, in order of names
+  std::optional<TestResult> dispersion;
+  std::optional<Sensitivity> sensitivity;  ///< where questions are known and were of both kinds
+};
+
+/// A second method against the first in one scene, or in all.
+struct Comparison {
+  std::string first, second;
+  TestResult pooled_z;          ///< over answers
+  double fisher_p = 1.0;        ///< over answers, exact
+  Permutation permutation;      ///< over participants
+  std::optional<TestResult> t;  ///< over participants: Welch's, or of pairs
+  std::optional<double> d;      ///< effect size over participants
+  std::optional<int> needed;    ///< participants that would show this effect, of a group or in all
+};
+
+/// All of one scene.
+struct SceneResult {
+  std::string scene;  ///< empty: all scenes
+  std::vector<MethodResult> methods;
+  std::vector<Comparison> comparisons;  ///< of every pair of methods
+};
+
+struct Analysis {
+  AnalysisSettings settings;
+  Groups groups = Groups::Between;
+  std::vector<std::string> participants;
+  std::vector<SceneResult> scenes;  ///< all scenes together first
+};
+
+/// Methods and scenes stand in the order in which the answers have them first. @throws InputError:
+/// fewer than two participants with a method, some participants with one method and others with
+/// several, a scene that a participant lacks. @throws std::invalid_argument: a setting out of its
+/// bounds.
+Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings = {});
+
+/// A paragraph in plain words: what the data support, what they do not, and why.
+std::string in_words(const Analysis& analysis);
+
+}  // namespace prostm

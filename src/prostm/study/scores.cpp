@@ -1,0 +1,185 @@
+#include "prostm/study/scores.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "prostm/core/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/json.hpp"
+#include "prostm/core/nearest_name.hpp"
+#include "prostm/study/detail/csv.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
+
+/// The columns of a table of answers, by name.
+class AnswerTable {
+ public:
+  AnswerTable(study::CsvReader& csv, std::vector<std::string> header)
+      : csv_(csv), header_(std::move(header)) {
+    for (auto it = header_.begin(); it != header_.end(); ++it) {
+      if (!it->empty() && std::find(header_.begin(), it, *it) != it)
+        csv_.fail("the column \"" + shown_name(*it) + "\" stands there twice");
+    }
+    participant_ = needed("participant");
+    method_ = needed("method");
+    scene_ = needed("scene");
+    correct_ = needed("correct");
+    question_ = find("question");
+    yes_ = find("answer");
+    trial_ = find("trial");
+    if (question_.has_value() != yes_.has_value()) {
+      csv_.fail(std::string("the column \"") + (question_ ? "answer" : "question") +
+                "\" is missing: question and answer belong together");
+    }
+  }
+
+  Answer read(const std::vector<std::string>& row) {
+    if (row.size() != header_.size()) {
+      csv_.fail("has " + std::to_string(row.size()) + " columns instead of the header's " +
+                std::to_string(header_.size()));
+    }
+    Answer out;
+    out.participant = name(row, participant_);
+    out.method = name(row, method_);
+    out.scene = name(row, scene_);
+    out.correct = yes_or_no(row, correct_);
+    if (question_) {
+      out.question = name(row, *question_);
+      out.yes = yes_or_no(row, *yes_);
+      if (out.correct != ((out.question == out.scene) == out.yes)) {
+        csv_.fail(std::string("correct is ") + (out.correct ? "1" : "0") + ", but the answer " +
+                  (out.yes ? "1" : "0") + " to the question \"" + shown_name(out.question) +
+                  "\" is " + (out.correct ? "wrong" : "right") + " where the scene is \"" +
+                  shown_name(out.scene) + '"');
+      }
+    }
+    if (trial_ && !trials_.insert({out.participant, name(row, *trial_)}).second) {
+      csv_.fail("participant \"" + shown_name(out.participant) + "\" has trial " +
+                shown_name(row[*trial_]) + " a second time");
+    }
+    return out;
+  }
+
+ private:
+  std::optional<std::size_t> find(const char* name) const {
+    const auto at = std::find(header_.begin(), header_.end(), name);
+    if (at == header_.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - header_.begin());
+  }
+
+  std::size_t needed(const char* name) const {
+    if (const auto at = find(name)) return *at;
+    const bool semicolons = header_.size() == 1 && header_[0].find(';') != std::string::npos;
+    csv_.fail(semicolons ? std::string("columns must be separated by commas, not semicolons")
+                         : std::string("the header has no column \"") + name +
+                               "\": participant, method, scene and correct are needed");
+  }
+
+  std::string name(const std::vector<std::string>& row, std::size_t column) const {
+    const std::string& value = row[column];
+    if (value.empty()) csv_.fail(header_[column] + " is empty");
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    if (std::any_of(value.begin(), value.end(), is_control))
+      csv_.fail(header_[column] + " has a line break or another control character");
+    return value;
+  }
+
+  bool yes_or_no(const std::vector<std::string>& row, std::size_t column) const {
+    if (row[column] != "0" && row[column] != "1") {
+      csv_.fail(header_[column] + " is \"" + shown_name(row[column]) + "\": it must be 0 or 1");
+    }
+    return row[column] == "1";
+  }
+
+  study::CsvReader& csv_;
+  std::vector<std::string> header_;
+  std::size_t participant_, method_, scene_, correct_;
+  std::optional<std::size_t> question_, yes_, trial_;
+  std::set<std::pair<std::string, std::string>> trials_;
+};
+
+/// One method of the paper's study.
+struct PaperMethod {
+  const char* key;
+  const char* method;
+};
+constexpr std::array kPaperMethods = {PaperMethod{"AM", "am"}, PaperMethod{"STM", "pro-stm"}};
+/// One of its scenes.
+struct PaperScene {
+  const char* key;
+  const char* scene;
+};
+constexpr std::array kPaperScenes = {PaperScene{"_1plume", "one-plume"},
+                                     PaperScene{"_4plume", "four-plumes"}};
+
+/// Adds the answers of all participants who had one method.
+void add_paper_method(const JsonNode& figure, const PaperMethod& of, int trials,
+                      std::vector<Answer>& out) {
+  const auto column = [&](const char* key) {
+    return figure.at((std::string(of.key) + key).c_str(), "an array, right answers of each person");
+  };
+  const JsonNode all = column("_correct");
+  for (std::size_t person = 0; person < all.array_size(); ++person) {
+    int right = 0;
+    for (const PaperScene& scene : kPaperScenes) {
+      const JsonNode counts = column(scene.key);
+      if (counts.array_size() != all.array_size())
+        counts.fail("must have one number for each participant");
+      const int correct = counts.at(person).integer(0, trials / 2);
+      for (int trial = 0; trial < trials / 2; ++trial) {
+        Answer answer;
+        answer.participant = std::string(of.method) + '-' + std::to_string(person + 1);
+        answer.method = of.method;
+        answer.scene = scene.scene;
+        answer.correct = trial < correct;
+        out.push_back(answer);
+      }
+      right += correct;
+    }
+    if (right != all.at(person).integer(0, trials))
+      all.at(person).fail("must be the sum of both scenes, " + std::to_string(right));
+  }
+}
+
+}  // namespace
+
+std::vector<Answer> answers_from_csv(std::string_view text, const std::string& file) {
+  study::CsvReader csv(text, file);
+  std::vector<std::string> row;
+  if (!csv.next(row)) throw InputError(file + ": has no header");
+  AnswerTable table(csv, row);
+  std::vector<Answer> out;
+  while (csv.next(row)) out.push_back(table.read(row));
+  if (out.empty()) throw InputError(file + ": has a header and no answer");
+  return out;
+}
+
+std::vector<Answer> answers_from_paper(std::string_view text, const std::string& file) {
+  const nlohmann::json document = parse_json(text, file);
+  const JsonNode root(document, file);
+  const JsonNode figure = root.at("fig4", "the scores of the paper's Fig. 4");
+  constexpr int kMost = 1000;
+  const JsonNode trials = figure.at("trials_per_participant", "an even number of trials");
+  const int count = trials.integer(2, kMost);
+  if (count % 2 != 0) trials.fail("must be even: half of the trials had each scene");
+  std::vector<Answer> out;
+  for (const PaperMethod& method : kPaperMethods) add_paper_method(figure, method, count, out);
+  if (out.empty()) figure.fail("must have participants");
+  return out;
+}
+
+std::vector<Answer> read_answers(const std::string& path) {
+  if (path.ends_with(".csv")) return answers_from_csv(read_file(path, kMaxBytes), path);
+  if (path.ends_with(".json")) return answers_from_paper(read_file(path, kMaxBytes), path);
+  throw InputError(path + ": the name must end in .csv, answers, or .json, the paper's Fig. 4");
+}
+
+}  // namespace prostm

@@ -1,0 +1,35 @@
+#pragma once
+/// Participants' answers, as files hold them.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace prostm {
+
+/// One answer of one participant.
+struct Answer {
+  std::string participant, method;
+  std::string scene;  ///< the stimulus
+  bool correct = false;
+  std::string question = {};  ///< the scene that was asked for; empty where it is not known
+  bool yes = false;           ///< the answer to it
+};
+
+/// Reads answers from CSV (RFC 4180, UTF-8): a header with the columns participant, method, scene
+/// and correct (0 or 1); where question (a scene) and answer (0 or 1) are there too, they must
+/// agree with correct, and where trial is, a participant has each of its numbers once. Other
+/// columns are not read. @throws InputError with line and column: a column or value that is missing
+/// or wrong, a row cut off.
+std::vector<Answer> answers_from_csv(std::string_view text, const std::string& file);
+
+/// Reads the scores of the paper's Fig. 4, {"fig4": {"trials_per_participant": n, "AM_1plume":
+/// [right answers of each participant], …}}, as answers without questions: half of the trials had
+/// one plume, half four. @throws InputError: what is missing, out of bounds or contradictory.
+std::vector<Answer> answers_from_paper(std::string_view text, const std::string& file);
+
+/// Either of them, by the ending of the name: .csv or .json. @throws InputError also when it cannot
+/// be read.
+std::vector<Answer> read_answers(const std::string& path);
+
+}  // namespace prostm

@@ -1,0 +1,103 @@
+#include "prostm/study/scores.hpp"
+
+#include <string>
+
+#include "prostm/core/file.hpp"
+#include "support/input_errors.hpp"
+#include "support/shared.hpp"
+
+namespace prostm {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<Answer> read(const std::string& text) {
+  return answers_from_csv(text, "a.csv");
+}
+
+std::string refusal(const std::string& text) {
+  return test::input_error([&] { read(text); });
+}
+
+const std::string kHeader = "participant,method,scene,correct\n";
+
+TEST(Scores, ReadColumnsInAnyOrderBesideOthers) {
+  const auto answers = read(
+      "\xEF\xBB\xBFnote,correct,scene,method,participant,question,answer\r\n"
+      "\"a, \"\"b\"\"\r\nc\",1,four-plumes,am,P1,one-plume,0\r\n"
+      "\r\n"
+      ",0,one-plume,pro-stm,P2,one-plume,0");
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].participant, "P1");
+  EXPECT_EQ(answers[0].method, "am");
+  EXPECT_EQ(answers[0].scene, "four-plumes");
+  EXPECT_TRUE(answers[0].correct);
+  EXPECT_EQ(answers[0].question, "one-plume");
+  EXPECT_FALSE(answers[0].yes);
+  EXPECT_EQ(answers[1].participant, "P2");
+  EXPECT_FALSE(answers[1].correct);
+}
+
+TEST(Scores, MayLackQuestions) {
+  const auto answers = read(kHeader + "1,am,x,1\n1,am,x,0\n");
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].question, "");
+}
+
+TEST(Scores, WhatIsWrongIsSaidWithItsLine) {
+  EXPECT_THAT(refusal("participant,method,correct\n1,am,1\n"), HasSubstr("no column \"scene\""));
+  EXPECT_THAT(refusal("participant;method;scene;correct\n"), HasSubstr("not semicolons"));
+  EXPECT_THAT(refusal("scene,scene,participant,method,correct\n"), HasSubstr("twice"));
+  EXPECT_THAT(refusal("participant,method,scene,correct,answer\n"), HasSubstr("\"question\""));
+  EXPECT_THAT(refusal(kHeader), HasSubstr("no answer"));
+  EXPECT_THAT(refusal("\n\n"), HasSubstr("no header"));
+  EXPECT_THAT(refusal(kHeader + "1,am,x,1\n1,am,x\n"), HasSubstr("line 3: has 3 columns"));
+  EXPECT_THAT(refusal(kHeader + "1,am,x,yes\n"), HasSubstr("correct is \"yes\""));
+  EXPECT_THAT(refusal(kHeader + ",am,x,1\n"), HasSubstr("participant is empty"));
+  EXPECT_THAT(refusal(kHeader + "1,am,\"x,1\n"), HasSubstr("cut off"));
+  EXPECT_THAT(refusal(kHeader + "1,am,x\"y,1\n"), HasSubstr("a quote stands inside"));
+  EXPECT_THAT(refusal(kHeader + "1,am,\"x\"y,1\n"), HasSubstr("after its closing quote"));
+  EXPECT_THAT(refusal(kHeader + "\"1\n2\",am,x,1\n"), HasSubstr("participant has a line break"));
+  EXPECT_THAT(refusal(kHeader + std::string("1,a\0m,x,1\n", 10)), HasSubstr("control character"));
+}
+
+// Someone who mends a score by hand forgets the answer, or copies a line.
+TEST(Scores, EditedByHandAreRefused) {
+  const std::string header = "participant,trial,method,scene,question,answer,correct\n";
+  EXPECT_EQ(read(header + "1,1,am,x,x,1,1\n1,2,am,x,y,1,0\n2,1,am,x,y,0,1\n").size(), 3U);
+  EXPECT_THAT(refusal(header + "1,1,am,x,x,1,1\n1,2,am,x,y,1,1\n"),
+              HasSubstr("line 3: correct is 1, but the answer 1"));
+  EXPECT_THAT(refusal(header + "1,1,am,x,x,1,1\n1,1,am,x,x,1,1\n"), HasSubstr("second time"));
+}
+
+TEST(Scores, TheNameMustSayTheKind) {
+  EXPECT_THAT(test::input_error([] { read_answers("scores.txt"); }), HasSubstr(".csv"));
+  EXPECT_THAT(test::input_error([] { read_answers("/nowhere/scores.csv"); }),
+              HasSubstr("/nowhere/scores.csv"));
+}
+
+TEST(Scores, OfThePaper) {
+  const std::string scores = R"({"fig4": {"trials_per_participant": 4,
+      "AM_correct": [2, 3], "AM_1plume": [1, 1], "AM_4plume": [1, 2],
+      "STM_correct": [4], "STM_1plume": [2], "STM_4plume": [2]}})";
+  const auto answers = answers_from_paper(scores, "p.json");
+  ASSERT_EQ(answers.size(), 12U);
+  int right = 0;
+  for (const Answer& a : answers) right += a.correct && a.method == "am" ? 1 : 0;
+  EXPECT_EQ(right, 5);
+  EXPECT_EQ(answers.back().participant, "pro-stm-1");
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string text = scores;
+    text.replace(text.find(from), from.size(), to);
+    return test::input_error([&] { answers_from_paper(text, "p.json"); });
+  };
+  EXPECT_THAT(refused("[2, 3]", "[2, 4]"), HasSubstr("sum of both scenes, 3"));
+  EXPECT_THAT(refused("[1, 2]", "[1]"), HasSubstr("one number for each participant"));
+  EXPECT_THAT(refused("[1, 2]", "[1, 3]"), HasSubstr("3"));
+  EXPECT_THAT(refused("\"trials_per_participant\": 4", "\"trials_per_participant\": 5"),
+              HasSubstr("even"));
+  EXPECT_THAT(refused("STM_4plume", "STM_5plume"), HasSubstr("STM_4plume"));
+}
+
+}  // namespace
+}  // namespace prostm
