@@ -14,9 +14,11 @@ import sys
 import warnings
 
 import numpy as np
+import statsmodels.api as sm
 from scipy import stats
 from statsmodels.stats.power import TTestIndPower, TTestPower
 from statsmodels.stats.proportion import proportion_confint, proportions_ztest
+from statsmodels.tools.sm_exceptions import PerfectSeparationError
 
 SETS = 1000
 CHANCES = (0.5, 0.25, 1 / 3)
@@ -67,6 +69,39 @@ def welch(a, b):
     return test(stats.ttest_ind(b, a, equal_var=False), df)
 
 
+def logistic(random):
+    """Right answers at some levels, and the threshold and slope of a logistic regression on them; null where they are
+    further away than fit_psychometric looks."""
+    levels = np.unique(random.uniform(0, 1, size=int(random.integers(3, 9))).round(3))
+    trials = random.integers(5, 40, size=len(levels))
+    slope = 10 ** random.uniform(0.3, 1.5)
+    right = random.binomial(trials, 1 / (1 + np.exp(-slope * (levels - random.uniform(0.2, 0.8)))))
+    return {"levels": levels.tolist(), "trials": trials.tolist(), "right": right.tolist(),
+            "fit": logistic_fit(levels, trials, right)}
+
+
+def is_step(trials, right):
+    """Whether answers turn from all wrong to all right at one level or between two: any steep slope fits."""
+    mixed = np.flatnonzero((right > 0) & (right < trials))
+    if len(mixed) > 1:
+        return False
+    first, last = (mixed[0], mixed[0] + 1) if len(mixed) else (np.count_nonzero(right == 0),) * 2
+    return not right[:first].any() and not (trials - right)[last:].any()
+
+
+def logistic_fit(levels, trials, right):
+    if is_step(trials, right):
+        return None
+    model = sm.GLM(np.column_stack([right, trials - right]), sm.add_constant(levels), family=sm.families.Binomial())
+    try:
+        a, b = model.fit(tol=1e-14, maxiter=200).params
+    except PerfectSeparationError:
+        return None
+    width = np.ptp(levels)
+    found = 0.1 / width < b < 100 / width and abs(-a / b - levels[0] - width / 2) < 1.5 * width
+    return [number(-a / b), number(b)] if found else None
+
+
 def data_set(random):
     trials = int(random.integers(2, 41))
     sizes = random.integers(2, 9, size=2)
@@ -94,6 +129,7 @@ def data_set(random):
         "paired": None if not pairs or constant else test(stats.ttest_rel(y, x), len(a) - 1),
         "permutation": number(permutation(x, y)),
         "paired_permutation": number(paired_permutation(y - x)) if pairs else None,
+        "logistic": logistic(random),
         "power": [d, n, number(TTestIndPower().power(d, n, 0.05)), number(TTestPower().power(d, n, 0.05))],
     }
 

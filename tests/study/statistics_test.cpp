@@ -111,7 +111,8 @@ TEST(Statistics, OfThePapersScoresAreThose) {
             29);
 }
 
-// Values that do not vary have no test; a table that is all right or all wrong tells of no difference.
+// Values that do not vary have no test; a table that is all right or all wrong tells of no
+// difference.
 TEST(Statistics, OfAnswersThatDoNotVary) {
   EXPECT_EQ(two_proportions_z({8, 8}, {16, 16}).p, 1.0);
   EXPECT_EQ(two_proportions_z({0, 8}, {0, 16}).statistic, 0.0);

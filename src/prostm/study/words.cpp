@@ -82,12 +82,14 @@ class Words {
     std::string sentence;
     for (const MethodResult& method : analysis_.scenes.front().methods) {
       if (!method.dispersion || !is_significant(method.dispersion->p)) continue;
-      sentence += sentence.empty() ? "They are not: " : ", and ";
-      sentence += fmt::format(
-          "participants differ {:.1f} times as much with {} as independent "
-          "answers would make them ({})",
-          method.dispersion->statistic / method.dispersion->df, method.method,
-          p_text(method.dispersion->p));
+      const double ratio = method.dispersion->statistic / method.dispersion->df;
+      sentence += sentence.empty()
+                      ? fmt::format(
+                            "They are not: participants differ {:.1f} times as much with {} "
+                            "as independent answers would make them ({})",
+                            ratio, method.method, p_text(method.dispersion->p))
+                      : fmt::format(", and {:.1f} times as much with {} ({})", ratio, method.method,
+                                    p_text(method.dispersion->p));
     }
     say(sentence.empty() ? "Trials of one participant are never quite independent" : sentence);
   }
