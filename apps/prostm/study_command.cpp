@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "common.hpp"
 #include "prostm/study/analysis.hpp"
 
@@ -14,22 +17,39 @@ std::string scene_name(const SceneResult& scene) {
   return scene.scene.empty() ? std::string("all scenes") : scene.scene;
 }
 
+/// The width of a column of names, its heading's at least.
+template <class Names>
+std::size_t width_of(std::string_view heading, const Names& names) {
+  std::size_t width = heading.size();
+  for (const std::string& name : names) width = std::max(width, name.size());
+  return width;
+}
+
+std::size_t scene_width(const Analysis& analysis) {
+  std::vector<std::string> names;
+  for (const SceneResult& scene : analysis.scenes) names.push_back(scene_name(scene));
+  return width_of("scene", names);
+}
+
 void print_methods(std::FILE* out, const Analysis& analysis) {
-  fmt::print(out, "  {:<14} {:<12} {:>9} {:>6} {:>15} {:>8} {:>7} {:>7}  {}\n", "scene", "method",
-             "right", "%", "interval %", "chance p", "χ²/df", "p", "d′, c");
+  std::vector<std::string> names;
+  for (const MethodResult& m : analysis.scenes.front().methods) names.push_back(m.method);
+  const std::size_t scenes = scene_width(analysis), methods = width_of("method", names);
+  fmt::print(out, "  {:<{}}  {:<{}} {:>13} {:>6} {:>15} {:>8} {:>7} {:>7}  {}\n", "scene", scenes,
+             "method", methods, "right", "%", "interval %", "chance p", "χ²/df", "p", "d′, c");
   for (const SceneResult& scene : analysis.scenes) {
     for (const MethodResult& m : scene.methods) {
-      fmt::print(out, "  {:<14} {:<12} {:>4}/{:<4} {:>6.1f} {:>6.1f} to {:>5.1f} {:>8}",
-                 scene_name(scene), m.method, m.correct.successes, m.correct.trials,
-                 100.0 * m.correct.value(), 100.0 * m.interval.low, 100.0 * m.interval.high,
-                 p_text(m.p_chance));
+      fmt::print(out, "  {:<{}}  {:<{}} {:>6}/{:<6} {:>6.1f} {:>6.1f} to {:>5.1f} {:>8}",
+                 scene_name(scene), scenes, m.method, methods, m.correct.successes,
+                 m.correct.trials, 100.0 * m.correct.value(), 100.0 * m.interval.low,
+                 100.0 * m.interval.high, p_text(m.p_chance));
       fmt::print(out, " {:>7} {:>7}",
                  m.dispersion ? fmt::format("{:.1f}", m.dispersion->statistic / m.dispersion->df)
                               : std::string("-"),
                  m.dispersion ? p_text(m.dispersion->p) : std::string("-"));
       fmt::print(out, "  {}\n",
                  m.sensitivity
-                     ? fmt::format("{:.2f}, {:.2f}", m.sensitivity->d_prime, m.sensitivity->bias)
+                     ? thousandths(m.sensitivity->d_prime) + ", " + thousandths(m.sensitivity->bias)
                      : std::string("-"));
     }
   }
@@ -37,14 +57,19 @@ void print_methods(std::FILE* out, const Analysis& analysis) {
 
 void print_comparisons(std::FILE* out, const Analysis& analysis) {
   const bool within = analysis.groups == Groups::Within;
-  fmt::print(out, "\n  {:<14} {:<22} {:>7} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n", "scene",
-             "methods", "z", "p", "exact p", "permutation", within ? "paired t" : "Welch's t", "d",
-             "needed");
+  std::vector<std::string> pairs;
+  for (const Comparison& c : analysis.scenes.front().comparisons)
+    pairs.push_back(c.first + ", " + c.second);
+  const std::size_t scenes = scene_width(analysis), methods = width_of("methods", pairs);
+  fmt::print(out, "\n  {:<{}}  {:<{}} {:>7} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n", "scene",
+             scenes, "methods", methods, "z", "p", "exact p", "permutation",
+             within ? "paired t" : "Welch's t", "d", "needed");
   for (const SceneResult& scene : analysis.scenes) {
     for (const Comparison& c : scene.comparisons) {
-      fmt::print(out, "  {:<14} {:<22} {:>7.3f} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n",
-                 scene_name(scene), c.first + ", " + c.second, c.pooled_z.statistic,
-                 p_text(c.pooled_z.p), p_text(c.fisher_p), p_text(c.permutation.p),
+      fmt::print(out, "  {:<{}}  {:<{}} {:>7.3f} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n",
+                 scene_name(scene), scenes, c.first + ", " + c.second, methods,
+                 c.pooled_z.statistic, p_text(c.pooled_z.p), p_text(c.fisher_p),
+                 p_text(c.permutation.p),
                  c.t ? fmt::format("{:.2f} (df {:.1f}) {}", c.t->statistic, c.t->df, p_text(c.t->p))
                      : std::string("-"),
                  c.d ? fmt::format("{:.2f}", *c.d) : std::string("-"),

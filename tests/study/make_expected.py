@@ -70,8 +70,8 @@ def welch(a, b):
 
 
 def logistic(random):
-    """Right answers at some levels, and the threshold and slope of a logistic regression on them; null where they are
-    further away than fit_psychometric looks."""
+    """Right answers at some levels, and the threshold and slope of a logistic regression on them; "step" where any
+    steep slope fits, null where they are further away than fit_psychometric looks or statsmodels finds none."""
     levels = np.unique(random.uniform(0, 1, size=int(random.integers(3, 9))).round(3))
     trials = random.integers(5, 40, size=len(levels))
     slope = 10 ** random.uniform(0.3, 1.5)
@@ -91,11 +91,11 @@ def is_step(trials, right):
 
 def logistic_fit(levels, trials, right):
     if is_step(trials, right):
-        return None
+        return "step"
     model = sm.GLM(np.column_stack([right, trials - right]), sm.add_constant(levels), family=sm.families.Binomial())
     try:
         a, b = model.fit(tol=1e-14, maxiter=200).params
-    except PerfectSeparationError:
+    except PerfectSeparationError:  # also raised where two shares between 0 and 1 are met exactly
         return None
     width = np.ptp(levels)
     found = 0.1 / width < b < 100 / width and abs(-a / b - levels[0] - width / 2) < 1.5 * width

@@ -9,6 +9,16 @@
 namespace prostm {
 namespace {
 
+/// The logarithm of the likelihood of a share of right answers, without the binomial coefficient.
+double log_likelihood(const Proportion& correct, double share) {
+  constexpr double kLeast = 1e-300;  // keeps the logarithm finite
+  const int wrong = correct.trials - correct.successes;
+  double sum = 0.0;
+  if (correct.successes > 0) sum += correct.successes * std::log(std::max(share, kLeast));
+  if (wrong > 0) sum += wrong * std::log(std::max(1.0 - share, kLeast));
+  return sum;
+}
+
 /// The likelihood of answers as a function of threshold and the logarithm of the slope.
 class Likelihood {
  public:
@@ -36,15 +46,29 @@ class Likelihood {
   double at(double threshold, double log_slope) const {
     const Psychometric psi = function(threshold, log_slope);
     double sum = 0.0;
-    for (const LevelScore& score : scores_) {
-      constexpr double kLeast = 1e-300;  // keeps the logarithm finite
-      const double right = psi.at(score.level);
-      const int wrong = score.correct.trials - score.correct.successes;
-      if (score.correct.successes > 0)
-        sum += score.correct.successes * std::log(std::max(right, kLeast));
-      if (wrong > 0) sum += wrong * std::log(std::max(1.0 - right, kLeast));
-    }
+    for (const LevelScore& score : scores_)
+      sum += log_likelihood(score.correct, psi.at(score.level));
     return sum;
+  }
+
+  /// The largest likelihood of a function that jumps from guessing to the most, at one of the
+  /// levels, whose own share is then free, or between two.
+  double of_best_step() const {
+    double best = -HUGE_VAL;
+    for (const LevelScore& at : scores_) {
+      for (const double free : {guess_, 1.0 - lapse_, at.correct.value()}) {
+        const double here = std::clamp(free, guess_, 1.0 - lapse_);
+        double sum = 0.0;
+        for (const LevelScore& score : scores_) {
+          const double right = score.level < at.level   ? guess_
+                               : score.level > at.level ? 1.0 - lapse_
+                                                        : here;
+          sum += log_likelihood(score.correct, right);
+        }
+        best = std::max(best, sum);
+      }
+    }
+    return best;
   }
 
   /// The largest likelihood with this threshold, over slopes.
@@ -181,8 +205,7 @@ std::optional<PsychometricFit> fit_psychometric(std::span<const LevelScore> scor
                       peak.log_slope < likelihood.highest_slope();
   // a step that fits as well as any slope: the likelihood only grows with the slope
   constexpr double kAsWell = 1e-6;
-  const bool is_step =
-      likelihood.over_thresholds(likelihood.highest_slope()) > peak.value - kAsWell;
+  const bool is_step = likelihood.of_best_step() > peak.value - kAsWell;
   if (!inside || is_step) return std::nullopt;
   const double bound =
       peak.value - 0.5 * boost::math::quantile(boost::math::chi_squared(1.0), level);
