@@ -13,15 +13,18 @@ export interface Actions {
 /// The elements after a control's label.
 interface Made<C> {
   parts: HTMLElement[];
-  /// @param force shows the program's value, whatever somebody is about to set.
+  /// @param force shows the value, whatever somebody is typing.
   show(control: C, force: boolean): void;
 }
 
 export interface Field {
   root: HTMLElement;
   error: HTMLElement;
+  /// @param force shows the program's value, whatever somebody is about to set.
   show(control: Control, force?: boolean): void;
 }
+
+const kAnswered = 600; // a value set here stands until the program must have answered [ms]
 
 const kWordsInARow = 26; // letters of all choices together that still fit beside each other
 
@@ -61,23 +64,18 @@ export function withUnit(value: number, unit: string | undefined): string {
   return `${short(value)}${unit ? ` ${unit}` : ""}`;
 }
 
-/// A slider and a box for the number. While somebody moves one of them the program's echo does not take it away.
+/// A slider and a box for the number. While somebody types no value takes the digits away.
 function numbers(control: NumberControl, id: string, act: Actions): Made<NumberControl> {
   const bounds = { min: control.min, max: control.max, step: control.step, "aria-describedby": `${id}-error` };
   const slider = make("input", { type: "range", id, ...bounds });
   const name = `${control.label}, as a number${control.unit ? ` in ${control.unit}` : ""}`;
   const box = make("input", { type: "number", ...bounds, "aria-label": name });
-  let held = 0; // until then the page's own value stands [ms]
   let typing = false;
   let inForce = control;
   const paint = () => {
     const share = (Number(slider.value) - Number(slider.min)) / (Number(slider.max) - Number(slider.min) || 1);
     slider.style.setProperty("--share", `${100 * share}%`);
     slider.setAttribute("aria-valuetext", withUnit(Number(slider.value), control.unit));
-  };
-  const go = (value: number) => {
-    held = performance.now() + 600;
-    act.set(control.id, value);
   };
   const put = (c: NumberControl) => {
     slider.value = String(c.value);
@@ -87,20 +85,20 @@ function numbers(control: NumberControl, id: string, act: Actions): Made<NumberC
   slider.addEventListener("input", () => {
     box.value = slider.value;
     paint();
-    go(Number(slider.value));
+    act.set(control.id, Number(slider.value));
   });
   box.addEventListener("input", () => (typing = true));
   box.addEventListener("change", () => {
     typing = false;
     const value = Number(box.value);
-    if (box.value.trim() !== "" && Number.isFinite(value)) return go(value);
+    if (box.value.trim() !== "" && Number.isFinite(value)) return act.set(control.id, value);
     const { min, max, unit, value: now } = inForce;
     const stays = `it stays at ${withUnit(now, unit)}`;
     act.refuse(control.id, `Give a number from ${short(min)} to ${withUnit(max, unit)}; ${stays}.`);
   });
   box.addEventListener("blur", () => {
     typing = false;
-    if (performance.now() >= held) put(inForce);
+    put(inForce);
   });
   return {
     parts: [box, make("span", { class: "unit" }, control.unit ?? ""), slider],
@@ -110,9 +108,8 @@ function numbers(control: NumberControl, id: string, act: Actions): Made<NumberC
         input.disabled = !c.enabled;
         Object.assign(input, { min: String(c.min), max: String(c.max), step: String(c.step) });
       }
-      if (force) [held, typing] = [0, false];
-      if (typing || (performance.now() < held && Number(slider.value) !== c.value)) return;
-      put(c);
+      typing &&= !force;
+      if (!typing) put(c);
     },
   };
 }
@@ -140,7 +137,18 @@ export function makeField(control: Control, act: Actions): Field {
   const id = `control-${control.id}`;
   const letters = control.kind === "choice" ? control.choices.reduce((n, c) => n + c.label.length + 2, 0) : Infinity;
   const segmented = letters <= kWordsInARow;
-  const made = makeParts(control, id, segmented, act);
+  let last = control; // as the program told it
+  let wanted: Value | undefined; // set here a moment ago: states that left the program before do not take it away
+  let answer: ReturnType<typeof setTimeout> | undefined;
+
+  const set = (of: string, value: Value) => {
+    clearTimeout(answer);
+    answer = setTimeout(() => { wanted = undefined; show(last); }, kAnswered);
+    wanted = value;
+    show(last);
+    act.set(of, value);
+  };
+  const made = makeParts(control, id, segmented, { ...act, set });
   const label = segmented
     ? make("span", { class: "label", id: `${id}-label` }, control.label)
     : make("label", { class: "label", for: id }, control.label);
@@ -148,13 +156,12 @@ export function makeField(control: Control, act: Actions): Field {
   for (const part of made.parts) part.setAttribute("aria-description", control.help);
   const attributes = { class: `field ${control.kind}`, "data-control": control.id, title: control.help };
   const root = make("div", attributes, label, ...made.parts, error);
-  return {
-    root,
-    error,
-    show: (c, force = false) => {
-      root.dataset.value = String(c.value);
-      root.classList.toggle("disabled", !c.enabled);
-      (made.show as (c: Control, force: boolean) => void)(c, force);
-    },
+  const show = (c: Control, force = false) => {
+    last = c;
+    if (force) wanted = undefined;
+    root.dataset.value = String(c.value);
+    root.classList.toggle("disabled", !c.enabled);
+    (made.show as (c: Control, force: boolean) => void)({ ...c, value: wanted ?? c.value } as Control, force);
   };
+  return { root, error, show };
 }

@@ -365,6 +365,36 @@ describe("two pages", () => {
   });
 });
 
+describe("a page far from its program", () => {
+  it("keeps what was just set when a state comes that left the program before", async () => {
+    const far = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+    let state = "", delayed = 0;
+    await far.routeWebSocket(/.*/, (socket) => {
+      const server = socket.connectToServer();
+      server.onMessage((message) => {
+        if (typeof message === "string" && JSON.parse(message).type === "state") state = message;
+        socket.send(message);
+      });
+      socket.onMessage((message) => {
+        if (JSON.parse(String(message)).type !== "set") return server.send(message);
+        ++delayed;
+        socket.send(state);
+        setTimeout(() => server.send(message), 200);
+      });
+    });
+    await far.goto(program.address + kHash);
+    await until(far, () => (window.prostm?.frames ?? 0) > 2, 0, "frames in the page");
+    for (const to of [false, true]) {
+      const box = far.locator('[data-control="array_width"] input');
+      await box.click();
+      for (let i = 0; i < 20; ++i) expect(await box.isChecked()).toBe(to);
+      await becomes("array_width", to);
+    }
+    expect(delayed).toBe(2);
+    await far.close();
+  });
+});
+
 describe("looks", () => {
   /// Contrast of WCAG 2.2 between two colours that the page has.
   const contrast = (front: string, back: string) => page.evaluate(([f, b]) => {
