@@ -138,8 +138,9 @@ void read_group(const toml::table& table, const SettingsGroup& group, const std:
 /// @throws InputError that no group has this name; a setting that stands outside its group is told
 /// where it belongs.
 [[noreturn]] void refuse_group(const toml::key& key, const toml::node& node,
-                               const std::vector<SettingsGroup>& groups, const std::string& file) {
-  std::vector<std::string> known, homes;
+                               const std::vector<SettingsGroup>& groups,
+                               const std::vector<std::string>& others, const std::string& file) {
+  std::vector<std::string> known = others, homes;
   for (const SettingsGroup& group : groups) {
     known.push_back(group.name);
     if (is_among(names_of(group), key.str()))
@@ -163,14 +164,23 @@ std::vector<std::string> read_settings(const std::string& path,
 }
 
 std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
-                                            const std::vector<SettingsGroup>& groups) {
+                                            const std::vector<SettingsGroup>& groups,
+                                            const std::vector<std::string>& inside,
+                                            const std::vector<std::string>& others) {
   std::vector<std::string> given;
   const toml::table document = parse_toml(text, name);
-  for (const auto& [key, node] : document) {
+  const toml::table* whole = &document;
+  for (const std::string& key : inside) {
+    const toml::node* node = whole->get(key);
+    if (node == nullptr || !node->is_table()) return given;
+    whole = node->as_table();
+  }
+  for (const auto& [key, node] : *whole) {
     const std::string_view typed = key.str();
     const auto group = std::find_if(groups.begin(), groups.end(),
                                     [typed](const auto& g) { return g.name == typed; });
-    if (group == groups.end()) refuse_group(key, node, groups, name);
+    if (group == groups.end() && is_among(others, typed)) continue;
+    if (group == groups.end()) refuse_group(key, node, groups, others, name);
     const toml::table* table = node.as_table();
     if (table == nullptr) {
       throw InputError(fmt::format("{}, line {}: {} must be a group of settings, written [{}]",
@@ -179,6 +189,30 @@ std::vector<std::string> settings_from_toml(std::string_view text, const std::st
     read_group(*table, *group, name, given);
   }
   return given;
+}
+
+std::vector<std::string> tables_in_toml(std::string_view text, const std::string& name,
+                                        const std::string& table) {
+  const toml::table document = parse_toml(text, name);
+  const toml::node* outer = document.get(table);
+  if (outer == nullptr) return {};
+  if (!outer->is_table()) {
+    throw InputError(fmt::format("{}, line {}: {} must be tables, written [{}.NAME]", name,
+                                 outer->source().begin.line, table, table));
+  }
+  std::vector<std::pair<toml::source_index, std::string>> found;
+  for (const auto& [key, node] : *outer->as_table()) {
+    if (!node.is_table()) {
+      throw InputError(fmt::format("{}, line {}: {}.{} must be a table, written [{}.{}]", name,
+                                   key.source().begin.line, table, shown_name(key.str()), table,
+                                   shown_name(key.str())));
+    }
+    found.emplace_back(key.source().begin.line, key.str());
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> names;
+  for (auto& [line, key] : found) names.push_back(std::move(key));
+  return names;
 }
 
 nlohmann::ordered_json settings_to_json(const std::vector<SettingsGroup>& groups) {

@@ -16,8 +16,17 @@ namespace prostm {
 /// it gives, "plan.sigma".
 std::vector<std::string> read_settings(const std::string& path,
                                        const std::vector<SettingsGroup>& groups);
+/// @param inside the table that holds the groups, {"method", "am"}; empty: the document.
+/// @param others tables beside the groups that are read elsewhere.
 std::vector<std::string> settings_from_toml(std::string_view text, const std::string& name,
-                                            const std::vector<SettingsGroup>& groups);
+                                            const std::vector<SettingsGroup>& groups,
+                                            const std::vector<std::string>& inside = {},
+                                            const std::vector<std::string>& others = {});
+
+/// Returns the names of the tables inside a table of the document, in the order of their lines;
+/// none where it is missing. @throws InputError: it, or something in it, is no table.
+std::vector<std::string> tables_in_toml(std::string_view text, const std::string& name,
+                                        const std::string& table);
 
 /// {"plan": {"paths": 4, …}, …}
 nlohmann::ordered_json settings_to_json(const std::vector<SettingsGroup>& groups);

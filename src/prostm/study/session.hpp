@@ -1,0 +1,159 @@
+#pragma once
+/// One participant's way through a study: a state without threads or clocks, which is told what
+/// happens and says what is to be presented.
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "prostm/core/geometry.hpp"
+#include "prostm/core/names.hpp"
+#include "prostm/stimulus/stimulus_gate.hpp"
+#include "prostm/study/order.hpp"
+#include "prostm/study/response_file.hpp"
+
+namespace prostm {
+
+enum class StudyPhase : std::uint8_t {
+  Consent,     ///< the participant reads, and agrees or leaves
+  About,       ///< the participant's answers about themselves
+  Training,    ///< scenes are explored
+  Ready,       ///< before the first trial of a method, and after a pause or a crash
+  Settling,    ///< silence: the smoke develops, and the gate is waited for
+  Presenting,  ///< the stimulus is felt, and asked about
+  Break,
+  Paused,
+  Done,      ///< all answers are there
+  Withdrawn  ///< the participant left
+};
+template <>
+inline constexpr std::array<std::string_view, 10> kNames<StudyPhase> = {
+    "consent",    "about", "training", "ready", "settling",
+    "presenting", "break", "paused",   "done",  "withdrawn"};
+
+/// An act of somebody at the study.
+struct StudyAct {
+  enum class Do : std::uint8_t {
+    Next,     ///< goes on from Ready, Break and Paused; ends Training
+    Anyway,   ///< presents a trial that the gate does not let pass
+    Answer,   ///< to the question: `yes`
+    Pause,    ///< a trial under way is presented again
+    Consent,  ///< the participant agrees
+    About,    ///< `about`
+    Explore,  ///< in Training: the scene `scene`
+    Withdraw
+  } what = Do::Next;
+  bool yes = false;
+  int scene = 0;
+  nlohmann::ordered_json about = {};  ///< texts by name
+};
+template <>
+inline constexpr std::array<std::string_view, 8> kNames<StudyAct::Do> = {
+    "next", "anyway", "answer", "pause", "consent", "about", "explore", "withdraw"};
+
+/// The run as it is now.
+struct StudySight {
+  double time = 0.0;               ///< of a clock that never jumps [s]
+  double utc = 0.0;                ///< since 1970 [s]
+  bool in_force = false;           ///< whether the run plays what is wanted
+  std::optional<Pose> palm;        ///< in D; none without a hand
+  std::optional<GateResult> gate;  ///< of the newest target
+  double target_force = 0.0;       ///< of it [N]
+  double rendered_force = 0.0;     ///< of what is rendered for it [N]
+};
+
+/// The stimulus that is to be presented.
+struct StudyWanted {
+  int method = 0, scene = -1;  ///< places in the protocol; scene −1: still air
+  bool sound = false;
+  bool picture = false;  ///< the participant sees the simulation
+  bool operator==(const StudyWanted&) const = default;
+};
+
+class StudySession {
+ public:
+  /// Goes on where the file ends; a new file gets its first line. Both must outlive this.
+  /// @param facts of the run for the first line: version, device, limits.
+  /// @throws InputError: the file is of another protocol or participant, or has all answers.
+  StudySession(const Protocol& protocol, int participant, ResponseFile& file,
+               const nlohmann::ordered_json& facts, const StudySight& now);
+
+  /// Time passes. @return what is to be presented from now on.
+  const StudyWanted& look(const StudySight& sight);
+
+  /// @return an empty text, or the sentence that says why not. An answer that could not be written
+  /// is kept, and written before anything else happens.
+  std::string take(const StudyAct& act, const StudySight& sight);
+
+  StudyPhase phase() const { return phase_; }
+  const StudyWanted& wanted() const { return wanted_; }
+  const Protocol& protocol() const { return protocol_; }
+  int participant() const { return participant_; }
+  std::size_t trials_done() const { return done_; }
+  const std::vector<Trial>& trials() const { return trials_; }
+  /// The trial that is next or under way. @pre not all are done.
+  const Trial& trial() const { return trials_[done_]; }
+  double training_left() const { return training_left_; }  ///< [s]
+  int explored() const { return explored_; }               ///< scene of Training
+  const std::optional<GateResult>& gate() const { return gate_; }
+  /// Why the trial does not begin, as things are; empty where it does.
+  const std::string& waits_for() const { return waits_for_; }
+  /// Whether the last answer was right; nothing before the first and without feedback.
+  std::optional<bool> feedback() const { return feedback_; }
+  /// The sentence of a write that failed, until one succeeds.
+  const std::string& problem() const { return problem_; }
+  /// Conditions whose strength differs by more than the protocol lets pass; empty if none.
+  std::string strengths() const;
+
+ private:
+  struct Strength {
+    double target = 0.0, rendered = 0.0;  // sums over looks [N]
+    int looks = 0;
+  };
+
+  void resume();
+  void enter(StudyPhase phase, double time);
+  void begin_method(double time);
+  void settle(const StudySight& sight);
+  void present(const StudySight& sight);
+  std::string answer(bool yes, const StudySight& sight);
+  std::string end_training(const StudySight& sight);
+  std::string write(ResponseLine line, const StudySight& sight);
+  std::string write_rest(double time);
+  void add_strength(const Trial& trial, double target, double rendered);
+  void watch_clock(const StudySight& sight);
+  ResponseLine trial_line(bool yes, const StudySight& sight) const;
+  bool starts_method() const;
+
+  const Protocol& protocol_;
+  const int participant_;
+  ResponseFile& file_;
+  std::vector<Trial> trials_;
+  std::size_t done_ = 0;  // trials whose answers are on the disk
+  StudyPhase phase_ = StudyPhase::Ready;
+  StudyWanted wanted_;
+  double since_ = 0.0;         // the phase began [s]
+  double in_force_at_ = -1.0;  // since when what is wanted is, in Settling; −1: it is not
+  double training_left_ = 0.0, looked_ = 0.0;  // [s]
+  int explored_ = 0;
+  bool anyway_ = false, ended_ = false;  // the gate is passed over; the stimulus is over
+  std::optional<GateResult> gate_, gate_at_onset_;
+  std::string waits_for_, problem_;
+  std::optional<bool> feedback_;
+  std::vector<ResponseLine> unwritten_;
+  double tried_ = 0.0;                      // to write them [s]
+  double utc_offset_ = 0.0;                 // of the two clocks [s]
+  Strength strength_;                       // of the trial
+  std::vector<Strength> strengths_;         // of each method and scene, over trials
+  nlohmann::ordered_json hand_;             // of the trial: [s, x, y, z in mm, quaternion]
+  double hand_at_ = 0.0, hand_gone_ = 0.0;  // [s]
+};
+
+/// UTC as ISO 8601 with milliseconds.
+std::string utc_text(double seconds_since_1970);
+
+}  // namespace prostm
