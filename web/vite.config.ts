@@ -10,7 +10,9 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1500,
     rollupOptions: {
-      output: { entryFileNames: "page.js", chunkFileNames: "[name].js", assetFileNames: "[name][extname]" },
+      // the page of a run, and the two of a study
+      input: ["index.html", "experimenter.html", "participant.html"],
+      output: { entryFileNames: ({ name }) => (name === "index" ? "page.js" : "[name].js"), chunkFileNames: "[name].js", assetFileNames: "[name][extname]" },
     },
   },
 });

@@ -59,12 +59,8 @@ void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option*
   for (CLI::Option* option : {cell, width, invert, frame}) option->needs(of);
 }
 
-void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
-                  std::string& hand, std::optional<double>& hand_size) {
-  add_common(command, common);
-  add_name(command, "--scene", scene,
-           "one-plume (default), two-plumes, three-plumes, four-plumes, ring, pulsing, wind, or "
-           "still-air");
+void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,
+              std::optional<double>& hand_size) {
   add_input_or_name(
       command, common.files, "--hand", hand, names_recording,
       "a recording (.hands.jsonl, or Leap JSON), scripted, study, leap://HOST:PORT, openxr, or "
@@ -76,6 +72,15 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
   add_input_or_name(command, common.files, "--tracker", common.tracker, names_json,
                     "where the tracker is: centre (default), ultraleap-kit or another kit, or a "
                     "pose file (.json)");
+}
+
+void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
+                  std::string& hand, std::optional<double>& hand_size) {
+  add_common(command, common);
+  add_name(command, "--scene", scene,
+           "one-plume (default), two-plumes, three-plumes, four-plumes, ring, pulsing, wind, or "
+           "still-air");
+  add_hand(command, common, hand, hand_size);
   command.add_option("--grid", common.grid, "cells along each edge of the fluid's box");
   add_array(command, common, "usx (default), autd3, or an array file (.json)");
 }

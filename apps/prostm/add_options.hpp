@@ -66,6 +66,9 @@ CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& 
 /// How the file of a field is read. @param of the option that names the file, unless it is always
 /// there.
 void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of = nullptr);
+/// --hand, --hand-size and --tracker.
+void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,
+              std::optional<double>& hand_size);
 /// Those of add_common(), and what a run is made of.
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand, std::optional<double>& hand_size);

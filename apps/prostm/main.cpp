@@ -2,6 +2,7 @@
 /// status 2.
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -21,11 +22,8 @@ namespace {
 
 using namespace prostm::app;
 
-/// The page of a run.
-void add_view(CLI::App& command, RunOptionsGiven& o) {
-  auto* view = command.add_flag("--view", o.view,
-                                "serve the page that shows and steers the run (docs/viewing.md)");
-  auto* stay = command.add_flag("--stay", o.stay, "go on after --seconds, until Ctrl-C");
+/// Where pages are served. @return the two options.
+std::array<CLI::Option*, 2> add_address(CLI::App& command, RunOptionsGiven& o) {
   auto* port =
       command.add_option("--view-port", o.view_port,
                          "port of the page, 0 for any; default: 8470, or the next free one");
@@ -34,6 +32,15 @@ void add_view(CLI::App& command, RunOptionsGiven& o) {
           .add_option("--view-address", o.view_address,
                       "address to serve the page on; default: 127.0.0.1, this machine alone")
           ->type_name("ADDRESS");
+  return {port, address};
+}
+
+/// The page of a run.
+void add_view(CLI::App& command, RunOptionsGiven& o) {
+  auto* view = command.add_flag("--view", o.view,
+                                "serve the page that shows and steers the run (docs/viewing.md)");
+  auto* stay = command.add_flag("--stay", o.stay, "go on after --seconds, until Ctrl-C");
+  const auto [port, address] = add_address(command, o);
   auto* tracker_file =
       command
           .add_option("--tracker-file", o.tracker_file,
@@ -294,10 +301,37 @@ void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help
   });
 }
 
-void add_study(CLI::App& app, Work& work) {
-  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
-  study->require_subcommand(1);
-  auto* command = study->add_subcommand("analyse", "what answers do and do not support");
+void add_study_run(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand("run", "leads a participant through a protocol");
+  auto o = std::make_shared<StudyRunOptionsGiven>();
+  RunOptionsGiven& run = o->run;
+  add_input(*command, run.common.files, "protocol", o->protocol,
+            "what is presented and asked (.toml, docs/study.md)")
+      ->required();
+  command->add_option("--participant", o->participant, "number of the participant, from 1")
+      ->required();
+  command->add_option("--answers", o->folder, "folder of the response files")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  command->add_flag("--resume", o->resume, "go on with a participant who has begun");
+  run.hand = "study";
+  add_hand(*command, run.common, run.hand, run.hand_size);
+  add_input(*command, run.common.files, "--settings", run.common.settings_file,
+            "settings that all methods begin with, a TOML file (docs/files.md)");
+  add_device(*command, run.common);
+  add_array(*command, run.common, "usx (default), autd3, or an array file (.json)");
+  add_lock_memory(*command, run.lock_memory);
+  add_address(*command, run);
+  command->footer(
+      "Example:\n  prostm study run data/protocols/one-plume-or-four.toml --participant 1 --hand "
+      "leap://127.0.0.1:6437");
+  command->callback([o, &work] {
+    work = {&o->run.common.files, [o] { return study_run_command(*o); }};
+  });
+}
+
+void add_analyse(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand("analyse", "what answers do and do not support");
   auto o = std::make_shared<AnalyseOptionsGiven>();
   add_input(*command, o->files, "answers", o->answers,
             "answers (.csv, docs/study.md), or the scores of the paper's Fig. 4 (.json)")
@@ -313,7 +347,13 @@ void add_study(CLI::App& app, Work& work) {
   add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm study analyse data/made-up-answers.csv");
   command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
-  add_unbuilt(*study, "run", "the trials of a protocol");
+}
+
+void add_study(CLI::App& app, Work& work) {
+  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
+  study->require_subcommand(1);
+  add_study_run(*study, work);
+  add_analyse(*study, work);
   add_unbuilt(*study, "simulate", "simulated observers in place of people");
 }
 

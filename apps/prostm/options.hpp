@@ -121,6 +121,14 @@ struct CheckOptionsGiven {
   std::string json;
 };
 
+struct StudyRunOptionsGiven {
+  RunOptionsGiven run;  ///< hand, device, settings and pages
+  std::string protocol;
+  int participant = 0;
+  std::string folder = "answers";  ///< of the response files
+  bool resume = false;
+};
+
 struct AnalyseOptionsGiven {
   Files files;
   std::string answers, json;
@@ -141,6 +149,7 @@ int selftest_command(const SelftestOptionsGiven& options);
 int soak_command(const SoakOptionsGiven& options);
 int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);
+int study_run_command(const StudyRunOptionsGiven& options);
 int analyse_command(const AnalyseOptionsGiven& options);
 
 }  // namespace prostm::app

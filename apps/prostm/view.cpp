@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "common.hpp"
 #include "prostm/core/input_error.hpp"
@@ -12,6 +13,8 @@
 
 namespace prostm::app {
 namespace {
+
+constexpr std::string_view kExperimenter = "/experimenter.html", kParticipant = "/participant.html";
 
 /// Returns the kind of hands that `--hand` names.
 std::string source_of(const std::string& hand) {
@@ -65,25 +68,57 @@ std::unique_ptr<HandSource> View::behind_the_page(std::unique_ptr<HandSource> ba
   return hands;
 }
 
-void View::serve(Pipeline& pipeline, std::FILE* out) {
-  link_.hands->set_tracker_pose(pipeline.world_stage().tracker_pose());
+ViewHello View::hello(Pipeline& pipeline) const {
   const GridShape& grid = pipeline.world_stage().world().grid();
   const PipelineSettings& s = settings();
-  source_ = std::make_unique<PipelineView>(
-      link_, ViewHello{PROSTM_VERSION, pipeline.device().info().name, s.transducers.name,
-                       s.transducers.position, grid.p_DF, grid.cell * grid.nx});
+  return {PROSTM_VERSION,     pipeline.device().info().name,
+          s.transducers.name, s.transducers.position,
+          grid.p_DF,          grid.cell * grid.nx};
+}
+
+void View::start(bool guests) {
   ViewSettings settings;
   if (given_.view_address) settings.address = *given_.view_address;
   settings.port = given_.view_port;
-  server_ = std::make_unique<ViewServer>(settings, *source_, page_files());
-  fmt::print(out, "page: {}\n", server_->url());
+  settings.guests = guests;
+  server_ = std::make_unique<ViewServer>(settings, *source_, files_);
+}
+
+void View::warn(std::FILE* out) const {
   if (!server_->loopback()) {
     fmt::print(out,
                "The page listens on {}: anyone who reaches that address can see and steer this "
                "run.\n",
-               settings.address);
+               given_.view_address.value_or(""));
   }
   std::fflush(out);
+}
+
+void View::serve(Pipeline& pipeline, std::FILE* out) {
+  link_.hands->set_tracker_pose(pipeline.world_stage().tracker_pose());
+  source_ = std::make_unique<PipelineView>(link_, hello(pipeline));
+  for (const PageFile& file : page_files())
+    if (file.path != kExperimenter && file.path != kParticipant) files_.push_back(file);
+  start(false);
+  fmt::print(out, "page: {}\n", server_->url());
+  warn(out);
+}
+
+StudyView& View::serve(Pipeline& pipeline, StudySession& session, std::FILE* out) {
+  link_.hands->set_tracker_pose(pipeline.world_stage().tracker_pose());
+  auto view = std::make_unique<StudyView>(link_, hello(pipeline), session);
+  StudyView& study = *view;
+  source_ = std::move(view);
+  for (PageFile file : page_files()) {
+    if (file.path == "/") continue;  // the page of a run
+    if (file.path == kExperimenter) file.path = "/";
+    if (file.path == kParticipant) file.path = "/participant";
+    files_.push_back(file);
+  }
+  start(true);
+  fmt::print(out, "experimenter: {0}\nparticipant:  {0}participant\n", server_->url());
+  warn(out);
+  return study;
 }
 
 void View::announce(std::FILE* out) const {

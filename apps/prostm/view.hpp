@@ -1,14 +1,16 @@
 #pragma once
-/// The page of `prostm run --view`.
+/// The pages of `prostm run --view` and `prostm study run`.
 
 #include <cstdio>
 #include <memory>
+#include <vector>
 
 #include "options.hpp"
 #include "prostm/pipeline/live.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/viewer/pipeline_view.hpp"
 #include "prostm/viewer/server.hpp"
+#include "prostm/viewer/study_view.hpp"
 
 namespace prostm::app {
 
@@ -27,6 +29,10 @@ class View {
   std::unique_ptr<HandSource> behind_the_page(std::unique_ptr<HandSource> base);
   /// Starts the server, and prints where it is.
   void serve(Pipeline& pipeline, std::FILE* out);
+  /// Starts the server of a study's two pages, and prints where they are. @return its view.
+  StudyView& serve(Pipeline& pipeline, StudySession& session, std::FILE* out);
+  /// Ends the server; what it showed is free to be used.
+  void stop() { server_.reset(); }
   /// @throws when the server has failed.
   void check() const { server_->check(); }
   /// Says that the run goes on, and where.
@@ -35,7 +41,12 @@ class View {
  private:
   const RunOptionsGiven& given_;
   LiveLink link_;
-  std::unique_ptr<PipelineView> source_;
+  ViewHello hello(Pipeline& pipeline) const;
+  void start(bool guests);
+  void warn(std::FILE* out) const;
+
+  std::unique_ptr<ViewSource> source_;
+  std::vector<PageFile> files_;  // of the server
   std::unique_ptr<ViewServer> server_;
 };
 

@@ -74,6 +74,8 @@ TEST(Protocol, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_THAT(refusal(kScenes + "[method.am.pipeline]\nmethod = \"fm\"\n"),
               HasSubstr("line 6: pipeline.method"));
   EXPECT_THAT(refusal(kScenes + "[method.am.plna]\n"), HasSubstr("did you mean"));
+  EXPECT_THAT(refusal(kScenes + "[method.am.pipeline]\nscene = \"ring\"\n"),
+              HasSubstr("[method.am] gives pipeline.scene"));
   EXPECT_THAT(refusal("[study\n"), HasSubstr("not valid TOML"));
 }
 

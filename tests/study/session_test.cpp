@@ -323,7 +323,7 @@ TEST(StudySession, IsNeverBroughtOutOfStepByActs) {
   const test::TemporaryFolder folder;
   Random random(7);
   for (int run = 0; run < 40; ++run) {
-    const std::string path = folder.file("r" + std::to_string(run) + ".jsonl");
+    const std::string path = folder.file(std::to_string(run) + "r.jsonl");
     Sitting s(test::study_protocol("consent = \"?\"\ndemographics = true\n[training]\nseconds = "
                                    "2\n[trials]\nrepeats = 2\nbreak_every = 2\n"),
               path);

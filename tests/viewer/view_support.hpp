@@ -36,8 +36,10 @@ class StandIn final : public ViewSource {
     if (new_smoke) ++news.smoke;
     if (news.fields == 0) ++news.fields;
   }
-  std::string hello(std::uint32_t) override { return R"({"type":"hello","version":1})"; }
-  bool refresh_state(std::string& state) override {
+  bool shows_frames(Room room) const override { return room == Room::Main; }
+  std::string hello(std::uint32_t, Room) override { return R"({"type":"hello","version":1})"; }
+  bool refresh_state(Room room, std::string& state) override {
+    if (room == Room::Guest) return false;
     const int version = state_version;
     if (version == told_) return false;
     told_ = version;

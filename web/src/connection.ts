@@ -1,6 +1,7 @@
 /// The WebSocket to the program: what it last said, and new attempts when it is gone.
 
 import { parseMessage, type Hello, type PageMessage, type State } from "./messages";
+import type { Study } from "./study/messages";
 import { Decoder, WireError, type Frame } from "./wire";
 
 export type Link = "connecting" | "open" | "lost";
@@ -9,6 +10,7 @@ export interface Listeners {
   frame(frame: Frame): void;
   hello(hello: Hello): void;
   state(state: State): void;
+  study?(study: Study): void; // of a run that is a study
   error(sentence: string, control?: string): void;
   /// what to tell whoever looks at the page; "" when all is well
   link(link: Link, sentence: string): void;
@@ -95,6 +97,8 @@ export class Connection {
     } else if (message?.type === "state") {
       this.state = message;
       this.listeners.state(message);
+    } else if (message?.type === "study") {
+      this.listeners.study?.(message);
     } else if (message?.type === "error") {
       this.listeners.error(message.sentence, message.id);
     }

@@ -1,5 +1,7 @@
 /// The text messages of docs/wire.md, as types, and the check of those that come from the program.
 
+import { isStudy, type Study, type StudyAct } from "./study/messages";
+
 export interface Hello {
   type: "hello";
   version: number;
@@ -90,7 +92,7 @@ export interface ErrorMessage {
   id?: string; // of the control that could not be set
   sentence: string;
 }
-export type ServerMessage = Hello | State | ErrorMessage;
+export type ServerMessage = Hello | State | Study | ErrorMessage;
 
 export interface HandPose {
   palm_mm: [number, number, number];
@@ -109,7 +111,8 @@ export type PageMessage =
   | { type: "hand"; release: true }
   | { type: "calibration"; do: "begin" | "solve" | "save" | "cancel" }
   | { type: "calibration"; do: "take"; mark: number }
-  | { type: "rate"; hz: number };
+  | { type: "rate"; hz: number }
+  | StudyAct;
 
 type Json = Record<string, unknown>;
 const isObject = (x: unknown): x is Json => typeof x === "object" && x !== null && !Array.isArray(x);
@@ -164,6 +167,8 @@ export function parseMessage(text: string): ServerMessage | null {
       isRates(message.rates) && isText(message.settings) &&
       (message.calibration === null || isCalibration(message.calibration)) &&
       (message.tracker === null || isObject(message.tracker));
+  } else if (message.type === "study") {
+    known = isStudy(message);
   } else if (message.type === "error") {
     known = isText(message.sentence) && (message.id === undefined || isText(message.id));
   }

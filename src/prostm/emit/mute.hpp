@@ -12,7 +12,8 @@ enum class MuteReason : std::uint32_t {
   NoHand = 2U,       ///< the last step of a run in real time found no hand
   Person = 4U,       ///< somebody who looks at the run asked for silence
   Hot = 8U,          ///< the device says that it is too hot
-  Ended = 16U        ///< the run was stopped, or something in it failed
+  Ended = 16U,       ///< the run was stopped, or something in it failed
+  Study = 32U        ///< a study presents nothing now
 };
 
 /// Set by any thread, obeyed by an emitter at its next block. Nobody waits.

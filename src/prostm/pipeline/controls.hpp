@@ -16,6 +16,7 @@ struct LiveSettings {
   PipelineSettings pipeline;
   std::string source = "scripted";   ///< of the hands, one of `sources`
   std::vector<std::string> sources;  ///< those that there are: "scripted", "recording", "leap", …
+  std::uint64_t version = 0;         ///< a number that tells who asked for them, and when
 };
 
 enum class ControlKind { Number, Choice, Switch };

@@ -20,7 +20,8 @@ namespace prostm {
 /// Asked by an onlooker, done between two steps.
 struct LiveCommand {
   enum class Kind : std::uint8_t {
-    Set,  ///< a control
+    Set,        ///< a control
+    Configure,  ///< all settings
     Play,
     Pause,
     Step,        ///< pauses, and goes on by one plan update
@@ -31,6 +32,7 @@ struct LiveCommand {
   int control = 0;           ///< of Set: its place in run_controls()
   double value = 0.0;        ///< of Set, or the time of Seek [s]
   Pose X_DT = Pose::Identity();
+  std::shared_ptr<const LiveSettings> settings = {};  ///< of Configure
 };
 
 /// Why something that was asked for was not done.

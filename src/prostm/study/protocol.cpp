@@ -57,11 +57,13 @@ void list_trials(Settings& s, V& v) {
           s.feedback);
   v.field({.name = "break_every", .least = 0, .most = 1000, .help = "trials; 0 for no breaks"},
           s.break_every);
+  v.field({.name = "rest", .unit = "s", .least = 0.1, .most = 60, .help = "still air before each trial"},
+          s.rest);
   v.field({.name = "settle",
            .unit = "s",
            .least = 0.5,
            .most = 60,
-           .help = "silence before each trial, in which the smoke develops"},
+           .help = "silence after it, in which the smoke develops"},
           s.settle);
   v.field({.name = "time_limit",
            .unit = "s",
@@ -86,6 +88,19 @@ std::vector<std::string> names_in(std::string_view text, const std::string& file
                                  names.size(), table, least));
   }
   return names;
+}
+
+/// @throws InputError: a method gives what scenes give, or what cannot change during a run.
+void refuse_settings_of_the_run(const std::vector<std::string>& given, const std::string& file,
+                                const std::string& method) {
+  for (const char* fixed : {"pipeline.scene", "pipeline.device", "pipeline.array",
+                            "pipeline.tracker", "pipeline.world_rate", "pipeline.threads"}) {
+    if (std::find(given.begin(), given.end(), fixed) == given.end()) continue;
+    throw InputError(fmt::format(
+        "{}: [method.{}] gives {}, which is the same for all trials; give it on the command line, "
+        "and scenes as [scene.NAME]",
+        file, method, fixed));
+  }
 }
 
 StudyScene read_scene(std::string_view text, const std::string& file, const std::string& name) {
@@ -146,7 +161,9 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
     protocol.scenes.push_back(read_scene(text, file, name));
   for (const std::string& name : names_in(text, file, "method", 1)) {
     StudyMethod& method = protocol.methods.emplace_back(StudyMethod{name, base});
-    settings_from_toml(text, file, settings_groups(method.settings), {"method", name});
+    const auto given =
+        settings_from_toml(text, file, settings_groups(method.settings), {"method", name});
+    refuse_settings_of_the_run(given, file, name);
   }
   return protocol;
 }

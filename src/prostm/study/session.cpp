@@ -12,35 +12,36 @@
 namespace prostm {
 namespace {
 
-constexpr double kRest = 1.0;         // still air before each trial [s]
 constexpr double kTryAgain = 1.0;     // between tries to write what could not be written [s]
 constexpr double kClockJump = 1.0;    // of the day's clock that is written down [s]
 constexpr double kHandPeriod = 0.05;  // between poses in a trial's line [s]
 constexpr std::string_view kFormat = "prostm-responses/1";
 
-double rounded(double value, double step) {
-  return step * std::round(value / step);
+/// A number with so many decimals, so that files stay small.
+double rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(scale * value) / scale;
 }
 
 /// [s, x, y, z in mm, quaternion x, y, z, w]
 nlohmann::ordered_json pose_json(double time, const Pose& X_DP) {
-  nlohmann::ordered_json json = {rounded(time, 1e-3)};
-  for (int axis = 0; axis < 3; ++axis) json.push_back(rounded(1e3 * X_DP.translation()[axis], 0.1));
+  nlohmann::ordered_json json = {rounded(time, 3)};
+  for (int axis = 0; axis < 3; ++axis) json.push_back(rounded(1e3 * X_DP.translation()[axis], 1));
   const Quat q(X_DP.rotation());
-  for (const double part : {q.x(), q.y(), q.z(), q.w()}) json.push_back(rounded(part, 1e-4));
+  for (const double part : {q.x(), q.y(), q.z(), q.w()}) json.push_back(rounded(part, 4));
   return json;
 }
 
 nlohmann::ordered_json gate_json(const std::optional<GateResult>& gate) {
   if (!gate) return nullptr;
   return {{"pass", gate->pass},
-          {"share", rounded(gate->share, 1e-3)},
+          {"share", rounded(gate->share, 3)},
           {"problem", name_of(gate->finding.problem)},
           {"maxima", gate->shape.count()},
-          {"balance", rounded(gate->shape.balance, 1e-3)},
-          {"saddle", rounded(gate->shape.saddle, 1e-3)},
-          {"area_cm2", rounded(1e4 * gate->shape.area, 0.1)},
-          {"force_mn", rounded(1e3 * gate->shape.force, 1e-3)}};
+          {"balance", rounded(gate->shape.balance, 3)},
+          {"saddle", rounded(gate->shape.saddle, 3)},
+          {"area_cm2", rounded(1e4 * gate->shape.area, 1)},
+          {"force_mn", rounded(1e3 * gate->shape.force, 3)}};
 }
 
 /// CRC-32 of all that makes a stimulus: version, settings and scene.
@@ -53,7 +54,7 @@ std::string stimulus_hash(const nlohmann::ordered_json& settings, const std::str
 
 ResponseLine stamped(ResponseLine line, const StudySight& sight) {
   line["utc"] = utc_text(sight.utc);
-  line["time_s"] = rounded(sight.time, 1e-4);
+  line["time_s"] = rounded(sight.time, 4);
   return line;
 }
 
@@ -178,11 +179,11 @@ const StudyWanted& StudySession::look(const StudySight& sight) {
 
 std::string StudySession::end_training(const StudySight& sight) {
   enter(StudyPhase::Ready, sight.time);
-  return write({{"kind", "training"}, {"left_s", rounded(training_left_, 0.1)}}, sight);
+  return write({{"kind", "training"}, {"left_s", rounded(training_left_, 1)}}, sight);
 }
 
 void StudySession::settle(const StudySight& sight) {
-  if (sight.time - since_ < kRest) return;
+  if (sight.time - since_ < protocol_.trials.rest) return;
   if (!sight.palm) {
     waits_for_ = "There is no hand above the array.";
     wanted_.scene = -1;  // so that jets blow under the hand when it is back
@@ -228,7 +229,7 @@ void StudySession::watch_clock(const StudySight& sight) {
   const double offset = sight.utc - sight.time, jump = offset - utc_offset_;
   if (std::abs(jump) < kClockJump) return;
   utc_offset_ = offset;
-  write({{"kind", "clock"}, {"jump_s", rounded(jump, 1e-3)}}, sight);
+  write({{"kind", "clock"}, {"jump_s", rounded(jump, 3)}}, sight);
 }
 
 /// Writes a line, after those that could not be written before.
@@ -265,13 +266,13 @@ ResponseLine StudySession::trial_line(bool yes, const StudySight& sight) const {
           {"question", question},
           {"answer", yes ? 1 : 0},
           {"correct", yes == (t.scene == t.question) ? 1 : 0},
-          {"response_s", rounded(sight.time - since_, 1e-3)},
+          {"response_s", rounded(sight.time - since_, 3)},
           {"stimulus", stimulus_hash(settings, scene)},
           {"gate", gate_json(gate_at_onset_)},
           {"anyway", anyway_},
-          {"target_mn", rounded(1e3 * strength_.target / looks, 1e-4)},
-          {"rendered_mn", rounded(1e3 * strength_.rendered / looks, 1e-4)},
-          {"hand_gone_s", rounded(hand_gone_, 1e-3)},
+          {"target_mn", rounded(1e3 * strength_.target / looks, 4)},
+          {"rendered_mn", rounded(1e3 * strength_.rendered / looks, 4)},
+          {"hand_gone_s", rounded(hand_gone_, 3)},
           {"hand", hand_}};
 }
 
@@ -327,6 +328,8 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
       explored_ = wanted_.scene = act.scene;
       return {};
     case Do::Next:
+      closed_ = over;
+      if (over) return {};
       if (phase_ == StudyPhase::Training) return end_training(sight);
       if (phase_ != StudyPhase::Ready && phase_ != StudyPhase::Break &&
           phase_ != StudyPhase::Paused)

@@ -38,7 +38,7 @@ inline constexpr std::array<std::string_view, 10> kNames<StudyPhase> = {
 /// An act of somebody at the study.
 struct StudyAct {
   enum class Do : std::uint8_t {
-    Next,     ///< goes on from Ready, Break and Paused; ends Training
+    Next,     ///< goes on from Ready, Break and Paused; ends Training; closes what is over
     Anyway,   ///< presents a trial that the gate does not let pass
     Answer,   ///< to the question: `yes`
     Pause,    ///< a trial under way is presented again
@@ -93,6 +93,7 @@ class StudySession {
   const StudyWanted& wanted() const { return wanted_; }
   const Protocol& protocol() const { return protocol_; }
   int participant() const { return participant_; }
+  bool closed() const { return closed_; }  ///< the run may end
   std::size_t trials_done() const { return done_; }
   const std::vector<Trial>& trials() const { return trials_; }
   /// The trial that is next or under way. @pre not all are done.
@@ -141,6 +142,7 @@ class StudySession {
   double training_left_ = 0.0, looked_ = 0.0;  // [s]
   int explored_ = 0;
   bool anyway_ = false, ended_ = false;  // the gate is passed over; the stimulus is over
+  bool closed_ = false;
   std::optional<GateResult> gate_, gate_at_onset_;
   std::string waits_for_, problem_;
   std::optional<bool> feedback_;

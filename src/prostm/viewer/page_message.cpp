@@ -114,9 +114,37 @@ CalibrationMessage read_calibration(const Json& json) {
   return m;
 }
 
+/// Reads the words of participants about themselves: few texts, short ones.
+nlohmann::ordered_json read_about(const Json& json) {
+  constexpr std::size_t kMost = 20, kLongest = 200;
+  const Json& about = member(json, "about");
+  if (!about.is_object() || about.size() > kMost)
+    throw Wrong(fmt::format("\"about\" must be an object of {} texts at most", kMost));
+  nlohmann::ordered_json texts = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : about.items()) {
+    if (!value.is_string() || value.get_ref<const std::string&>().size() > kLongest)
+      throw Wrong(fmt::format("what is \"about\" must be texts of {} bytes at most", kLongest));
+    texts[name] = value.get<std::string>();
+  }
+  return texts;
+}
+
+StudyAct read_study(const Json& json) {
+  constexpr double kMostScenes = 1000;
+  StudyAct act;
+  act.what = choice<StudyAct::Do>(
+      json, "do", {"next", "anyway", "answer", "pause", "consent", "about", "explore", "withdraw"});
+  if (act.what == StudyAct::Do::Answer) act.yes = truth(json, "yes");
+  if (act.what == StudyAct::Do::Explore)
+    act.scene = static_cast<int>(number(json, "scene", 0.0, kMostScenes));
+  if (act.what == StudyAct::Do::About) act.about = read_about(json);
+  return act;
+}
+
 PageMessage read(const Json& json) {
-  enum class Type { Set, Transport, Hand, Calibration, Mute, Rate };
-  switch (choice<Type>(json, "type", {"set", "transport", "hand", "calibration", "mute", "rate"})) {
+  enum class Type { Set, Transport, Hand, Calibration, Mute, Rate, Study };
+  switch (choice<Type>(json, "type",
+                       {"set", "transport", "hand", "calibration", "mute", "rate", "study"})) {
     case Type::Set:
       return read_set(json);
     case Type::Transport:
@@ -127,6 +155,8 @@ PageMessage read(const Json& json) {
       return read_calibration(json);
     case Type::Mute:
       return MuteMessage{truth(json, "on")};
+    case Type::Study:
+      return read_study(json);
     case Type::Rate:
       break;
   }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <variant>
 
+#include "prostm/study/session.hpp"
+
 namespace prostm {
 
 inline constexpr std::size_t kMaxPageMessage = 4096;                                ///< bytes
@@ -48,7 +50,7 @@ struct RateMessage {
 };
 
 using PageMessage = std::variant<SetMessage, TransportMessage, HandMessage, CalibrationMessage,
-                                 MuteMessage, RateMessage>;
+                                 MuteMessage, RateMessage, StudyAct>;
 
 /// Reads one message; never throws for its contents. @return false for an invalid message, with one
 /// sentence in `problem` that says what would be right.

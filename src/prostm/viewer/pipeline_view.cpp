@@ -59,6 +59,7 @@ struct PipelineView::Impl {
   std::string end_calibration(std::uint32_t page);
   void look_at_finger();
   std::string take(std::uint32_t, const RateMessage&) { return {}; }
+  std::string take(std::uint32_t, const StudyAct&) { return "this run is no study"; }
 };
 
 std::string PipelineView::Impl::take(std::uint32_t page, const SetMessage& m) {
@@ -208,7 +209,7 @@ void PipelineView::refresh(ViewFrame& frame, ViewNews& news) {
   impl_->look_at_finger();
 }
 
-std::string PipelineView::hello(std::uint32_t page) {
+std::string PipelineView::hello(std::uint32_t page, Room) {
   const ViewHello& h = impl_->hello;
   Json transducers = Json::array();
   for (const Vec3& p : h.transducers) transducers.push_back(viewer::millimetres(p));
@@ -224,7 +225,8 @@ std::string PipelineView::hello(std::uint32_t page) {
       .dump();
 }
 
-bool PipelineView::refresh_state(std::string& out) {
+bool PipelineView::refresh_state(Room room, std::string& out) {
+  if (room == Room::Guest) return false;
   Impl& i = *impl_;
   // nobody is left to end it
   if (i.calibration && i.calibrator == 0 && i.end_calibration(0).empty())

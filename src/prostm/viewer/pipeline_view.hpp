@@ -29,8 +29,10 @@ class PipelineView final : public ViewSource {
 
   void watch(bool somebody) override;
   void refresh(ViewFrame& frame, ViewNews& news) override;
-  std::string hello(std::uint32_t page) override;
-  bool refresh_state(std::string& state) override;
+  bool shows_frames(Room) const override { return true; }
+  std::string hello(std::uint32_t page, Room room) override;
+  /// Guests have no state.
+  bool refresh_state(Room room, std::string& state) override;
   std::string take(std::uint32_t page, const PageMessage& message) override;
   bool next_refusal(std::uint32_t& page, std::string& sentence) override;
   void forget(std::uint32_t page) override;

@@ -132,10 +132,13 @@ struct ViewServer::Impl {
   }
 
   void tell() {
-    std::string state;
-    if (hub.source.refresh_state(state)) {
-      hub.state = std::make_shared<const std::string>(std::move(state));
-      for (viewer::Session* page : hub.pages) page->tell_state();
+    for (const Room room : kRooms) {
+      std::string state;
+      if (!hub.source.refresh_state(room, state)) continue;
+      hub.states[static_cast<std::size_t>(room)] =
+          std::make_shared<const std::string>(std::move(state));
+      for (viewer::Session* page : hub.pages)
+        if (page->room() == room) page->tell_state();
     }
     std::uint32_t id = 0;
     std::string sentence;

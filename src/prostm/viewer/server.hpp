@@ -17,6 +17,7 @@ struct ViewSettings {
   std::string address = "127.0.0.1";  ///< to listen on; a literal
   /// The TCP port; 0 takes any free one. Without it, the first free port from kViewPort on.
   std::optional<int> port;
+  bool guests = false;         ///< /guest/live is there
   int max_pages = 16;          ///< WebSockets at the same time
   int max_connections = 64;    ///< of HTTP and WebSocket together
   double request_time = 10.0;  ///< for a request to come and its answer to go [s]

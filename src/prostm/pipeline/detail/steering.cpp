@@ -40,6 +40,10 @@ void Steering::attend() {
         run_controls()[static_cast<std::size_t>(command.control)].set(wanted, command.value);
         senders.push_back(command.sender);
         break;
+      case Kind::Configure:
+        wanted = *command.settings;
+        senders.push_back(command.sender);
+        break;
       case Kind::Play:
         state_.playing = true;
         break;

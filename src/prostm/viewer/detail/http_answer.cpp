@@ -61,12 +61,12 @@ bool host_allowed(std::string_view host, bool any_address) {
   return !wrong && (any_address || address.is_loopback());
 }
 
-HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, bool any_address,
+HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, HttpScope scope,
                   const std::function<std::string()>& numbers) {
   if (request.host.empty()) return refuse(400, "The request has no Host.\n");
   if (request.ambiguous)
     return refuse(400, "The request has more than one Host or more than one Origin.\n");
-  if (!host_allowed(request.host, any_address))
+  if (!host_allowed(request.host, scope.any_address))
     return refuse(403, "This server answers to its own address and to localhost alone.\n");
   if (!same_origin(request.origin, request.host))
     return refuse(403, "Pages of other sites have no business here.\n");
@@ -76,18 +76,18 @@ HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, b
     return refuse(400, "The target of a request must begin with /.\n");
 
   const std::string_view path = request.target.substr(0, request.target.find('?'));
-  if (path == "/live") {
+  if (path == "/live" || (scope.guests && path == "/guest/live")) {
     if (!request.upgrade || request.method != "GET")
-      return refuse(426, "/live is a WebSocket (docs/wire.md).\n");
+      return refuse(426, "This is a WebSocket (docs/wire.md).\n");
     HttpAnswer a;
-    a.live = true;
+    a.live = path == "/live" ? Room::Main : Room::Guest;
     return a;
   }
   if (path == "/numbers.json") {
     HttpAnswer a;
     a.type = "application/json";
     a.text = numbers();
-    return a;
+    return a.text.empty() ? refuse(403, "There are no numbers to be seen now.\n") : a;
   }
   return file_answer(path, files);
 }

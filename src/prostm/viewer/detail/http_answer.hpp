@@ -2,11 +2,13 @@
 /// The server's answer to a request: no sockets, so that every case can be tried.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "prostm/viewer/page_files.hpp"
+#include "prostm/viewer/view_source.hpp"
 
 namespace prostm {
 
@@ -21,21 +23,27 @@ struct HttpRequest {
 struct HttpAnswer {
   unsigned status = 200;
   std::string_view type = "text/plain; charset=utf-8";
-  std::string_view body;  ///< of a page file, or `text`
-  std::string text;       ///< what was made for this answer
-  bool live = false;      ///< go on as a WebSocket: nothing else counts
+  std::string_view body;          ///< of a page file, or `text`
+  std::string text;               ///< what was made for this answer
+  std::optional<Room> live = {};  ///< go on as a WebSocket of this room: nothing else counts
 
   std::string_view content() const { return text.empty() ? body : std::string_view(text); }
 };
 
+/// The ways in which servers differ.
+struct HttpScope {
+  bool any_address = false;  ///< listens on more than loopback
+  bool guests = false;       ///< has a room for them
+};
+
 /// GET and HEAD of the page's files, by their exact paths alone ("/index.html" is "/"), of
-/// /numbers.json, and the WebSocket /live.
+/// /numbers.json, and the WebSockets /live and, with guests, /guest/live.
 ///
 /// 400: no Host, or two. 403: a Host that is a name other than localhost, or an address that is not
 /// loopback unless `any_address`, since a foreign site can give its own name our address; or an
 /// Origin that is not the same host. Programs send no Origin and are let in.
-/// @param numbers makes the body of /numbers.json.
-HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, bool any_address,
+/// @param numbers makes the body of /numbers.json; empty where nobody may see them now, which is 403.
+HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, HttpScope scope,
                   const std::function<std::string()>& numbers);
 
 /// Whether a Host header says localhost or an address, loopback unless `any_address`, with or

@@ -39,6 +39,7 @@ void Hub::next_frame() {
 }
 
 std::string Hub::numbers() {
+  if (!source.shows_frames(Room::Main)) return {};
   if (pages.empty()) next_frame();
   nlohmann::ordered_json json = {{"sequence", frame.sequence},
                                  {"run",

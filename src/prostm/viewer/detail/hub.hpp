@@ -34,9 +34,12 @@ class EncodedFrame {
 
 struct Hub {
   Hub(const ViewSettings& s, ViewSource& view, std::span<const PageFile> page)
-      : settings(s), source(view), files(page) {}
+      : settings(s), source(view), files(page) {
+    states.fill(std::make_shared<std::string>());
+  }
 
-  /// The newest frame's numbers as JSON; asks for a frame where nobody looks.
+  /// The newest frame's numbers as JSON; asks for a frame where nobody looks. Empty where the main
+  /// room gets no frames.
   std::string numbers();
   /// Asks the source for the next frame.
   void next_frame();
@@ -48,7 +51,7 @@ struct Hub {
 
   ViewFrame frame;
   ViewNews news;
-  std::shared_ptr<const std::string> state = std::make_shared<std::string>();
+  std::array<std::shared_ptr<const std::string>, std::size(kRooms)> states;  ///< by Room
   std::vector<Session*> pages;  // those whose WebSocket is open
   int connections = 0;
   std::uint32_t last_page = 0;

@@ -87,13 +87,14 @@ void Session::on_request(beast::error_code wrong) {
   parts.origin = view(request[http::field::origin]);
   parts.ambiguous = request.count(http::field::host) > 1 || request.count(http::field::origin) > 1;
   parts.upgrade = websocket::is_upgrade(request);
-  HttpAnswer a = answer(parts, hub_.files, hub_.any_address, [this] { return hub_.numbers(); });
+  HttpAnswer a = answer(parts, hub_.files, {hub_.any_address, hub_.settings.guests},
+                        [this] { return hub_.numbers(); });
   if (a.live && static_cast<int>(hub_.pages.size()) >= hub_.settings.max_pages) {
     a = {};
     a.status = 503;
     a.body = "As many pages as this server takes are open already.\n";
   }
-  if (a.live) return upgrade();
+  if (a.live) return upgrade(*a.live);
   // nothing more is read from whoever sends requests that can be understood in two ways
   reply(a, request.keep_alive() && a.status != 400, parts.method == "HEAD");
 }
@@ -123,7 +124,8 @@ void Session::close() {
 
 // ---- the page ----
 
-void Session::upgrade() {
+void Session::upgrade(Room room) {
+  room_ = room;
   stream_.expires_never();
   beast::error_code ignored;
   stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
@@ -140,8 +142,9 @@ void Session::upgrade() {
     if (hub.pages.empty()) hub.source.watch(true);
     hub.pages.push_back(self.get());
     hub.count.pages = static_cast<int>(hub.pages.size());
-    self->texts_.push_back(std::make_shared<const std::string>(hub.source.hello(self->id_)));
-    self->state_waits_ = !hub.state->empty();
+    self->texts_.push_back(
+        std::make_shared<const std::string>(hub.source.hello(self->id_, self->room_)));
+    self->state_waits_ = !self->state()->empty();
     self->pump();
     self->buffer_.clear();
     self->read_message();
@@ -207,6 +210,7 @@ void Session::offer_frame(Clock::time_point now, EncodedFrame& frame) {
   if (now + period / 4 < due_) return;
   // keeps its pace, unless it has fallen behind
   due_ = std::max(due_ + period, now);
+  if (!hub_.source.shows_frames(room_)) return;
   if (writing_) {
     ++hub_.count.skipped;
     return;
@@ -230,8 +234,9 @@ void Session::pump() {
     write(asio::buffer(*text), true);
   } else if (state_waits_) {
     state_waits_ = false;
-    in_flight_ = hub_.state;
-    write(asio::buffer(*hub_.state), true);
+    const auto newest = state();
+    in_flight_ = newest;
+    write(asio::buffer(*newest), true);
   }
 }
 

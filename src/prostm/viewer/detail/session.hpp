@@ -30,10 +30,11 @@ class Session : public std::enable_shared_from_this<Session> {
 
   // of pages, called once a tick
   std::uint32_t id() const { return id_; }
+  Room room() const { return room_; }
   double rate() const { return rate_; }  ///< frames that it wants [Hz]
   /// Sends the hub's frame if one is due at `now` and nothing is in flight.
   void offer_frame(Clock::time_point now, EncodedFrame& frame);
-  /// The hub has a new state.
+  /// The hub has a new state of its room.
   void tell_state();
   /// @param control that could not be set, where one is known.
   void tell_error(const std::string& sentence, const std::string& control = "");
@@ -41,10 +42,13 @@ class Session : public std::enable_shared_from_this<Session> {
   void check_stall(Clock::time_point now);
 
  private:
+  const std::shared_ptr<const std::string>& state() const {
+    return hub_.states[static_cast<std::size_t>(room_)];
+  }
   void read_request();
   void on_request(beast::error_code wrong);
   void reply(const HttpAnswer& answer, bool keep_alive, bool head);
-  void upgrade();
+  void upgrade(Room room);
   void read_message();
   void on_message(const std::string& text);
   void pump();
@@ -60,6 +64,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<beast::websocket::stream<beast::tcp_stream, false>> socket_;  // nothing deflated
 
   std::uint32_t id_ = 0;  // of the page, 0 before the upgrade
+  Room room_ = Room::Main;
   double rate_ = kPageRate;
   Clock::time_point due_{}, write_began_{}, second_began_{};
   bool writing_ = false, state_waits_ = false;

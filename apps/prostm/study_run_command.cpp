@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "common.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/pipeline/runner.hpp"
+#include "prostm/study/session.hpp"
+#include "prostm/version.hpp"
+#include "view.hpp"
+
+namespace prostm::app {
+namespace {
+
+constexpr int kMostParticipants = 9999;
+constexpr double kADay = 86400.0;  // [s]
+
+/// Ends the run when the session is closed, on a signal, and when the pages' server fails.
+class Observer final : public RunObserver {
+ public:
+  Observer(const View& view, const StudyView& study) : view_(view), study_(study) {}
+  bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
+  bool on_progress(double) override {
+    view_.check();
+    return goes_on();
+  }
+  const Interrupt& interrupt() const { return interrupt_; }
+
+ private:
+  bool goes_on() const { return !interrupt_.requested() && !study_.closed(); }
+
+  const View& view_;
+  const StudyView& study_;
+  Interrupt interrupt_;
+};
+
+/// The settings that all methods begin with.
+PipelineSettings base_settings(const RunOptionsGiven& given) {
+  PipelineSettings settings = make_settings(given.common, std::nullopt, true);
+  settle_hand(given.hand, given.hand_size, settings);
+  settings.simulated_array.realtime = true;
+  settings.jets.place = JetPlace::Hand;  // a stimulus is centred under the palm
+  const DeviceInfo device = device_named(settings.device).kind->info(settings.device_setup());
+  const std::string problem = mode_problem(device, RunMode::RealTime);
+  if (!problem.empty()) throw InputError("--device " + settings.device + problem);
+  return settings;
+}
+
+Protocol protocol_of(const StudyRunOptionsGiven& given, const PipelineSettings& base) {
+  Protocol protocol = read_protocol(given.protocol, base);
+  for (StudyMethod& method : protocol.methods) set_live_budget(method.settings);
+  return protocol;
+}
+
+/// Returns the participant's file. @throws InputError: they have begun and are not to be resumed,
+/// or the other way round; there can be no such folder.
+std::string file_of(const StudyRunOptionsGiven& given) {
+  if (given.participant < 1 || given.participant > kMostParticipants) {
+    throw InputError(fmt::format("--participant {} must be between 1 and {}", given.participant,
+                                 kMostParticipants));
+  }
+  std::error_code wrong;
+  std::filesystem::create_directories(given.folder, wrong);
+  if (wrong) {
+    throw InputError(
+        fmt::format("--answers {} cannot be a folder: {}", given.folder, wrong.message()));
+  }
+  const std::string path =
+      (std::filesystem::path(given.folder) / fmt::format("participant-{}.jsonl", given.participant))
+          .string();
+  const bool begun = std::filesystem::exists(path);
+  if (begun && !given.resume) {
+    throw InputError(
+        fmt::format("participant {} has begun ({}); give a new one another number, or --resume to "
+                    "go on with this one",
+                    given.participant, path));
+  }
+  if (!begun && given.resume) {
+    throw InputError(fmt::format("participant {} has not begun: there is no {}; leave --resume out",
+                                 given.participant, path));
+  }
+  return path;
+}
+
+void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
+            const RunSummary& summary) {
+  const std::size_t all = session.trials().size();
+  fmt::print(out, "Participant {}: {} of {} answers in {}.\n", session.participant(),
+             session.trials_done(), all, file.path());
+  const std::string strengths = session.strengths();
+  if (!strengths.empty()) fmt::print(out, "{}\n", strengths);
+  if (summary.skipped_world_steps > 0 || summary.device.missed_blocks > 0) {
+    fmt::print(out,
+               "The machine did not keep up: {} steps of the smoke were skipped and {} blocks of "
+               "the output missed; see prostm check.\n",
+               summary.skipped_world_steps, summary.device.missed_blocks);
+  }
+}
+
+}  // namespace
+
+int study_run_command(const StudyRunOptionsGiven& given) {
+  const PipelineSettings base = base_settings(given.run);
+  const Protocol protocol = protocol_of(given, base);
+  const std::string path = file_of(given);
+  PipelineSettings settings = protocol.methods.front().settings;
+  settings.scene = "still-air";
+  auto hands = make_hands(given.run.hand, settings);
+  View view(given.run, settings);
+  settings = view.settings();
+  hands = view.behind_the_page(std::move(hands));
+  obey_lock_memory(given.run.lock_memory, stdout);
+  Pipeline pipeline(settings, std::move(hands), view.link().mute);
+
+  ResponseFile file(path);
+  if (file.found_cut_off())
+    fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);
+  const nlohmann::ordered_json facts = {{"prostm", PROSTM_VERSION},
+                                        {"device", settings.device},
+                                        {"array", settings.array},
+                                        {"hand", given.run.hand}};
+  StudySession session(protocol, given.participant, file, facts, study_time());
+  if (!names_tracker(given.run.hand))
+    fmt::print("The hand is not tracked (--hand {}): good for a rehearsal.\n", given.run.hand);
+  const StudyView& study = view.serve(pipeline, session, stdout);
+  Observer observer(view, study);
+  RunOptions options;
+  options.seconds = kADay;
+  options.live = &view.link();
+  const RunSummary summary = run(pipeline, settings, options, observer);
+  view.stop();
+  if (summary.failure) return tell(summary.failure);
+  report(stdout, session, file, summary);
+  return observer.interrupt().requested() ? observer.interrupt().status() : 0;
+}
+
+}  // namespace prostm::app

@@ -1,0 +1,247 @@
+#include "prostm/viewer/study_view.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/pipeline/scene.hpp"
+#include "prostm/viewer/detail/state_json.hpp"
+
+namespace prostm {
+namespace {
+
+using viewer::Json;
+
+/// Whether the problem is the hand's, so that it tells nothing of the stimulus.
+bool is_of_hand(GateProblem problem) {
+  return problem > GateProblem::None && problem < GateProblem::Maxima;
+}
+
+/// The picture of a scene: for each jet x, y and radius, in mm, on a flat hand above the array.
+Json jets_json(const std::string& scene) {
+  Json jets = Json::array();
+  for (const SmokeJet& jet : scene_from_name(scene).smoke.jets)
+    jets.push_back({1e3 * jet.centre.x(), 1e3 * jet.centre.y(), 1e3 * jet.radius});
+  return jets;
+}
+
+double rendered_force(const ViewFrame& frame) {
+  double force = 0.0;  // [N]
+  for (std::uint32_t i = 0; i < frame.field_count; ++i) {
+    const ViewField& field = frame.fields[i];
+    double sum = 0.0;
+    for (const std::uint16_t pressure : field.rendered) sum += pressure;
+    force += sum * static_cast<double>(field.scale) / 65535.0 * static_cast<double>(field.cell) *
+             static_cast<double>(field.cell);
+  }
+  return force;
+}
+
+Pose pose_of(const ViewJoint& joint) {
+  const Eigen::Map<const Eigen::Matrix<float, 8, 1>> values(joint.data());
+  Pose pose = Pose::Identity();
+  pose.translation() = values.head<3>().cast<double>();
+  pose.linear() = Quat(values[6], values[3], values[4], values[5]).normalized().toRotationMatrix();
+  return pose;
+}
+
+bool is_allowed(Room room, const StudyAct& act, AnswersFrom answers) {
+  using Do = StudyAct::Do;
+  if (room == Room::Main) return true;
+  if (act.what == Do::Answer) return answers == AnswersFrom::Participant;
+  return act.what == Do::Consent || act.what == Do::About || act.what == Do::Explore ||
+         act.what == Do::Withdraw;
+}
+
+}  // namespace
+
+StudySight study_time() {
+  StudySight sight;
+  sight.time = steady_now();
+  sight.utc =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return sight;
+}
+
+StudyView::StudyView(LiveLink& link, ViewHello hello, StudySession& session)
+    : link_(link), run_(link, std::move(hello)), session_(session) {
+  link_.snapshots.watch(true);  // the session looks, whether pages do or not
+  link_.mute->set(MuteReason::Study, true);
+}
+
+StudySight StudyView::sight() {
+  StudySight s = study_time();
+  const PlanSnapshot& plan = link_.snapshots.plan();
+  const std::string& scene = link_.control.state().settings.pipeline.scene;
+  s.in_force = version_ > 0 && link_.control.state().settings.version == version_ &&
+               plan.settings && plan.settings->scene == scene;
+  if (frame_.hand_count > 0) s.palm = pose_of(frame_.hands[0].joints[0]);
+  s.gate = plan.gate;
+  const double force = static_cast<double>(frame_.numbers[kForceMn]);
+  s.target_force = force > 0.0 ? 1e-3 * force : 0.0;
+  s.rendered_force = rendered_force(frame_);
+  return s;
+}
+
+void StudyView::tick() {
+  run_.refresh(frame_, news_);
+  link_.control.refresh();
+  LiveRefusal refusal;
+  while (link_.control.next_refusal(refusal)) problem_ = refusal.sentence;
+  present(session_.look(sight()));
+}
+
+/// Asks the run for what is wanted, where that has changed.
+void StudyView::present(const StudyWanted& wanted) {
+  link_.mute->set(MuteReason::Study, !wanted.sound);
+  closed_.store(session_.closed(), std::memory_order_relaxed);
+  if (version_ > 0 && wanted.method == method_ && wanted.scene == scene_) return;
+  const Protocol& protocol = session_.protocol();
+  auto settings = std::make_shared<LiveSettings>(link_.settings);
+  settings->pipeline = protocol.methods[static_cast<std::size_t>(wanted.method)].settings;
+  settings->pipeline.plan.widths = link_.settings.pipeline.plan.widths;
+  settings->pipeline.scene = wanted.scene < 0
+                                 ? std::string("still-air")
+                                 : protocol.scenes[static_cast<std::size_t>(wanted.scene)].name;
+  settings->version = version_ + 1;
+  LiveCommand command{LiveCommand::Kind::Configure};
+  command.settings = settings;
+  if (!link_.control.ask(command)) return;  // busy: at the next tick
+  ++version_;
+  method_ = wanted.method;
+  scene_ = wanted.scene;
+  problem_.clear();
+}
+
+void StudyView::refresh(ViewFrame& frame, ViewNews& news) {
+  const std::uint32_t sequence = frame.sequence;
+  frame = frame_;
+  frame.sequence = sequence;
+  news = news_;
+  if (!session_.protocol().study.blind) return;
+  // smoke and hands are all that a participant sees in training; the rest tells the method
+  frame.path_count = frame.field_count = 0;
+  frame.gate.reset();
+  std::fill(frame.numbers.begin(), frame.numbers.end(), std::numeric_limits<float>::quiet_NaN());
+}
+
+bool StudyView::shows_frames(Room room) const {
+  if (room == Room::Main) return !session_.protocol().study.blind;
+  return session_.phase() == StudyPhase::Training && session_.wanted().picture;
+}
+
+std::string StudyView::hello(std::uint32_t page, Room room) {
+  pages_[page] = room;
+  return run_.hello(page, room);
+}
+
+bool StudyView::refresh_state(Room room, std::string& state) {
+  if (room == Room::Main) tick();
+  state = room == Room::Main ? experimenter() : participant();
+  std::string& told = told_[static_cast<std::size_t>(room)];
+  if (state == told) return false;
+  told = state;
+  return true;
+}
+
+std::string StudyView::experimenter() const {
+  const Protocol& p = session_.protocol();
+  const StudyPhase phase = session_.phase();
+  const bool trial = session_.trials_done() < session_.trials().size();
+  Json json = {{"type", "study"},
+               {"room", "experimenter"},
+               {"title", p.study.title},
+               {"participant", session_.participant()},
+               {"phase", name_of(phase)},
+               {"blind", p.study.blind},
+               {"done", session_.trials_done()},
+               {"trials", session_.trials().size()},
+               {"training_left_s", std::ceil(session_.training_left())},
+               {"picture", session_.wanted().picture},
+               {"explored", session_.explored()},
+               {"answers", name_of(p.trials.answers)},
+               {"output", session_.wanted().sound},
+               {"hand", frame_.hand_count > 0},
+               {"waits_for", session_.waits_for()},
+               {"strengths", session_.strengths()},
+               {"problem", session_.problem().empty() ? problem_ : session_.problem()},
+               {"scenes", Json::array()},
+               {"question", nullptr},
+               {"condition", nullptr}};
+  for (const StudyScene& scene : p.scenes) json["scenes"].push_back(scene.name);
+  const auto& gate = session_.gate();
+  if (p.study.blind && gate && !gate->pass && !is_of_hand(gate->finding.problem) &&
+      !session_.waits_for().empty())
+    json["waits_for"] = "The pressure on the hand is not the stimulus yet.";
+  if (!trial) return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (phase == StudyPhase::Settling || phase == StudyPhase::Presenting)
+    json["question"] = p.scenes[static_cast<std::size_t>(session_.trial().question)].question;
+  if (!p.study.blind) {
+    json["condition"] = {
+        {"method", p.methods[static_cast<std::size_t>(session_.trial().method)].name},
+        {"scene", p.scenes[static_cast<std::size_t>(session_.trial().scene)].name}};
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string StudyView::participant() const {
+  const Protocol& p = session_.protocol();
+  const StudyPhase phase = session_.phase();
+  Json json = {{"type", "study"},
+               {"room", "participant"},
+               {"title", p.study.title},
+               {"phase", name_of(phase)},
+               {"done", session_.trials_done()},
+               {"trials", session_.trials().size()},
+               {"training_left_s", std::ceil(session_.training_left())},
+               {"picture", session_.wanted().picture},
+               {"explored", session_.explored()},
+               {"answers", name_of(p.trials.answers)},
+               {"consent", p.study.consent},
+               {"scenes", Json::array()},
+               {"hand", frame_.hand_count > 0},
+               {"waits_for", ""},
+               {"feedback", nullptr},
+               {"question", nullptr}};
+  for (const StudyScene& scene : p.scenes) json["scenes"].push_back(scene.name);
+  if (session_.feedback()) json["feedback"] = *session_.feedback();
+  const auto& gate = session_.gate();
+  if (phase == StudyPhase::Settling && gate && is_of_hand(gate->finding.problem))
+    json["waits_for"] = session_.waits_for();
+  if (phase == StudyPhase::Presenting) {
+    const StudyScene& asked = p.scenes[static_cast<std::size_t>(session_.trial().question)];
+    json["question"] = {{"text", asked.question}, {"jets_mm", jets_json(asked.name)}};
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string StudyView::act(Room room, const StudyAct& act) {
+  if (!is_allowed(room, act, session_.protocol().trials.answers))
+    return "the experimenter does that";
+  const std::string problem = session_.take(act, sight());
+  present(session_.wanted());
+  return problem;
+}
+
+std::string StudyView::take(std::uint32_t page, const PageMessage& message) {
+  const Room room = pages_[page];
+  if (const auto* asked = std::get_if<StudyAct>(&message)) return act(room, *asked);
+  const bool steers_hand =
+      std::holds_alternative<HandMessage>(message) || std::holds_alternative<MuteMessage>(message);
+  if (room == Room::Main && steers_hand) return run_.take(page, message);
+  return "the settings of a study stand in its protocol";
+}
+
+bool StudyView::next_refusal(std::uint32_t&, std::string&) {
+  return false;  // those of the run are the session's problem
+}
+
+void StudyView::forget(std::uint32_t page) {
+  run_.forget(page);
+  pages_.erase(page);
+}
+
+}  // namespace prostm

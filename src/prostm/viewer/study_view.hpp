@@ -1,0 +1,61 @@
+#pragma once
+/// A study, as the server shows it to the experimenter and to the participant, and leads the run
+/// through it.
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "prostm/pipeline/live.hpp"
+#include "prostm/study/session.hpp"
+#include "prostm/viewer/pipeline_view.hpp"
+#include "prostm/viewer/view_source.hpp"
+
+namespace prostm {
+
+/// The day's clock, and a clock that never jumps, with no hand and nothing in force.
+StudySight study_time();
+
+/// The experimenter is in the main room. The participant is the guest, who gets only what the
+/// protocol shows: nothing that they are sent depends on what is presented, the picture during
+/// training excepted. In a blind study nothing that the experimenter is sent does either.
+class StudyView final : public ViewSource {
+ public:
+  /// @param session is used by the server's thread from now on. All must outlive this.
+  StudyView(LiveLink& link, ViewHello hello, StudySession& session);
+
+  /// Somebody has closed a session that is over. Any thread.
+  bool closed() const { return closed_.load(std::memory_order_relaxed); }
+
+  void watch(bool) override {}
+  void refresh(ViewFrame& frame, ViewNews& news) override;
+  bool shows_frames(Room room) const override;
+  std::string hello(std::uint32_t page, Room room) override;
+  bool refresh_state(Room room, std::string& state) override;
+  std::string take(std::uint32_t page, const PageMessage& message) override;
+  bool next_refusal(std::uint32_t& page, std::string& sentence) override;
+  void forget(std::uint32_t page) override;
+
+ private:
+  void tick();
+  StudySight sight();
+  void present(const StudyWanted& wanted);
+  std::string act(Room room, const StudyAct& act);
+  std::string experimenter() const;
+  std::string participant() const;
+
+  LiveLink& link_;
+  PipelineView run_;
+  StudySession& session_;
+  std::map<std::uint32_t, Room> pages_;
+  ViewFrame frame_;  // the newest
+  ViewNews news_;
+  int method_ = -1, scene_ = -1;  // that the run was asked for last
+  std::uint64_t version_ = 0;     // of the settings for it
+  std::string problem_;           // with them
+  std::string told_[std::size(kRooms)];
+  std::atomic<bool> closed_{false};
+};
+
+}  // namespace prostm

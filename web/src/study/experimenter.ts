@@ -1,0 +1,71 @@
+/// The experimenter's page: where the session is, what to read aloud, and the keys for what comes next.
+
+import { find, setText } from "../dom";
+import { listen, minutes, showScenes, StudyPage } from "./page";
+import type { Experimenter, Phase } from "./messages";
+import "../styles/base.css";
+import "../styles/study.css";
+
+const kTitles: Record<Phase, string> = {
+  consent: "The participant reads and agrees",
+  about: "The participant says a few things",
+  training: "Training",
+  ready: "Ready for the trials",
+  settling: "The trial is prepared",
+  presenting: "The participant feels the stimulus",
+  break: "Break",
+  paused: "Paused",
+  done: "All answers are there",
+  withdrawn: "The participant has left",
+};
+const kNext: Partial<Record<Phase, string>> = {
+  training: "End the training", ready: "Begin the trials", break: "Go on", paused: "Go on", done: "Close", withdrawn: "Close",
+};
+
+const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
+  const { phase } = study;
+  setText(find("participant"), `Participant ${study.participant}`);
+  find("blind").hidden = !study.blind;
+  setText(find("phase"), kTitles[phase]);
+  setText(find("question"), study.question ?? "");
+  find("asked").hidden = study.question === null;
+  const c = study.condition;
+  setText(find("condition"), c === null ? "" : `${c.scene} with ${c.method}`);
+  setText(find("left"), phase === "training" ? `${minutes(study.training_left_s)} left` : "");
+  setText(find("waits"), phase === "settling" ? study.waits_for || "The smoke develops." : !study.hand ? "No hand in sight." : "");
+  setText(find("output"), study.output ? "The array sounds" : "The array is silent");
+  find("output").dataset.on = String(study.output);
+  setText(find("problem"), study.problem);
+  setText(find("strengths"), study.strengths);
+  const next = kNext[phase];
+  find("next").hidden = next === undefined;
+  setText(find("next-word"), next ?? "");
+  find("answers").hidden = phase !== "presenting";
+  setText(find("answers-by"), study.answers === "participant" ? "The participant answers; these are for when they cannot." : "");
+  find("anyway").hidden = phase !== "settling" || study.waits_for === "";
+  find("pause").hidden = phase !== "settling" && phase !== "presenting";
+  find("withdraw").hidden = phase === "done" || phase === "withdrawn";
+  find("scenes").hidden = phase !== "training";
+  showScenes(find("scenes"), study, (scene) => page.act({ type: "study", do: "explore", scene }));
+});
+
+const answer = (yes: boolean) => {
+  if (page.study?.phase === "presenting") page.act({ type: "study", do: "answer", yes });
+};
+const next = () => {
+  if (page.study !== null && kNext[page.study.phase] !== undefined) page.act({ type: "study", do: "next" });
+};
+const pause = () => page.act({ type: "study", do: "pause" });
+find("yes").addEventListener("click", () => answer(true));
+find("no").addEventListener("click", () => answer(false));
+find("next").addEventListener("click", next);
+find("anyway").addEventListener("click", () => page.act({ type: "study", do: "anyway" }));
+find("pause").addEventListener("click", pause);
+const leave = find<HTMLDialogElement>("leave");
+find("withdraw").addEventListener("click", () => leave.showModal());
+find("stay").addEventListener("click", () => leave.close());
+find("go").addEventListener("click", () => {
+  leave.close();
+  page.act({ type: "study", do: "withdraw" });
+});
+listen(answer, { Enter: next, " ": next, p: pause, P: pause });

@@ -1,0 +1,59 @@
+/// The messages of a study, docs/wire.md, as types, and the check of those that come from the program.
+
+export const kPhases = [
+  "consent", "about", "training", "ready", "settling", "presenting", "break", "paused", "done", "withdrawn",
+] as const;
+export type Phase = (typeof kPhases)[number];
+
+interface StudyBase {
+  type: "study";
+  title: string;
+  phase: Phase;
+  done: number; // answers
+  trials: number;
+  training_left_s: number;
+  picture: boolean; // the participant sees the simulation
+  explored: number; // the scene of training, by its place
+  scenes: string[];
+  answers: "experimenter" | "participant"; // who enters them
+  hand: boolean; // in sight
+  waits_for: string; // why the trial does not begin; "" where it does
+}
+export interface Experimenter extends StudyBase {
+  room: "experimenter";
+  participant: number;
+  blind: boolean;
+  output: boolean;
+  question: string | null;
+  condition: { method: string; scene: string } | null;
+  strengths: string;
+  problem: string;
+}
+export interface Participant extends StudyBase {
+  room: "participant";
+  consent: string;
+  feedback: boolean | null;
+  question: { text: string; jets_mm: [number, number, number][] } | null; // x, y, radius
+}
+export type Study = Experimenter | Participant;
+
+export type StudyAct =
+  | { type: "study"; do: "next" | "anyway" | "pause" | "consent" | "withdraw" }
+  | { type: "study"; do: "answer"; yes: boolean }
+  | { type: "study"; do: "explore"; scene: number }
+  | { type: "study"; do: "about"; about: Record<string, string> };
+
+const isText = (x: unknown): x is string => typeof x === "string";
+const isList = (x: unknown, of: (v: unknown) => boolean): boolean => Array.isArray(x) && x.every(of);
+
+export function isStudy(x: Record<string, unknown>): boolean {
+  const numbers = [x.done, x.trials, x.training_left_s, x.explored];
+  const base = [x.title, x.waits_for].every(isText) && kPhases.includes(x.phase as Phase) &&
+    numbers.every((v) => Number.isFinite(v)) && isList(x.scenes, isText);
+  if (!base) return false;
+  if (x.room === "experimenter")
+    return Number.isFinite(x.participant) && isText(x.problem) && isText(x.strengths) && (x.question === null || isText(x.question));
+  const asked = x.question as { text?: unknown; jets_mm?: unknown } | null;
+  const isJet = (jet: unknown) => isList(jet, (v) => Number.isFinite(v)) && (jet as number[]).length === 3;
+  return x.room === "participant" && isText(x.consent) && (asked === null || (isText(asked.text) && isList(asked.jets_mm, isJet)));
+}

@@ -1,0 +1,55 @@
+/// The participant's page: only what the protocol shows.
+
+import { find, setText } from "../dom";
+import { drawHand } from "./hand_drawing";
+import { listen, minutes, showScenes, StudyPage } from "./page";
+import type { Participant, Phase } from "./messages";
+import "../styles/base.css";
+import "../styles/study.css";
+
+const kWords: Record<Phase, string> = {
+  consent: "", about: "A few things about you",
+  training: "Hold your hand flat above the device, palm down, and feel the smoke.",
+  ready: "Rest your hand. It goes on in a moment.",
+  settling: "Hold your hand flat above the device, palm down, and wait.",
+  presenting: "", break: "A break. Rest your hand.", paused: "A pause. Rest your hand.",
+  done: "That was all. Thank you!", withdrawn: "You have left the study. Thank you for your time.",
+};
+
+const page = new StudyPage<Participant>("/guest/live", "participant", (study) => {
+  const { phase, question } = study;
+  setText(find("words"), kWords[phase]);
+  setText(find("waits"), phase === "settling" ? study.waits_for : "");
+  find("consent").hidden = phase !== "consent";
+  setText(find("consent-text"), study.consent);
+  find("about").hidden = phase !== "about";
+  find("training").hidden = phase !== "training";
+  setText(find("left"), minutes(study.training_left_s));
+  showScenes(find("scenes"), study, (scene) => page.act({ type: "study", do: "explore", scene }));
+  find("asked").hidden = question === null;
+  if (question !== null) {
+    setText(find("question"), question.text);
+    drawHand(find("drawing"), question.jets_mm);
+  }
+  find("answers").hidden = phase !== "presenting" || study.answers !== "participant";
+  setText(find("spoken"), phase === "presenting" && study.answers === "experimenter" ? "Say yes or no." : "");
+  const told = study.feedback === null || phase === "presenting" ? "" : study.feedback ? "That was right." : "That was wrong.";
+  setText(find("feedback"), told);
+});
+
+const answer = (yes: boolean) => {
+  const { study } = page;
+  if (study?.phase === "presenting" && study.answers === "participant") page.act({ type: "study", do: "answer", yes });
+};
+find("yes").addEventListener("click", () => answer(true));
+find("no").addEventListener("click", () => answer(false));
+find("agree").addEventListener("click", () => page.act({ type: "study", do: "consent" }));
+find("refuse").addEventListener("click", () => page.act({ type: "study", do: "withdraw" }));
+find<HTMLFormElement>("about-form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  const fields = new FormData(event.target as HTMLFormElement);
+  const about: Record<string, string> = {};
+  for (const [name, value] of fields) if (typeof value === "string" && value !== "") about[name] = value;
+  page.act({ type: "study", do: "about", about });
+});
+listen(answer);

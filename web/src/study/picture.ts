@@ -1,0 +1,55 @@
+/// The simulation in three dimensions, while frames come.
+
+import type { Hello } from "../messages";
+import { View } from "../scene/view";
+import type { Frame } from "../wire";
+import { find } from "../dom";
+
+const kKept = 1000; // after the last frame the picture goes [ms]
+
+export class Picture {
+  private view: View | null = null; // made when it is needed: many a participant never sees it
+  private hello: Hello | null = null;
+  private frame: Frame | null = null;
+  private drawn: Frame | null = null;
+  private came = -Infinity; // the last frame [ms]
+  private before = 0;
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    window.requestAnimationFrame((now) => this.draw(now));
+  }
+
+  setHello(hello: Hello): void {
+    this.hello = hello;
+    this.view?.setHello(hello);
+  }
+  show(frame: Frame): void {
+    this.frame = frame;
+    this.came = performance.now();
+  }
+
+  private draw(now: number): void {
+    window.requestAnimationFrame((next) => this.draw(next));
+    const on = this.frame !== null && now - this.came < kKept;
+    find("picture").hidden = !on;
+    if (!on) return;
+    const view = this.view ??= this.make();
+    if (!view.ready(now, view.pace.slow ? 100 : 0)) return;
+    if (this.frame !== this.drawn) view.setFrame(this.frame!);
+    this.drawn = this.frame;
+    view.render(this.before === 0 ? 0 : (now - this.before) / 1000);
+    this.before = now;
+  }
+
+  private make(): View {
+    const view = new View(this.canvas);
+    if (this.hello !== null) view.setHello(this.hello);
+    const dark = document.documentElement.dataset.theme === "dark";
+    view.setDark(dark);
+    view.array.setDark(dark);
+    view.setField("none");
+    // smoke and hand, not how they are rendered
+    view.paths.group.visible = view.ruler.group.visible = false;
+    return view;
+  }
+}

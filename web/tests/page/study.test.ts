@@ -1,0 +1,213 @@
+import { spawn, type ChildProcess } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Browser, Page, WebSocket } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import { clean, folder, kProgram, openBrowser, Watch, type Json } from "./program";
+
+/// A study whose trials are short, with a hand that is not tracked.
+function protocol(more: string): string {
+  const file = join(folder, `${Math.random().toString(36).slice(2)}.toml`);
+  writeFileSync(file, `${more}
+[scene.one-plume]
+question = "Is there one plume?"
+[scene.four-plumes]
+question = "Are there four plumes?"
+[method.am.pipeline]
+method = "am"
+[method.am.fluid]
+cells = 32
+[method.pro-stm.fluid]
+cells = 32
+`);
+  return file;
+}
+
+class Study {
+  url = "";
+  printed = "";
+  private child: ChildProcess | null = null;
+  constructor(readonly protocol: string, readonly participant: number, readonly answers = join(folder, "answers")) {}
+
+  async start(...options: string[]): Promise<void> {
+    const all = ["study", "run", this.protocol, "--participant", String(this.participant), "--answers", this.answers, "--view-port", "0", ...options];
+    const child = spawn(kProgram, all, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+    this.child = child;
+    this.printed = "";
+    await new Promise<void>((resolve, reject) => {
+      const read = (data: Buffer) => {
+        this.printed += data.toString();
+        const found = /experimenter: (\S+)\nparticipant:/.exec(this.printed);
+        if (found !== null) [this.url] = found.slice(1) as [string], resolve();
+      };
+      child.stdout.on("data", read);
+      child.stderr.on("data", read);
+      child.on("exit", () => reject(new Error(this.printed)));
+    });
+  }
+  async ended(): Promise<number | null> {
+    const { child } = this;
+    if (child!.exitCode === null && child!.signalCode === null) await new Promise((resolve) => child!.once("exit", resolve));
+    return child!.exitCode;
+  }
+  async kill(signal: NodeJS.Signals = "SIGKILL"): Promise<void> {
+    this.child?.kill(signal);
+    await this.ended();
+  }
+  lines(): Json[] {
+    const text = readFileSync(join(this.answers, `participant-${this.participant}.jsonl`), "utf8");
+    return text.split("\n").slice(0, -1).map((line) => JSON.parse(line) as Json);
+  }
+  trials(): Json[] { return this.lines().filter((line) => line.kind === "trial"); }
+}
+
+/// All that the program sends to a page.
+class Traffic {
+  readonly texts: string[] = [];
+  readonly sizes: number[] = [];
+  constructor(page: Page) {
+    page.on("websocket", (socket: WebSocket) => socket.on("framereceived", ({ payload }) => {
+      if (typeof payload === "string") this.texts.push(payload);
+      else this.sizes.push(payload.length);
+    }));
+  }
+}
+
+let browser: Browser;
+beforeAll(async () => {
+  browser = await openBrowser();
+});
+afterAll(async () => {
+  await browser?.close();
+  clean();
+});
+
+const comes = (page: Page, wanted: string) =>
+  page.waitForFunction((p) => document.documentElement.dataset.phase === p, wanted, { polling: 20, timeout: 30_000 });
+
+describe("a session of a study", () => {
+  const study = new Study(protocol('[study]\ntitle = "Plumes"\n[training]\nseconds = 60\n[trials]\nrepeats = 2\nsettle = 0.5\ngate = "noted"'), 1);
+  let experimenter: Page, participant: Page, traffic: Traffic, watch: Watch[];
+
+  it("begins with a training whose picture the participant sees", async () => {
+    await study.start();
+    [experimenter, participant] = [await browser.newPage(), await browser.newPage()];
+    traffic = new Traffic(participant);
+    watch = [new Watch(experimenter), new Watch(participant)];
+    await experimenter.goto(study.url);
+    await participant.goto(`${study.url}participant`);
+    await comes(experimenter, "training");
+    await participant.waitForFunction(() => !document.getElementById("picture")!.hidden);
+    await participant.getByRole("button", { name: "four plumes" }).click();
+    await experimenter.waitForFunction(() => document.querySelector("#scenes [aria-pressed=true]")?.textContent === "four plumes");
+    expect((await fetch(`${study.url}numbers.json`)).status).toBe(403);
+  });
+
+  it("asks on both pages, and takes answers from the experimenter's keys and buttons", async () => {
+    await experimenter.keyboard.press("Enter");
+    await comes(experimenter, "ready");
+    await experimenter.keyboard.press("Enter");
+    const sizes = traffic.sizes.length;
+    for (let i = 0; i < 4; ++i) {
+      await comes(experimenter, "presenting");
+      await participant.waitForFunction(() => !document.getElementById("asked")!.hidden);
+      const asked = await experimenter.locator("#question").textContent();
+      expect(await participant.locator("#question").textContent()).toBe(asked);
+      expect(await participant.locator("#drawing circle").count()).toBe(asked === "Is there one plume?" ? 1 : 4);
+      expect(await participant.locator("#answers").isVisible()).toBe(false);
+      await participant.keyboard.press("y"); // not theirs to give
+      if (i % 2 === 0) await experimenter.keyboard.press(i === 0 ? "y" : "PageUp");
+      else await experimenter.locator(i === 1 ? "#yes" : "#no").click();
+      await experimenter.waitForFunction((done) => document.querySelector("progress")!.value === done, i + 1);
+    }
+    await comes(participant, "done");
+    expect(traffic.sizes.length - sizes).toBeLessThan(10); // the last pictures of the training
+    expect(study.trials().map((t) => t.answer)).toEqual([1, 1, 0, 0]);
+  });
+
+  it("sends the participant nothing that tells the answer or the method", () => {
+    expect(study.trials().length).toBe(4);
+    for (const text of traffic.texts) {
+      expect(text).not.toMatch(/"(method|scene|condition|correct|gate|stimulus)"|pro-stm|\bam\b/);
+      const message = JSON.parse(text) as Json;
+      if (message.type !== "study") continue;
+      const keys = ["type", "room", "title", "phase", "done", "trials", "training_left_s", "picture", "explored", "answers", "consent", "scenes", "hand", "waits_for", "feedback", "question"];
+      expect(Object.keys(message)).toEqual(keys);
+      expect(message.feedback).toBe(null);
+      // the jets are those of the question
+      const question = message.question as { text: string; jets_mm: number[][] } | null;
+      if (question !== null) expect(question.jets_mm.length).toBe(question.text === "Is there one plume?" ? 1 : 4);
+    }
+  });
+
+  it("ends when the experimenter closes it", async () => {
+    await experimenter.keyboard.press("Enter");
+    expect(await study.ended()).toBe(0);
+    expect(study.printed).toContain("Participant 1: 4 of 4 answers");
+    for (const { complaints } of watch) expect(complaints.filter((c) => !/ERR_CONNECTION_REFUSED|closed/.test(c))).toEqual([]);
+    await experimenter.close();
+    await participant.close();
+  });
+});
+
+describe("participants who answer themselves", () => {
+  it("do so with consent, words about them, keys and feedback where the protocol says so", async () => {
+    const study = new Study(protocol('[study]\nconsent = "I take part."\ndemographics = true\nblind = false\n[training]\nseconds = 0\n' +
+      '[trials]\nrepeats = 1\nsettle = 0.5\ngate = "off"\nanswers = "participant"\nfeedback = true\nbreak_every = 1'), 2);
+    await study.start();
+    const [experimenter, participant] = [await browser.newPage(), await browser.newPage()];
+    await experimenter.goto(study.url);
+    await participant.goto(`${study.url}participant`);
+    await comes(participant, "consent");
+    await participant.getByRole("button", { name: "I agree" }).click();
+    await comes(participant, "about");
+    await participant.getByLabel("Age").selectOption("25 to 34");
+    await participant.getByRole("button", { name: "Go on" }).click();
+    await comes(experimenter, "ready");
+    for (let i = 0; i < 2; ++i) {
+      await experimenter.keyboard.press("Enter");
+      await comes(participant, "presenting");
+      expect(await experimenter.locator("#condition").textContent()).toMatch(/^(one|four)-plumes? with (am|pro-stm)$/);
+      if (i === 0) await participant.keyboard.press("ArrowRight");
+      else await participant.locator("#no").click();
+      await comes(participant, i === 0 ? "break" : "done");
+      expect(await participant.locator("#feedback").textContent()).toBe(study.trials()[i]!.correct === 1 ? "That was right." : "That was wrong.");
+    }
+    expect(study.lines().find((line) => line.kind === "about")?.answers).toEqual({ age: "25 to 34" });
+    await study.kill("SIGINT");
+    await experimenter.close();
+    await participant.close();
+  });
+});
+
+describe("a session that is killed", () => {
+  it("goes on with the trial that was under way, and has each answer once", async () => {
+    const study = new Study(protocol('[training]\nseconds = 0\n[trials]\nrepeats = 5\nsettle = 0.5\ngate = "off"'), 3);
+    let given = 0;
+    for (let start = 0; given < 10; ++start) {
+      await study.start(...(start === 0 ? [] : ["--resume"]));
+      expect(study.trials().length).toBe(given);
+      const page = await browser.newPage();
+      await page.goto(study.url);
+      await comes(page, "ready");
+      await page.keyboard.press("Enter");
+      for (const until = start % 3; given < 10; ++given) {
+        await comes(page, "presenting");
+        if (given % 3 === until) {
+          // whether the answer is on the disk when the program dies is not known; that it is there once is
+          if (start % 2 === 0) await page.keyboard.press("y");
+          break;
+        }
+        await page.keyboard.press("y");
+        await page.waitForFunction((done) => document.querySelector("progress")!.value === done, given + 1);
+      }
+      await study.kill();
+      given = study.trials().length;
+      await page.close();
+    }
+    expect(study.trials().map((t) => t.trial)).toEqual(Array.from({ length: 10 }, (_, i) => i + 1));
+    await expect(study.start("--resume")).rejects.toThrow("has given all answers");
+    await expect(study.start()).rejects.toThrow("has begun");
+    await expect(new Study(study.protocol, 4).start("--resume")).rejects.toThrow("has not begun");
+  });
+});
