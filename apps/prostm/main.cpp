@@ -57,7 +57,7 @@ void add_run(CLI::App& app, Work& work) {
   auto o = std::make_shared<RunOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand, o->hand_size);
   add_device(*command, o->common);
-  auto* figure = add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
+  auto* figure = add_figure(*command, o->common, "a picture of one instant (.png, .svg or .pdf)");
   command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle")
       ->needs(figure);
   command->add_option("--seconds", o->seconds,
@@ -96,7 +96,7 @@ void add_plan(CLI::App& app, Work& work) {
   auto* figure =
       add_figure(*command, o->common,
                  "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
-                 "presets (.png or .svg)");
+                 "presets (.png, .svg or .pdf)");
   add_array(*command, o->common,
             "plan with the width that the focus of usx, autd3 or an array file has there");
   add_input(*command, o->common.files, "--beside", o->beside,
@@ -170,7 +170,7 @@ void add_field(CLI::App& app, Work& work) {
   command->add_flag("--memoryless", o->memoryless, "transducers that follow their drives at once");
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
             "settings of any stage, a TOML file (docs/files.md)");
-  add_figure(*command, o->common, "target, envelope, mean and difference (.png or .svg)");
+  add_figure(*command, o->common, "target, envelope, mean and difference (.png, .svg or .pdf)");
   add_json(*command, o->common.files, o->common.json);
   command->footer(
       "Example:\n  prostm field palm.plan.json --field data/palm.npy --cell-mm 5 --array autd3 "
@@ -215,7 +215,7 @@ void add_selftest(CLI::App& app, Work& work) {
   add_device(*command, o->common);
   add_array(*command, o->common,
             "usx, autd3, or an array file (.json); default: the device's, or usx");
-  add_figure(*command, o->common, "a picture of the array, seen from above (.png or .svg)");
+  add_figure(*command, o->common, "a picture of the array, seen from above (.png, .svg or .pdf)");
   command->add_option("--seconds", o->seconds, "of each figure, 0.2 to 60")->capture_default_str();
   command->add_option("--height-mm", o->height_mm, "of the figures over the array, 50 to 500")
       ->capture_default_str();

@@ -1,5 +1,5 @@
 #pragma once
-/// Labelled pictures of fields, plans and the scene; PNG or SVG by the ending of the name.
+/// Labelled pictures of fields, plans and the scene; PNG, SVG or PDF by the ending of the name.
 
 #include <cstdint>
 #include <string>
@@ -13,7 +13,7 @@
 namespace prostm {
 
 /// Tries whether a picture could be written, before the work that it is to show. @throws
-/// InputError: the name ends in neither .png nor .svg, or the file cannot be written.
+/// InputError: the name ends in none of .png, .svg and .pdf, or the file cannot be written.
 void check_figure(const std::string& path);
 
 /// The data of the panels of the paper's Fig. 2.

@@ -1,5 +1,5 @@
 #pragma once
-/// A page to draw on, PNG or SVG. Private to figure. Coordinates are points, y down.
+/// A page to draw on, PNG, SVG or PDF. Private to figure. Coordinates are points, y down.
 
 #include <cstdint>
 #include <functional>
@@ -28,7 +28,7 @@ struct Box {
 
 class Canvas {
  public:
-  /// @throws InputError unless `path` ends in .png or .svg. PNG pages have two pixels a point.
+  /// @throws InputError unless `path` ends in .png, .svg or .pdf. PNG pages have two pixels a point.
   Canvas(const std::string& path, double width, double height);
   ~Canvas();
 
