@@ -68,6 +68,11 @@ void check_json_output(const std::string& path) {
   check_writable(path);
 }
 
+void check_csv_output(const std::string& path) {
+  if (!path.ends_with(".csv")) throw InputError(path + " names no table; it must end in .csv");
+  check_writable(path);
+}
+
 void check_pose_output(const std::string& path) {
   if (!path.ends_with(".json"))
     throw InputError(path + " names no pose file; it must end in .json, as --tracker takes it");

@@ -13,6 +13,7 @@
 #include "common.hpp"
 #include "options.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/version.hpp"
 #include "usage.hpp"
@@ -310,7 +311,16 @@ void add_study(CLI::App& app, Work& work) {
       ->capture_default_str();
   command->add_option("--seed", o->settings.seed, "of random splits of many participants")
       ->capture_default_str();
+  command->add_option("--guess", o->settings.guess,
+                      "share of right answers at low levels; default: --chance");
+  command->add_option("--lapse", o->settings.lapse,
+                      "share of wrong answers at high levels; default: 0.02");
   add_json(*command, o->files, o->json);
+  add_output(*command, o->files, "--figure", o->figure, prostm::check_figure,
+             "shares as the paper's Fig. 4, or psychometric functions where answers have levels "
+             "(.png, .svg or .pdf)");
+  add_output(*command, o->files, "--tidy", o->tidy, check_csv_output,
+             "write the answers as a table (.csv) for other programs (docs/study.md)");
   command->footer("Example:\n  prostm study analyse data/made-up-answers.csv");
   command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
   add_unbuilt(*study, "run", "the trials of a protocol");

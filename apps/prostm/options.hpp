@@ -123,7 +123,8 @@ struct CheckOptionsGiven {
 
 struct AnalyseOptionsGiven {
   Files files;
-  std::string answers, json;
+  std::string answers, json, figure;
+  std::string tidy;  ///< file for the answers
   AnalysisSettings settings;
 };
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "prostm/study/analysis.hpp"
 
 namespace prostm {
@@ -29,6 +31,7 @@ class Words {
     if (looks > 1)
       say(fmt::format("These are {} comparisons, and no p is corrected for their number", looks));
     for (const Comparison& of : all.comparisons) say_needed(of);
+    if (!analysis_.thresholds.empty()) say_thresholds();
     return text_;
   }
 
@@ -126,6 +129,48 @@ class Words {
                     "{:g} of 100 studies, {} participants{} are needed; this one had {}",
                     of.first, of.second, *of.d, 100.0 * analysis_.settings.power, *of.needed,
                     within ? "" : " with each method", had()));
+  }
+
+  void say_thresholds() {
+    say("All of this is about shares of right answers, which compare methods only where all were "
+        "asked at the same levels; thresholds hold for other levels too");
+    const std::vector<ThresholdResult>& all = analysis_.thresholds;
+    for (std::size_t i = 0; i < all.size();) {
+      std::size_t end = i + 1;  // of its participants
+      while (end < all.size() && !all[end].participant.empty()) ++end;
+      say_threshold(all[i], std::span(all).subspan(i + 1, end - i - 1));
+      i = end;
+    }
+    say(
+        fmt::format("A threshold is the level half-way between guessing ({:g} %) and the most "
+                    "({:g} %); intervals are as if answers were independent, and too narrow for "
+                    "people in general where participants differ",
+                    100.0 * *analysis_.settings.guess, 100.0 * (1.0 - *analysis_.settings.lapse)));
+  }
+
+  void say_threshold(const ThresholdResult& of, std::span<const ThresholdResult> participants) {
+    std::string sentence = fmt::format("With {} in {}, ", of.method, of.scene);
+    if (!of.fit) {
+      sentence += fmt::format("no threshold can be fitted: {}", in_words(of.no_fit));
+    } else if (const auto& interval = of.fit->threshold) {
+      sentence += fmt::format("the threshold is {:.4g} ({:g} % interval {:.4g} to {:.4g})",
+                              of.fit->function.threshold, 100.0 * analysis_.settings.level,
+                              interval->low, interval->high);
+    } else {
+      sentence += fmt::format("the threshold is {:.4g}, and the answers leave its interval open",
+                              of.fit->function.threshold);
+    }
+    std::vector<double> own;
+    for (const ThresholdResult& x : participants) {
+      if (x.fit) own.push_back(x.fit->function.threshold);
+    }
+    sentence += fmt::format("; {} of {} single participants' answers have a fit", own.size(),
+                            participants.size());
+    if (!own.empty()) {
+      const auto [low, high] = std::minmax_element(own.begin(), own.end());
+      sentence += fmt::format(", with thresholds from {:.4g} to {:.4g}", *low, *high);
+    }
+    say(sentence);
   }
 
   std::string had() const {

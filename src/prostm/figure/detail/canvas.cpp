@@ -173,6 +173,17 @@ double Canvas::text_width(const std::string& text, const TextStyle& style) {
   return impl_->advance(text);
 }
 
+std::string Canvas::shortened(const std::string& text, double width, const TextStyle& style) {
+  if (text_width(text, style) <= width) return text;
+  std::string begin = text;
+  while (!begin.empty() && text_width(begin + "…", style) > width) {
+    const auto inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+    while (inside(begin.back())) begin.pop_back();  // the rest of a character of several bytes
+    begin.pop_back();
+  }
+  return begin + "…";
+}
+
 void Canvas::cells(const Box& box, int rows, int cols,
                    const std::function<Colour(int row, int col)>& colour) {
   // a picture of the cells, so that no seams show between them
