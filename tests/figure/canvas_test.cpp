@@ -81,6 +81,24 @@ TEST(Canvas, WritesTextWhereItIsTold) {
   EXPECT_GT(right, 20.0);
 }
 
+TEST(Canvas, ShortensTextBetweenCharacters) {
+  const test::TemporaryFolder folder;
+  Canvas canvas(folder.file("a.png"), 60, 20);
+  const TextStyle style{.size = 14.0};
+  const std::string text = "äöüß and more";
+  const double width = canvas.text_width(text, style);
+  EXPECT_EQ(canvas.shortened(text, width, style), text);
+  for (double w = width - 1.0; w > 20.0; w -= 3.0) {
+    std::string shorter = canvas.shortened(text, w, style);
+    EXPECT_LE(canvas.text_width(shorter, style), w);
+    ASSERT_TRUE(shorter.ends_with("…"));
+    shorter.resize(shorter.size() - std::string("…").size());
+    EXPECT_TRUE(text.starts_with(shorter));
+    EXPECT_NE(static_cast<unsigned char>(text[shorter.size()]) & 0xC0U, 0x80U);
+  }
+  EXPECT_EQ(canvas.shortened(text, 0.0, style), "…");
+}
+
 TEST(Canvas, SaysWhyItCannotWrite) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(input_error([&] { Canvas(folder.file("a.gif"), 10, 10); }),

@@ -18,6 +18,8 @@ struct Answer {
   bool yes = false;                  ///< the answer to it
   std::string trial = {};            ///< empty where it is not known
   std::optional<double> level = {};  ///< of the stimulus, where it was varied
+
+  bool operator==(const Answer&) const = default;
 };
 
 /// Reads answers from CSV (RFC 4180, UTF-8): a header with the columns participant, method, scene
