@@ -321,7 +321,9 @@ void add_study(CLI::App& app, Work& work) {
              "(.png, .svg or .pdf)");
   add_output(*command, o->files, "--tidy", o->tidy, check_csv_output,
              "write the answers as a table (.csv) for other programs (docs/study.md)");
-  command->footer("Example:\n  prostm study analyse data/made-up-answers.csv");
+  command->footer(
+      "Example:\n  prostm study analyse data/made-up-answers.csv --figure answers.svg --tidy "
+      "tidy.csv");
   command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
   add_unbuilt(*study, "run", "the trials of a protocol");
   add_unbuilt(*study, "simulate", "simulated observers in place of people");
