@@ -18,8 +18,8 @@ Proportion correct_of(const ThresholdResult& result) {
   return sum;
 }
 
-std::string interval_text(const std::optional<Interval>& interval) {
-  return interval ? fmt::format("{:.4g} to {:.4g}", interval->low, interval->high)
+std::string interval_text(const std::optional<Interval>& interval, int digits) {
+  return interval ? fmt::format("{:.{}g} to {:.{}g}", interval->low, digits, interval->high, digits)
                   : std::string("open");
 }
 
@@ -56,9 +56,11 @@ void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresh
                method, name_of(of), participant, of.scores.size(), correct.successes,
                correct.trials);
     if (of.fit) {
-      fmt::print(out, " {:>10.4g} {:>21} {:>10.4g} {:>21}\n", of.fit->function.threshold,
-                 interval_text(of.fit->threshold), of.fit->function.slope,
-                 interval_text(of.fit->slope));
+      constexpr int kSlopeDigits = 4;
+      const int digits = level_digits(of.scores);
+      fmt::print(out, " {:>10.{}g} {:>21} {:>10.{}g} {:>21}\n", of.fit->function.threshold, digits,
+                 interval_text(of.fit->threshold, digits), of.fit->function.slope, kSlopeDigits,
+                 interval_text(of.fit->slope, kSlopeDigits));
     } else {
       fmt::print(out, "  no fit: {}\n", in_words(of.no_fit));
     }

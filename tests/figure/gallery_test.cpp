@@ -130,6 +130,8 @@ TEST(DrawCharts, ShowsDotsAndIntervals) {
   EXPECT_TRUE(bytes_in(".svg", {chart}).find("</svg>") != std::string::npos);
   EXPECT_FALSE(bytes_of({chart, chart, chart}, 2) == bytes_of({chart, chart, chart}, 3));
   EXPECT_TRUE(bytes_of({chart, chart, chart}, 0) == bytes_of({chart, chart, chart}, 3));
+  chart.series[0].dots = {{1.0, 0.5, 1.0}, {std::nextafter(1.0, 2.0), 0.6, 1.0}};  // hardly a range
+  EXPECT_TRUE(bytes_in(".svg", {chart}).find("</svg>") != std::string::npos);
   chart.series[0].dots[0].y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(bytes_of({chart}, 0), std::invalid_argument);
 }

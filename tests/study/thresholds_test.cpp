@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "prostm/core/random.hpp"
 #include "prostm/study/analysis.hpp"
@@ -106,6 +107,17 @@ TEST(Thresholds, AreSaidInWords) {
   EXPECT_THAT(in_words(analyse(answers)), HasSubstr("all answers are at one level"));
   for (Answer& a : answers) a.level.reset();
   EXPECT_THAT(in_words(analyse(answers)), Not(HasSubstr("threshold")));
+}
+
+TEST(Thresholds, ArePrintedWithDigitsThatTellThemApart) {
+  const auto digits = [](double low, double high) {
+    return level_digits(std::vector<LevelScore>{{low, {1, 2}}, {high, {1, 2}}});
+  };
+  EXPECT_EQ(digits(0.1, 0.8), 4);
+  EXPECT_EQ(digits(-3e8, 1e9), 4);
+  EXPECT_EQ(digits(100000.1, 100000.5), 9);
+  EXPECT_EQ(digits(1.0, std::nextafter(1.0, 2.0)), 15);
+  EXPECT_EQ(digits(0.5, 0.5), 4);
 }
 
 TEST(Thresholds, TakeGuessesAndLapses) {

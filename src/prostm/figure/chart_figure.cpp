@@ -115,6 +115,11 @@ class ChartDrawing {
                  text.empty() ? figure::mix(figure::kPaper, figure::kNoSkin, 0.6) : figure::kSkin,
                  0.7);
     if (text.empty()) return;
+    if (is_x) {  // long numbers leave out some
+      const double half = 0.5 * canvas_.text_width(text, {.size = 10.5}), kApart = 5.0;
+      if (at.x() - half < tick_end_ + kApart) return;
+      tick_end_ = at.x() + half;
+    }
     canvas_.text(is_x ? Vec2(at + Vec2(0.0, 16.0)) : Vec2(at + Vec2(-7.0, 4.0)), text,
                  {.size = 10.5, .align = is_x ? Align::Centre : Align::Right});
   }
@@ -123,8 +128,9 @@ class ChartDrawing {
     if (!axis.logarithmic) {
       const double first = std::ceil(axis.low / axis.step),
                    last = std::floor(axis.high / axis.step);
-      for (double i = first; i <= last; ++i)
-        tick(is_x, i * axis.step, figure::tick_text(i * axis.step));
+      constexpr int kMostTicks = 20;  // also where rounding has eaten the range
+      for (int i = 0; i < kMostTicks && first + i <= last; ++i)
+        tick(is_x, (first + i) * axis.step, figure::tick_text((first + i) * axis.step));
       return;
     }
     const int first = static_cast<int>(std::lround(std::log10(axis.low)));
@@ -243,7 +249,8 @@ class ChartDrawing {
   const Chart& chart_;
   Box box_;
   double right_;
-  double largest_ = 0.0;  // area of a dot
+  double largest_ = 0.0;         // area of a dot
+  double tick_end_ = -HUGE_VAL;  // right end of the last number under the box
   Axis x_, y_;
 };
 

@@ -1,6 +1,7 @@
 #include "prostm/study/thresholds.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -56,6 +57,14 @@ std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers, dou
     }
   }
   return out;
+}
+
+int level_digits(std::span<const LevelScore> scores) {
+  constexpr int kOfRange = 4, kMost = 15;
+  const double low = scores.front().level, high = scores.back().level;
+  if (!(high > low)) return kOfRange;
+  const double more = std::log10(std::max(std::abs(low), std::abs(high)) / (high - low));
+  return std::min(kMost, kOfRange + std::max(0, static_cast<int>(more)));
 }
 
 const char* in_words(NoFit reason) {

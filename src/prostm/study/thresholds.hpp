@@ -25,6 +25,9 @@ struct ThresholdResult {
 std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers, double guess,
                                             double lapse, double level);
 
+/// Digits that tell levels apart by a thousandth of their range, or nearly. @pre levels ascend.
+int level_digits(std::span<const LevelScore> scores);
+
 /// The reason why there is no fit, without a full stop.
 const char* in_words(NoFit reason);
 

@@ -150,15 +150,18 @@ class Words {
 
   void say_threshold(const ThresholdResult& of, std::span<const ThresholdResult> participants) {
     std::string sentence = fmt::format("With {} in {}, ", of.method, of.scene);
+    const auto text = [digits = level_digits(of.scores)](double level) {
+      return fmt::format("{:.{}g}", level, digits);
+    };
     if (!of.fit) {
       sentence += fmt::format("no threshold can be fitted: {}", in_words(of.no_fit));
     } else if (const auto& interval = of.fit->threshold) {
-      sentence += fmt::format("the threshold is {:.4g} ({:g} % interval {:.4g} to {:.4g})",
-                              of.fit->function.threshold, 100.0 * analysis_.settings.level,
-                              interval->low, interval->high);
+      sentence += fmt::format("the threshold is {} ({:g} % interval {} to {})",
+                              text(of.fit->function.threshold), 100.0 * analysis_.settings.level,
+                              text(interval->low), text(interval->high));
     } else {
-      sentence += fmt::format("the threshold is {:.4g}, and the answers leave its interval open",
-                              of.fit->function.threshold);
+      sentence += fmt::format("the threshold is {}, and the answers leave its interval open",
+                              text(of.fit->function.threshold));
     }
     std::vector<double> own;
     for (const ThresholdResult& x : participants) {
@@ -168,7 +171,7 @@ class Words {
                             participants.size());
     if (!own.empty()) {
       const auto [low, high] = std::minmax_element(own.begin(), own.end());
-      sentence += fmt::format(", with thresholds from {:.4g} to {:.4g}", *low, *high);
+      sentence += fmt::format(", with thresholds from {} to {}", text(*low), text(*high));
     }
     say(sentence);
   }
