@@ -9,10 +9,6 @@
 namespace prostm::app {
 namespace {
 
-std::string p_sentence(double p) {
-  return p < 0.001 ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);
-}
-
 /// Brackets join methods that differ by one test or the other, and say both p.
 std::vector<ShareBracket> brackets_of(const SceneResult& scene, double alpha) {
   std::vector<ShareBracket> out;
@@ -25,8 +21,8 @@ std::vector<ShareBracket> brackets_of(const SceneResult& scene, double alpha) {
     if (of.pooled_z.p >= alpha && of.permutation.p >= alpha) continue;
     out.push_back({place(of.first),
                    place(of.second),
-                   {"answers: " + p_sentence(of.pooled_z.p),
-                    "participants: " + p_sentence(of.permutation.p)}});
+                   {"answers: " + p_in_words(of.pooled_z.p),
+                    "participants: " + p_in_words(of.permutation.p)}});
   }
   return out;
 }

@@ -1,10 +1,9 @@
 /// Groups of bars with intervals, dots and brackets.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 

@@ -68,5 +68,7 @@ Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settin
 
 /// A paragraph in plain words: what the data support, what they do not, and why.
 std::string in_words(const Analysis& analysis);
+/// "p = 0.012", or "p < 0.001".
+std::string p_in_words(double p);
 
 }  // namespace prostm

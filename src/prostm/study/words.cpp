@@ -7,10 +7,6 @@
 namespace prostm {
 namespace {
 
-std::string p_text(double p) {
-  return p < 0.001 ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);
-}
-
 std::string share_text(const Proportion& x) {
   return fmt::format("{} of {} answers were right ({:.1f} %)", x.successes, x.trials,
                      100.0 * x.value());
@@ -52,26 +48,27 @@ class Words {
     std::string sentence = fmt::format("With {} {}", method.method, share_text(method.correct));
     if (is_significant(method.p_chance)) {
       sentence += fmt::format(", which is {} the {:g} % of guessing ({})",
-                              above ? "above" : "below", chance, p_text(method.p_chance));
+                              above ? "above" : "below", chance, p_in_words(method.p_chance));
     } else {
       sentence += fmt::format(", which guessing would do too ({:g} %, {})", chance,
-                              p_text(method.p_chance));
+                              p_in_words(method.p_chance));
     }
     say(sentence);
   }
 
   void say_difference(const Comparison& of) {
-    say(fmt::format(
-        "If all answers were independent, the difference between {} and {} would be "
-        "{} (z = {:.2f}, {})",
-        of.first, of.second, verdict(of.pooled_z.p), of.pooled_z.statistic, p_text(of.pooled_z.p)));
+    say(
+        fmt::format("If all answers were independent, the difference between {} and {} would be "
+                    "{} (z = {:.2f}, {})",
+                    of.first, of.second, verdict(of.pooled_z.p), of.pooled_z.statistic,
+                    p_in_words(of.pooled_z.p)));
     say_dispersion();
     const bool within = analysis_.groups == Groups::Within;
     std::string sentence = fmt::format(
         "Over participants, the test that holds for other people, it is {} (permutation {}",
-        verdict(of.permutation.p), p_text(of.permutation.p));
+        verdict(of.permutation.p), p_in_words(of.permutation.p));
     if (of.t)
-      sentence += fmt::format("; {} {}", within ? "paired t" : "Welch's t", p_text(of.t->p));
+      sentence += fmt::format("; {} {}", within ? "paired t" : "Welch's t", p_in_words(of.t->p));
     say(sentence + ")");
     if (!is_significant(of.permutation.p)) {
       say(fmt::format(
@@ -90,9 +87,9 @@ class Words {
                       ? fmt::format(
                             "They are not: participants differ {:.1f} times as much with {} "
                             "as independent answers would make them ({})",
-                            ratio, method.method, p_text(method.dispersion->p))
+                            ratio, method.method, p_in_words(method.dispersion->p))
                       : fmt::format(", and {:.1f} times as much with {} ({})", ratio, method.method,
-                                    p_text(method.dispersion->p));
+                                    p_in_words(method.dispersion->p));
     }
     say(sentence.empty() ? "Trials of one participant are never quite independent" : sentence);
   }
@@ -109,8 +106,8 @@ class Words {
           fmt::format("In {} alone ({:.1f} % with {}, {:.1f} % with {}) the difference is {} over "
                       "answers (z = {:.2f}, {}) and {} over participants ({})",
                       scene.scene, share(of.first), of.first, share(of.second), of.second,
-                      verdict(of.pooled_z.p), of.pooled_z.statistic, p_text(of.pooled_z.p),
-                      verdict(of.permutation.p), p_text(of.permutation.p)));
+                      verdict(of.pooled_z.p), of.pooled_z.statistic, p_in_words(of.pooled_z.p),
+                      verdict(of.permutation.p), p_in_words(of.permutation.p)));
     }
   }
 
@@ -192,6 +189,10 @@ class Words {
 };
 
 }  // namespace
+
+std::string p_in_words(double p) {
+  return p < 0.001 ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);
+}
 
 std::string in_words(const Analysis& analysis) {
   return Words(analysis).text();
