@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   app.add_option("--figure", options.figure,
-                 "draw target, STM and AM for each of FIELDS; .png or .svg");
+                 "draw target, STM and AM for each of FIELDS; .png, .svg or .pdf");
   app.add_option("FIELDS", options.files,
                  "recordings of prostm capture or field files, after the generated fields");
   return run(app, argc, argv, [&] { return measure(options); });

@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--vectors", options.vectors,
                  "best vector instructions to use: AVX2, SSE4, …, none");
-  app.add_option("--figure", options.figure, "draw the gallery; .png or .svg");
+  app.add_option("--figure", options.figure, "draw the gallery; .png, .svg or .pdf");
   app.add_option("--scaling-figure", options.scaling_figure, "draw time against size");
   app.add_option("--bending-figure", options.bending_figure, "draw error against corners");
   app.add_option("FIELDS", options.files,

@@ -60,11 +60,16 @@ bool Files::any_output() const {
 
 void check_json_output(const std::string& path) {
   const std::string ending = lower_case(std::filesystem::path(path).extension().string());
-  constexpr std::array kOthers = {".png", ".svg", ".h5", ".npy", ".toml", ".jsonl"};
+  constexpr std::array kOthers = {".png", ".svg", ".pdf", ".csv", ".h5", ".npy", ".toml", ".jsonl"};
   if (std::ranges::find(kOthers, ending) != kOthers.end()) {
     throw InputError(fmt::format(
         "{} would hold JSON, and {} is another kind of file; end its name in .json", path, ending));
   }
+  check_writable(path);
+}
+
+void check_csv_output(const std::string& path) {
+  if (!path.ends_with(".csv")) throw InputError(path + " names no table; it must end in .csv");
   check_writable(path);
 }
 

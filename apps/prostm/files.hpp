@@ -42,6 +42,8 @@ class Files {
 /// Checks a file for JSON. @throws InputError: it cannot be written, or the ending of its name says
 /// another kind.
 void check_json_output(const std::string& path);
+/// The same for a table, whose name must end in .csv.
+void check_csv_output(const std::string& path);
 /// The same for a pose file, whose name must end in .json: --tracker takes no other.
 void check_pose_output(const std::string& path);
 

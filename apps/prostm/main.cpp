@@ -14,6 +14,7 @@
 #include "common.hpp"
 #include "options.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/version.hpp"
 #include "usage.hpp"
@@ -64,7 +65,7 @@ void add_run(CLI::App& app, Work& work) {
   auto o = std::make_shared<RunOptionsGiven>();
   add_pipeline(*command, o->common, o->scene, o->hand, o->hand_size);
   add_device(*command, o->common);
-  auto* figure = add_figure(*command, o->common, "a picture of one instant (.png or .svg)");
+  auto* figure = add_figure(*command, o->common, "a picture of one instant (.png, .svg or .pdf)");
   command->add_option("--figure-at", o->figure_at, "its run time in seconds; default: the middle")
       ->needs(figure);
   command->add_option("--seconds", o->seconds,
@@ -103,7 +104,7 @@ void add_plan(CLI::App& app, Work& work) {
   auto* figure =
       add_figure(*command, o->common,
                  "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
-                 "presets (.png or .svg)");
+                 "presets (.png, .svg or .pdf)");
   add_array(*command, o->common,
             "plan with the width that the focus of usx, autd3 or an array file has there");
   add_input(*command, o->common.files, "--beside", o->beside,
@@ -177,7 +178,7 @@ void add_field(CLI::App& app, Work& work) {
   command->add_flag("--memoryless", o->memoryless, "transducers that follow their drives at once");
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
             "settings of any stage, a TOML file (docs/files.md)");
-  add_figure(*command, o->common, "target, envelope, mean and difference (.png or .svg)");
+  add_figure(*command, o->common, "target, envelope, mean and difference (.png, .svg or .pdf)");
   add_json(*command, o->common.files, o->common.json);
   command->footer(
       "Example:\n  prostm field palm.plan.json --field data/palm.npy --cell-mm 5 --array autd3 "
@@ -222,7 +223,7 @@ void add_selftest(CLI::App& app, Work& work) {
   add_device(*command, o->common);
   add_array(*command, o->common,
             "usx, autd3, or an array file (.json); default: the device's, or usx");
-  add_figure(*command, o->common, "a picture of the array, seen from above (.png or .svg)");
+  add_figure(*command, o->common, "a picture of the array, seen from above (.png, .svg or .pdf)");
   command->add_option("--seconds", o->seconds, "of each figure, 0.2 to 60")->capture_default_str();
   command->add_option("--height-mm", o->height_mm, "of the figures over the array, 50 to 500")
       ->capture_default_str();
@@ -344,8 +345,19 @@ void add_analyse(CLI::App& study, Work& work) {
       ->capture_default_str();
   command->add_option("--seed", o->settings.seed, "of random splits of many participants")
       ->capture_default_str();
+  command->add_option("--guess", o->settings.guess,
+                      "share of right answers at low levels; default: --chance");
+  command->add_option("--lapse", o->settings.lapse,
+                      "share of wrong answers at high levels; default: 0.02");
   add_json(*command, o->files, o->json);
-  command->footer("Example:\n  prostm study analyse data/made-up-answers.csv");
+  add_output(*command, o->files, "--figure", o->figure, prostm::check_figure,
+             "shares as the paper's Fig. 4, or psychometric functions where answers have levels "
+             "(.png, .svg or .pdf)");
+  add_output(*command, o->files, "--tidy", o->tidy, check_csv_output,
+             "write the answers as a table (.csv) for other programs (docs/study.md)");
+  command->footer(
+      "Example:\n  prostm study analyse data/made-up-answers.csv --figure answers.svg --tidy "
+      "tidy.csv");
   command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
 }
 

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "common.hpp"
-#include "prostm/study/analysis.hpp"
+#include "options.hpp"
+#include "prostm/core/file.hpp"
+#include "study.hpp"
 
 namespace prostm::app {
-namespace {
 
 std::string p_text(double p) {
   return p < 1e-4 ? std::string("<.0001") : fmt::format("{:.4f}", p);
@@ -17,13 +17,13 @@ std::string scene_name(const SceneResult& scene) {
   return scene.scene.empty() ? std::string("all scenes") : scene.scene;
 }
 
-/// The width of a column of names, its heading's at least.
-template <class Names>
-std::size_t width_of(std::string_view heading, const Names& names) {
+std::size_t width_of(std::string_view heading, const std::vector<std::string>& names) {
   std::size_t width = heading.size();
   for (const std::string& name : names) width = std::max(width, name.size());
   return width;
 }
+
+namespace {
 
 std::size_t scene_width(const Analysis& analysis) {
   std::vector<std::string> names;
@@ -129,15 +129,22 @@ nlohmann::ordered_json analysis_json(const Analysis& analysis, const std::string
     json["methods"] = methods;
     json["comparisons"] = comparisons;
   }
-  return {{"format", "prostm-analysis/1"},
-          {"groups", analysis.groups == Groups::Within ? "within" : "between"},
-          {"participants", analysis.participants},
-          {"chance", analysis.settings.chance},
-          {"level", analysis.settings.level},
-          {"power", analysis.settings.power},
-          {"seed", analysis.settings.seed},
-          {"scenes", scenes},
-          {"words", words}};
+  nlohmann::ordered_json json = {
+      {"format", "prostm-analysis/1"},
+      {"groups", analysis.groups == Groups::Within ? "within" : "between"},
+      {"participants", analysis.participants},
+      {"chance", analysis.settings.chance},
+      {"level", analysis.settings.level},
+      {"power", analysis.settings.power},
+      {"seed", analysis.settings.seed},
+      {"scenes", scenes}};
+  if (!analysis.thresholds.empty()) {
+    json["guess"] = *analysis.settings.guess;
+    json["lapse"] = *analysis.settings.lapse;
+    json["thresholds"] = thresholds_json(analysis.thresholds);
+  }
+  json["words"] = words;
+  return json;
 }
 
 /// Breaks words into lines.
@@ -157,14 +164,20 @@ std::string wrapped(const std::string& words) {
 }  // namespace
 
 int analyse_command(const AnalyseOptionsGiven& options) {
-  const Analysis analysis = analyse(read_answers(options.answers), options.settings);
+  const std::vector<Answer> answers = read_answers(options.answers);
+  const Analysis analysis = analyse(answers, options.settings);
   const std::string words = in_words(analysis);
   std::FILE* out = prose(options.json);
   fmt::print(out, "{} participants, {}\n\n", analysis.participants.size(),
              analysis.groups == Groups::Within ? "each with all methods" : "each with one method");
   print_methods(out, analysis);
   if (!analysis.scenes.front().comparisons.empty()) print_comparisons(out, analysis);
+  if (!analysis.thresholds.empty()) print_thresholds(out, analysis.thresholds);
   fmt::print(out, "\n{}", wrapped(words));
+  if (!options.figure.empty()) draw_analysis(analysis, options.figure);
+  say_written(out, options.figure);
+  if (!options.tidy.empty()) write_file(options.tidy, tidy_csv(answers));
+  say_written(out, options.tidy);
   write_json(options.json, analysis_json(analysis, words));
   say_written(out, options.json);
   return 0;

@@ -79,7 +79,7 @@ from test_bad_input import changed, hand_lines
     (["solve", "foci.json", "--solver", "gspat"], 'did you mean "gs-pat"?'),
     (["run", "--record", "x.txt"], "x.txt names no recording; it must end in .h5"),
     (["capture", "--out", "x.json"], "x.json names no recording; it must end in .h5"),
-    (["run", "--figure", "x.json"], "x.json names no kind of figure; it must end in .png or .svg"),
+    (["run", "--figure", "x.json"], "x.json names no kind of figure; it must end in .png, .svg or .pdf"),
     (["run", "--json", "x.png"], "x.png would hold JSON, and .png is another kind of file; end its name in .json"),
     (["plan", "foci.json", "--json", "x.H5"],
      "x.H5 would hold JSON, and .h5 is another kind of file; end its name in .json"),

@@ -15,6 +15,7 @@ namespace {
 
 using test::input_error;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Returns the page's luminances, row 0 at the bottom, two pixels a point.
 TargetField pixels_of(Canvas& canvas, const std::string& path) {
@@ -80,11 +81,29 @@ TEST(Canvas, WritesTextWhereItIsTold) {
   EXPECT_GT(right, 20.0);
 }
 
+TEST(Canvas, ShortensTextBetweenCharacters) {
+  const test::TemporaryFolder folder;
+  Canvas canvas(folder.file("a.png"), 60, 20);
+  const TextStyle style{.size = 14.0};
+  const std::string text = "äöüß and more";
+  const double width = canvas.text_width(text, style);
+  EXPECT_EQ(canvas.shortened(text, width, style), text);
+  for (double w = width - 1.0; w > 20.0; w -= 3.0) {
+    std::string shorter = canvas.shortened(text, w, style);
+    EXPECT_LE(canvas.text_width(shorter, style), w);
+    ASSERT_TRUE(shorter.ends_with("…"));
+    shorter.resize(shorter.size() - std::string("…").size());
+    EXPECT_TRUE(text.starts_with(shorter));
+    EXPECT_NE(static_cast<unsigned char>(text[shorter.size()]) & 0xC0U, 0x80U);
+  }
+  EXPECT_EQ(canvas.shortened(text, 0.0, style), "…");
+}
+
 TEST(Canvas, SaysWhyItCannotWrite) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT(input_error([&] { Canvas(folder.file("a.pdf"), 10, 10); }),
-              HasSubstr("must end in .png or .svg"));
-  for (const char* name : {"none/a.png", "none/a.svg"}) {
+  EXPECT_THAT(input_error([&] { Canvas(folder.file("a.gif"), 10, 10); }),
+              HasSubstr("must end in .png, .svg or .pdf"));
+  for (const char* name : {"none/a.png", "none/a.svg", "none/a.pdf"}) {
     Canvas canvas(folder.file(name), 10, 10);
     EXPECT_THAT(input_error([&] { canvas.save(); }),
                 AllOf(HasSubstr(name), HasSubstr("No such file")));
@@ -97,7 +116,7 @@ TEST(Canvas, SaysWhyItCannotWrite) {
 
 TEST(Canvas, KeepsTheOldPictureWhenTheDiskIsFull) {
   const test::TemporaryFolder folder;
-  for (const char* name : {"a.png", "a.svg"}) {
+  for (const char* name : {"a.png", "a.svg", "a.pdf"}) {
     const std::string path = folder.file(name);
     write_file(path, "old");
     Canvas canvas(path, 100, 100);
@@ -109,7 +128,7 @@ TEST(Canvas, KeepsTheOldPictureWhenTheDiskIsFull) {
     EXPECT_THAT(sentence, AllOf(HasSubstr(name), HasSubstr("File too large")));
     EXPECT_EQ(read_file(path), "old");
   }
-  EXPECT_EQ(folder.entries(), 2u);
+  EXPECT_EQ(folder.entries(), 3u);
 }
 
 TEST(Canvas, WritesScalableGraphics) {
@@ -118,6 +137,16 @@ TEST(Canvas, WritesScalableGraphics) {
   canvas.disc(Vec2(10, 10), 5, kInk);
   canvas.save();
   EXPECT_THAT(read_file(folder.file("a.svg")), AllOf(HasSubstr("<svg"), HasSubstr("</svg>")));
+}
+
+TEST(Canvas, WritesPagesWithoutTheTimeOfDay) {
+  const test::TemporaryFolder folder;
+  Canvas canvas(folder.file("a.pdf"), 30, 20);
+  canvas.disc(Vec2(10, 10), 5, kInk);
+  canvas.save();
+  const std::string page = read_file(folder.file("a.pdf"));
+  EXPECT_TRUE(page.starts_with("%PDF"));
+  EXPECT_THAT(page, AllOf(HasSubstr("%%EOF"), Not(HasSubstr("CreationDate"))));
 }
 
 TEST(FieldColour, GrowsEvenlyInLightness) {

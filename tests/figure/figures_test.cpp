@@ -157,7 +157,7 @@ TEST(DrawPlan, RefusesWhatDoesNotBelongTogether) {
   EXPECT_THROW(draw_plan(figure, "a.png"), std::invalid_argument);
   EXPECT_THROW(draw_plan(example.figure, "a.png", &figure), std::invalid_argument);
   EXPECT_THAT(test::input_error([&] { draw_plan(example.figure, "a.jpg"); }),
-              HasSubstr("must end in .png or .svg"));
+              HasSubstr("must end in .png, .svg or .pdf"));
 }
 
 TEST(DrawScene, DrawsNoneOneAndTwoHands) {

@@ -82,13 +82,18 @@ TEST(DrawGallery, RefusesWhatDoesNotFitTogether) {
   test::input_error([&] { draw_gallery({"Name"}, gallery_of(1, 1), folder.file("a.gif")); });
 }
 
-TEST(DrawCharts, ShowsEveryLine) {
+/// The file of charts. In SVG two drawings of the same charts differ: names of parts count up.
+std::string bytes_in(const std::string& ending, const std::vector<Chart>& charts,
+                     std::size_t in_row = 0) {
   const test::TemporaryFolder folder;
-  const auto bytes_of = [&](const std::vector<Chart>& charts) {
-    draw_charts(charts, folder.file("a.svg"));
-    return read_file(folder.file("a.svg"));
-  };
+  draw_charts(charts, folder.file("a" + ending), in_row);
+  return read_file(folder.file("a" + ending));
+}
+
+TEST(DrawCharts, ShowsEveryLine) {
+  const auto bytes_of = [](const std::vector<Chart>& charts) { return bytes_in(".png", charts); };
   const std::string whole = bytes_of({chart()});
+  EXPECT_TRUE(bytes_of({chart()}) == whole);
   Chart changed = chart();
   changed.series[1].y[1] *= 1.5;
   EXPECT_FALSE(bytes_of({changed}) == whole);
@@ -98,12 +103,37 @@ TEST(DrawCharts, ShowsEveryLine) {
   // linear axes, labels, points at zero and below
   Chart linear{"Trade", "a", "b", false, {{"ours", {-1, 0, 2}, {0.1, -0.05, 0.2}}}, false};
   const std::string plain = bytes_of({linear});
-  EXPECT_TRUE(plain.find("</svg>") != std::string::npos);
   linear.series[0].labels = {"one", "two", "three"};
   EXPECT_FALSE(bytes_of({linear}) == plain);
   // whole numbers along x, a single value
   changed = {"Paths", "paths", "µs", false, {{"ours", {1}, {5}}}};
-  EXPECT_TRUE(bytes_of({changed}).find("</svg>") != std::string::npos);
+  EXPECT_TRUE(bytes_in(".svg", {changed}).find("</svg>") != std::string::npos);
+}
+
+TEST(DrawCharts, ShowsDotsAndIntervals) {
+  const auto bytes_of = [](const std::vector<Chart>& charts, std::size_t in_row) {
+    return bytes_in(".png", charts, in_row);
+  };
+  Chart chart{"Fit", "level", "right", false, {{"ours", {0, 1}, {0.5, 1}}}, false};
+  const std::string line = bytes_of({chart}, 0);
+  chart.series[0].dots = {{0.2, 0.6, 4.0}, {0.8, 0.9, 1.0}};
+  const std::string dots = bytes_of({chart}, 0);
+  EXPECT_FALSE(dots == line);
+  chart.series[0].dots[0].area = 5.0;
+  EXPECT_FALSE(bytes_of({chart}, 0) == dots);
+  chart.series[0].span = {0.4, 0.5, 0.6, 0.75};
+  const std::string span = bytes_of({chart}, 0);
+  chart.series[0].span->high = HUGE_VAL;
+  EXPECT_FALSE(bytes_of({chart}, 0) == span);
+  chart.series[0].x.clear();
+  chart.series[0].y.clear();
+  EXPECT_TRUE(bytes_in(".svg", {chart}).find("</svg>") != std::string::npos);
+  EXPECT_FALSE(bytes_of({chart, chart, chart}, 2) == bytes_of({chart, chart, chart}, 3));
+  EXPECT_TRUE(bytes_of({chart, chart, chart}, 0) == bytes_of({chart, chart, chart}, 3));
+  chart.series[0].dots = {{1.0, 0.5, 1.0}, {std::nextafter(1.0, 2.0), 0.6, 1.0}};  // hardly a range
+  EXPECT_TRUE(bytes_in(".svg", {chart}).find("</svg>") != std::string::npos);
+  chart.series[0].dots[0].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(bytes_of({chart}, 0), std::invalid_argument);
 }
 
 TEST(DrawCharts, RefusesWhatHasNoPlaceOnTheAxes) {

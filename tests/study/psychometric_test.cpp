@@ -110,12 +110,19 @@ TEST(Psychometric, IntervalsEndWhereTheLikelihoodHasFallen) {
 
 TEST(Psychometric, AnswersThatBoundNothingHaveNoFit) {
   const test::WithoutTraps in_boost;
-  EXPECT_FALSE(fit_psychometric(Scores{{0.5, {3, 4}}}, 0.5, 0.0));
-  EXPECT_FALSE(fit_psychometric(Scores{{0.5, {3, 4}}, {0.5, {2, 4}}}, 0.5, 0.0));
-  EXPECT_FALSE(fit_psychometric(Scores{{0.2, {9, 9}}, {0.5, {9, 9}}}, 0.5, 0.0));
-  EXPECT_FALSE(fit_psychometric(Scores{{0.2, {9, 9}}, {0.5, {0, 9}}}, 0.0, 0.0));  // it falls
-  EXPECT_FALSE(fit_psychometric(Scores{{0.2, {0, 9}}, {0.5, {9, 9}}}, 0.0, 0.0));  // a step
-  EXPECT_FALSE(fit_psychometric(Scores{{0.2, {4, 9}}, {0.5, {7, 9}}, {0.6, {9, 9}}}, 0.5, 0.0));
+  const auto why = [](const Scores& scores, double guess) {
+    std::optional<NoFit> reason;
+    NoFit given = NoFit::TooFewLevels;
+    if (!fit_psychometric(scores, guess, 0.0, 0.95, &given)) reason = given;
+    return reason;
+  };
+  EXPECT_EQ(why({{0.5, {3, 4}}}, 0.5), NoFit::TooFewLevels);
+  EXPECT_EQ(why({{0.5, {3, 4}}, {0.5, {2, 4}}}, 0.5), NoFit::TooFewLevels);
+  EXPECT_EQ(why({{0.2, {9, 9}}, {0.5, {9, 9}}}, 0.5), NoFit::NotGrowing);
+  EXPECT_EQ(why({{0.2, {9, 9}}, {0.5, {0, 9}}}, 0.0), NoFit::NotGrowing);  // it falls
+  EXPECT_EQ(why({{0.2, {0, 9}}, {0.5, {9, 9}}}, 0.0), NoFit::Step);
+  EXPECT_EQ(why({{0.2, {4, 9}}, {0.5, {7, 9}}, {0.6, {9, 9}}}, 0.5), NoFit::Step);
+  EXPECT_EQ(why({{0.2, {5, 9}}, {0.5, {7, 9}}, {0.6, {8, 9}}}, 0.5), std::nullopt);
 }
 
 TEST(Psychometric, IsHalfWayAtItsThreshold) {

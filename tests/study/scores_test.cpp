@@ -1,8 +1,12 @@
 #include "prostm/study/scores.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 
 #include "prostm/core/file.hpp"
+#include "prostm/core/random.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"
 
@@ -68,6 +72,50 @@ TEST(Scores, EditedByHandAreRefused) {
   EXPECT_THAT(refusal(header + "1,1,am,x,x,1,1\n1,2,am,x,y,1,1\n"),
               HasSubstr("line 3: correct is 1, but the answer 1"));
   EXPECT_THAT(refusal(header + "1,1,am,x,x,1,1\n1,1,am,x,x,1,1\n"), HasSubstr("second time"));
+}
+
+TEST(Scores, HaveALevelInEachRowOrNone) {
+  const std::string header = "participant,method,scene,correct,level\n";
+  const auto answers = read(header + "1,am,x,1,0.25\n1,am,x,0,-2e-3\n1,am,x,0,-0\n");
+  EXPECT_EQ(answers[0].level, 0.25);
+  EXPECT_EQ(answers[1].level, -2e-3);
+  EXPECT_EQ(answers[2].level, 0.0);
+  EXPECT_FALSE(read(kHeader + "1,am,x,1\n")[0].level);
+  for (const char* wrong :
+       {"", " ", "x", "1,5", "0.5 mm", "nan", "inf", "1e999", "1e10", "1e-12"}) {
+    const std::string quoted = std::string("\"") + wrong + '"';
+    EXPECT_THAT(refusal(header + "1,am,x,1,0.25\n1,am,x,0," + quoted + '\n'),
+                HasSubstr("line 3: level is "));
+  }
+}
+
+TEST(Scores, ComeBackFromATidyTable) {
+  Random random(11);
+  constexpr std::array kNames = {"am", "a, b", "\"", "\"x\"", " ", "é;", "-1", "a\"\",b"};
+  const auto name = [&] {
+    return kNames.at(static_cast<std::size_t>(random.below(kNames.size())));
+  };
+  for (int table = 0; table < 300; ++table) {
+    const bool trials = random.below(2) == 0, questions = random.below(2) == 0,
+               levels = random.below(2) == 0;
+    std::vector<Answer> answers;
+    for (int i = 0; i < 20; ++i) {
+      Answer a{.participant = name(), .method = name(), .scene = name()};
+      a.correct = random.below(2) == 0;
+      if (questions) {
+        a.question = name();
+        a.yes = (a.question == a.scene) == a.correct;
+      }
+      if (trials) a.trial = std::to_string(i);
+      if (levels) a.level = std::ldexp(random.uniform() - 0.5, random.below(20));
+      answers.push_back(a);
+    }
+    const std::string text = tidy_csv(answers);
+    EXPECT_EQ(read(text), answers) << text;
+    const int columns = 4 + (trials ? 1 : 0) + (questions ? 2 : 0) + (levels ? 1 : 0);
+    const std::string header = text.substr(0, text.find("\r\n"));
+    EXPECT_EQ(std::count(header.begin(), header.end(), ','), columns - 1);
+  }
 }
 
 TEST(Scores, TheNameMustSayTheKind) {

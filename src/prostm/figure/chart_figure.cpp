@@ -19,7 +19,9 @@ using figure::Canvas;
 using figure::Colour;
 
 constexpr double kWidth = 430.0, kHeight = 320.0;  // of the drawing alone [points]
-constexpr double kLeft = 74.0, kRight = 118.0, kTop = 52.0, kBottom = 58.0;
+constexpr double kLeft = 74.0, kRight = 118.0, kMostRight = 360.0, kTop = 52.0, kBottom = 58.0;
+constexpr figure::TextStyle kName{.size = 11.5, .bold = true};
+constexpr double kNameGap = 10.0;
 
 /// One axis: value to 0..1.
 struct Axis {
@@ -60,14 +62,20 @@ std::string power_text(int exponent) {
 /// Draws one chart into a box.
 class ChartDrawing {
  public:
-  ChartDrawing(Canvas& canvas, const Chart& chart, const Box& box)
-      : canvas_(canvas), chart_(chart), box_(box) {
+  /// @param right the width beside the box that names may take.
+  ChartDrawing(Canvas& canvas, const Chart& chart, const Box& box, double right)
+      : canvas_(canvas), chart_(chart), box_(box), right_(right) {
     double low_x = HUGE_VAL, high_x = -HUGE_VAL, low_y = HUGE_VAL, high_y = -HUGE_VAL;
+    const auto hold = [&](double x, double y) {
+      low_x = std::min(low_x, x), high_x = std::max(high_x, x);
+      low_y = std::min(low_y, y), high_y = std::max(high_y, y);
+    };
     for (const ChartSeries& series : chart.series) {
-      const auto [x0, x1] = std::minmax_element(series.x.begin(), series.x.end());
-      const auto [y0, y1] = std::minmax_element(series.y.begin(), series.y.end());
-      low_x = std::min(low_x, *x0), high_x = std::max(high_x, *x1);
-      low_y = std::min(low_y, *y0), high_y = std::max(high_y, *y1);
+      for (std::size_t k = 0; k < series.x.size(); ++k) hold(series.x[k], series.y[k]);
+      for (const ChartDot& dot : series.dots) {
+        hold(dot.x, dot.y);
+        largest_ = std::max(largest_, dot.area);
+      }
     }
     x_ = axis_of(low_x, high_x, chart.logarithmic_x);
     y_ = axis_of(low_y, high_y, chart.logarithmic_y);
@@ -80,14 +88,18 @@ class ChartDrawing {
     slope();
     canvas_.unclip();
     canvas_.frame(box_, figure::kInk, 0.8);
+    for (std::size_t i = 0; i < chart_.series.size(); ++i) dots(i);
     for (std::size_t i = 0; i < chart_.series.size(); ++i) line(i);
+    for (std::size_t i = 0; i < chart_.series.size(); ++i) span(i);
     names();
     const Vec2 middle(box_.x + 0.5 * box_.width, box_.y + 0.5 * box_.height);
     canvas_.text(Vec2(middle.x(), box_.y + box_.height + 38.0), chart_.x_label,
                  {.size = 11.5, .align = Align::Centre});
     canvas_.text(Vec2(box_.x - 48.0, middle.y()), chart_.y_label,
                  {.size = 11.5, .align = Align::Centre, .upwards = true});
-    canvas_.text(Vec2(box_.x, box_.y - 14.0), chart_.title, {.size = 14.0, .bold = true});
+    const figure::TextStyle title{.size = 14.0, .bold = true};
+    canvas_.text(Vec2(box_.x, box_.y - 14.0),
+                 canvas_.shortened(chart_.title, box_.width + right_ - kNameGap, title), title);
   }
 
  private:
@@ -103,6 +115,11 @@ class ChartDrawing {
                  text.empty() ? figure::mix(figure::kPaper, figure::kNoSkin, 0.6) : figure::kSkin,
                  0.7);
     if (text.empty()) return;
+    if (is_x) {  // long numbers leave out some
+      const double half = 0.5 * canvas_.text_width(text, {.size = 10.5}), kApart = 5.0;
+      if (at.x() - half < tick_end_ + kApart) return;
+      tick_end_ = at.x() + half;
+    }
     canvas_.text(is_x ? Vec2(at + Vec2(0.0, 16.0)) : Vec2(at + Vec2(-7.0, 4.0)), text,
                  {.size = 10.5, .align = is_x ? Align::Centre : Align::Right});
   }
@@ -111,8 +128,9 @@ class ChartDrawing {
     if (!axis.logarithmic) {
       const double first = std::ceil(axis.low / axis.step),
                    last = std::floor(axis.high / axis.step);
-      for (double i = first; i <= last; ++i)
-        tick(is_x, i * axis.step, figure::tick_text(i * axis.step));
+      constexpr int kMostTicks = 20;  // also where rounding has eaten the range
+      for (int i = 0; i < kMostTicks && first + i <= last; ++i)
+        tick(is_x, (first + i) * axis.step, figure::tick_text((first + i) * axis.step));
       return;
     }
     const int first = static_cast<int>(std::lround(std::log10(axis.low)));
@@ -147,11 +165,43 @@ class ChartDrawing {
       page.push_back(to_page(series.x[k], series.y[k]));
     }
     canvas_.line(page, false, figure::path_colour(i), 2.0);
+    if (!series.dots.empty()) return;
     for (const Vec2& at : page) {
       canvas_.disc(at, 4.2, figure::kPaper);
       canvas_.disc(at, 3.2, figure::path_colour(i));
     }
     labels(i, page);
+  }
+
+  void dots(std::size_t i) {
+    constexpr double kLargest = 8.0;
+    figure::Colour colour = figure::path_colour(i);
+    colour.a = 0.5;
+    for (const ChartDot& dot : chart_.series[i].dots)
+      canvas_.disc(to_page(dot.x, dot.y), kLargest * std::sqrt(dot.area / largest_), colour);
+  }
+
+  /// Moved up or down from its y, so that none covers that of another series.
+  void span(std::size_t i) {
+    if (!chart_.series[i].span) return;
+    constexpr double kApart = 7.0, kEnd = 3.5;
+    const ChartSpan& of = *chart_.series[i].span;
+    const double middle = 0.5 * (static_cast<double>(chart_.series.size()) - 1.0);
+    const Vec2 aside(0.0, kApart * (static_cast<double>(i) - middle)), end(0.0, kEnd);
+    const auto at = [&](double x) {
+      return Vec2(to_page(std::clamp(x, x_.low, x_.high), of.y) + aside);
+    };
+    const figure::Colour colour = figure::path_colour(i);
+    const std::array<Vec2, 2> line{at(of.low), at(of.high)};
+    canvas_.line(line, false, figure::kPaper, 4.5);
+    canvas_.line(line, false, colour, 2.0);
+    for (const double x : {of.low, of.high}) {
+      if (x < x_.low || x > x_.high) continue;
+      const std::array<Vec2, 2> across{at(x) - end, at(x) + end};
+      canvas_.line(across, false, colour, 2.0);
+    }
+    canvas_.disc(at(of.value), 4.2, figure::kPaper);
+    canvas_.disc(at(of.value), 3.2, colour);
   }
 
   /// Over each point its label, where there is room for it.
@@ -179,15 +229,18 @@ class ChartDrawing {
     std::vector<std::size_t> order(chart_.series.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto end_of = [&](std::size_t i) {
-      return to_page(chart_.series[i].x.back(), chart_.series[i].y.back()).y();
+      const ChartSeries& of = chart_.series[i];
+      return to_page(x_.low, of.y.empty() ? of.dots.back().y : of.y.back()).y();
     };
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return end_of(a) < end_of(b); });
     double lowest = box_.y - kSpacing;
     for (const std::size_t i : order) {
       const double y = std::max(end_of(i) + 4.0, lowest + kSpacing);
-      canvas_.text(Vec2(box_.x + box_.width + 10.0, y), chart_.series[i].name,
-                   {.size = 11.5, .colour = figure::path_colour(i), .bold = true});
+      figure::TextStyle style = kName;
+      style.colour = figure::path_colour(i);
+      canvas_.text(Vec2(box_.x + box_.width + kNameGap, y),
+                   canvas_.shortened(chart_.series[i].name, right_ - 2.0 * kNameGap, style), style);
       lowest = y;
     }
   }
@@ -195,21 +248,25 @@ class ChartDrawing {
   Canvas& canvas_;
   const Chart& chart_;
   Box box_;
+  double right_;
+  double largest_ = 0.0;         // area of a dot
+  double tick_end_ = -HUGE_VAL;  // right end of the last number under the box
   Axis x_, y_;
 };
 
 void check(const Chart& chart) {
   const auto good = [](const std::vector<double>& values, bool logarithmic) {
-    return !values.empty() && std::all_of(values.begin(), values.end(), [&](double v) {
-      return std::isfinite(v) && (!logarithmic || v > 0.0);
-    });
+    return std::all_of(values.begin(), values.end(),
+                       [&](double v) { return std::isfinite(v) && (!logarithmic || v > 0.0); });
   };
   if (chart.series.empty()) {
     throw std::invalid_argument("the chart '" + chart.title + "' must have at least one line");
   }
   for (const ChartSeries& series : chart.series) {
-    if (series.x.size() != series.y.size() || !good(series.x, chart.logarithmic_x) ||
-        !good(series.y, chart.logarithmic_y)) {
+    std::vector<double> x = series.x, y = series.y;
+    for (const ChartDot& dot : series.dots) x.push_back(dot.x), y.push_back(dot.y);
+    if (x.empty() || series.x.size() != series.y.size() || !good(x, chart.logarithmic_x) ||
+        !good(y, chart.logarithmic_y)) {
       throw std::invalid_argument("the line '" + series.name +
                                   "' must have as many x as y, all finite, and positive on a "
                                   "logarithmic axis");
@@ -221,14 +278,24 @@ void check(const Chart& chart) {
 
 }  // namespace
 
-void draw_charts(const std::vector<Chart>& charts, const std::string& path) {
+void draw_charts(const std::vector<Chart>& charts, const std::string& path, std::size_t in_row) {
   if (charts.empty()) throw std::invalid_argument("a figure must have at least one chart");
   for (const Chart& chart : charts) check(chart);
-  const double step = kLeft + kWidth + kRight;
-  Canvas canvas(path, step * static_cast<double>(charts.size()), kTop + kHeight + kBottom);
+  const std::size_t columns = in_row == 0 ? charts.size() : std::min(in_row, charts.size());
+  const std::size_t rows = (charts.size() + columns - 1) / columns;
+  double right = kRight;
+  Canvas ruler(path, 1.0, 1.0);
+  for (const Chart& chart : charts) {
+    for (const ChartSeries& series : chart.series)
+      right = std::max(right, ruler.text_width(series.name, kName) + 2.0 * kNameGap);
+  }
+  right = std::min(right, kMostRight);
+  const double width = kLeft + kWidth + right, height = kTop + kHeight + kBottom;
+  Canvas canvas(path, width * static_cast<double>(columns), height * static_cast<double>(rows));
   for (std::size_t i = 0; i < charts.size(); ++i) {
-    ChartDrawing(canvas, charts[i], {step * static_cast<double>(i) + kLeft, kTop, kWidth, kHeight})
-        .draw();
+    const double x = width * static_cast<double>(i % columns),
+                 y = height * static_cast<double>(i / columns);
+    ChartDrawing(canvas, charts[i], {x + kLeft, y + kTop, kWidth, kHeight}, right).draw();
   }
   canvas.save();
 }

@@ -1,7 +1,8 @@
 #pragma once
-/// Labelled pictures of fields, plans and the scene; PNG or SVG by the ending of the name.
+/// Labelled pictures of fields, plans and the scene; PNG, SVG or PDF by the ending of the name.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@
 namespace prostm {
 
 /// Tries whether a picture could be written, before the work that it is to show. @throws
-/// InputError: the name ends in neither .png nor .svg, or the file cannot be written.
+/// InputError: the name ends in none of .png, .svg and .pdf, or the file cannot be written.
 void check_figure(const std::string& path);
 
 /// The data of the panels of the paper's Fig. 2.
@@ -78,12 +79,24 @@ struct PhysicalFigure {
 /// when the file cannot be written.
 void draw_physical(const PhysicalFigure& figure, const std::string& path);
 
+/// One point beside a chart's lines.
+struct ChartDot {
+  double x = 0.0, y = 0.0;
+  double area = 1.0;  ///< in proportion to those of the chart's other dots; > 0
+};
+/// An interval along x, with a value in it.
+struct ChartSpan {
+  double low = 0.0, value = 0.0, high = 0.0, y = 0.0;  ///< infinite: open to that side
+};
 /// One line of a chart; x ascends.
 struct ChartSeries {
   std::string name;
   std::vector<double> x, y;              ///< as many of each; > 0 on a logarithmic axis
   std::vector<std::string> labels = {};  ///< of the points: none, or one for each; what
                                          ///< would touch the one before is left out
+  std::vector<ChartDot> dots = {};       ///< where there are any, the line has no marks of its own
+                                         ///< and may have no points
+  std::optional<ChartSpan> span = {};    ///< drawn beside those of other series, not over them
 };
 struct Chart {
   std::string title, x_label, y_label;
@@ -91,11 +104,40 @@ struct Chart {
   std::vector<ChartSeries> series;
   bool logarithmic_y = true;  ///< else linear
 };
-/// Charts side by side, with a faint line of slope 1 where both axes are logarithmic.
-/// @throws std::invalid_argument: no chart, or a chart without points or with values that are not
-/// finite or have no logarithm where one is taken, or labels for only some points. @throws
-/// InputError when the file cannot be written.
-void draw_charts(const std::vector<Chart>& charts, const std::string& path);
+/// Charts in rows, with a faint line of slope 1 where both axes are logarithmic. @param in_row
+/// charts side by side; 0: all. @throws std::invalid_argument: no chart, or a chart without points
+/// or with values that are not finite or have no logarithm where one is taken, or labels for only
+/// some points. @throws InputError when the file cannot be written.
+void draw_charts(const std::vector<Chart>& charts, const std::string& path, std::size_t in_row = 0);
+
+/// A share with its interval and what it is made of, all 0..1.
+struct ShareBar {
+  double share = 0.0, low = 0.0, high = 0.0;
+  std::vector<double> dots = {};  ///< e.g. each participant's own share
+};
+/// Joins two bars of a group.
+struct ShareBracket {
+  std::size_t from = 0, to = 1;
+  std::vector<std::string> lines;  ///< above it
+};
+struct ShareGroup {
+  std::string name;
+  std::vector<ShareBar> bars;
+  std::vector<ShareBracket> brackets = {};
+};
+struct ShareFigure {
+  std::string title, y_label;
+  std::vector<std::string> names;  ///< of the bars, the same in each group
+  std::vector<ShareGroup> groups;
+  double chance = 0.5;  ///< a line across, 0..1
+  std::string note;     ///< under the picture
+};
+/// Groups of bars in per cent, as the paper's Fig. 4: intervals, dots side by side where they would
+/// cover each other, brackets one over the other, and a line at chance. What is too long for its
+/// place ends in "…". @throws std::invalid_argument: no group or name, a group whose bars are not
+/// one for each name, a value outside 0..1, or a bracket without two bars. @throws InputError when
+/// the file cannot be written.
+void draw_shares(const ShareFigure& figure, const std::string& path);
 
 /// A map over a raster of a plane.
 struct FieldMap {

@@ -130,6 +130,25 @@ Groups groups_of(std::span<const Answer> answers, const std::vector<std::string>
   return had == 1 ? Groups::Between : Groups::Within;
 }
 
+/// Fits thresholds where answers have levels, and writes guess and lapse into the settings.
+std::vector<ThresholdResult> thresholds_of(std::span<const Answer> answers,
+                                           AnalysisSettings& settings) {
+  const auto with_level =
+      std::count_if(answers.begin(), answers.end(), [](const Answer& a) { return !!a.level; });
+  if (with_level == 0) {
+    if (!settings.guess && !settings.lapse) return {};
+    throw InputError("guess and lapse belong to answers with levels, and there is no level");
+  }
+  if (with_level != std::ssize(answers))
+    throw InputError("some answers have a level and others not: all must have one, or none");
+  settings.guess = settings.guess.value_or(settings.chance);
+  settings.lapse = settings.lapse.value_or(kLapse);
+  require_between("guess", *settings.guess, 0.0, 0.9);
+  require_between("lapse", *settings.lapse, 0.0, 0.5);
+  require_between("guess + lapse", *settings.guess + *settings.lapse, 0.0, 0.95);
+  return fit_thresholds(answers, *settings.guess, *settings.lapse, settings.level);
+}
+
 }  // namespace
 
 Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings) {
@@ -158,6 +177,7 @@ Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settin
       }
     }
   }
+  out.thresholds = thresholds_of(answers, out.settings);
   return out;
 }
 

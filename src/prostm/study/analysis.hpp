@@ -9,6 +9,7 @@
 
 #include "prostm/study/scores.hpp"
 #include "prostm/study/statistics.hpp"
+#include "prostm/study/thresholds.hpp"
 
 namespace prostm {
 
@@ -17,7 +18,10 @@ struct AnalysisSettings {
   double level = 0.95;     ///< of intervals, 0..1; a test is significant below 1 − level
   double power = 0.8;      ///< for which participants are planned, 0..1
   std::uint64_t seed = 1;  ///< of random splits, where there are too many to take all
+  /// γ and λ of psychometric functions, 0..0.9 and 0..0.5; default: chance and kLapse
+  std::optional<double> guess = {}, lapse = {};
 };
+inline constexpr double kLapse = 0.02;
 
 /// How one method did in one scene, or in all.
 struct MethodResult {
@@ -52,16 +56,19 @@ struct Analysis {
   AnalysisSettings settings;
   Groups groups = Groups::Between;
   std::vector<std::string> participants;
-  std::vector<SceneResult> scenes;  ///< all scenes together first
+  std::vector<SceneResult> scenes;          ///< all scenes together first
+  std::vector<ThresholdResult> thresholds;  ///< where answers have levels
 };
 
 /// Methods and scenes stand in the order in which the answers have them first. @throws InputError:
 /// fewer than two participants with a method, some participants with one method and others with
-/// several, a scene that a participant lacks. @throws std::invalid_argument: a setting out of its
-/// bounds.
+/// several, a scene that a participant lacks, a level that some answers lack, guess or lapse
+/// without levels. @throws std::invalid_argument: a setting out of its bounds.
 Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings = {});
 
 /// A paragraph in plain words: what the data support, what they do not, and why.
 std::string in_words(const Analysis& analysis);
+/// "p = 0.012", or "p < 0.001".
+std::string p_in_words(double p);
 
 }  // namespace prostm

@@ -194,19 +194,26 @@ double Psychometric::at(double level) const {
 }
 
 std::optional<PsychometricFit> fit_psychometric(std::span<const LevelScore> scores, double guess,
-                                                double lapse, double level) {
-  if (scores.size() < 2) return std::nullopt;
+                                                double lapse, double level, NoFit* why) {
+  const auto none = [&](NoFit reason) {
+    if (why != nullptr) *why = reason;
+    return std::nullopt;
+  };
+  if (scores.size() < 2) return none(NoFit::TooFewLevels);
   const Likelihood likelihood(scores, guess, lapse);
-  if (!(likelihood.range() > 0.0)) return std::nullopt;
+  if (!(likelihood.range() > 0.0)) return none(NoFit::TooFewLevels);
+  const double share = scores.front().correct.value();
+  const auto is_same = [&](const LevelScore& x) { return x.correct.value() == share; };
+  if (std::all_of(scores.begin(), scores.end(), is_same)) return none(NoFit::NotGrowing);
   const Peak peak = climb(likelihood, scores, scan(likelihood));
+  // a step that fits as well as any slope: the likelihood only grows with the slope
+  constexpr double kAsWell = 1e-6;
+  if (likelihood.of_best_step() > peak.value - kAsWell) return none(NoFit::Step);
   const bool inside = peak.threshold > likelihood.lowest_threshold() &&
                       peak.threshold < likelihood.highest_threshold() &&
                       peak.log_slope > likelihood.lowest_slope() &&
                       peak.log_slope < likelihood.highest_slope();
-  // a step that fits as well as any slope: the likelihood only grows with the slope
-  constexpr double kAsWell = 1e-6;
-  const bool is_step = likelihood.of_best_step() > peak.value - kAsWell;
-  if (!inside || is_step) return std::nullopt;
+  if (!inside) return none(NoFit::NotGrowing);
   const double bound =
       peak.value - 0.5 * boost::math::quantile(boost::math::chi_squared(1.0), level);
   const auto of_threshold = [&](double t) { return likelihood.over_slopes(t); };

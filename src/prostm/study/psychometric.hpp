@@ -1,6 +1,7 @@
 #pragma once
 /// How the share of right answers grows with the level of a stimulus.
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -32,11 +33,18 @@ struct PsychometricFit {
   double log_likelihood = 0.0;  ///< without the binomial coefficients, which do not matter
 };
 
+/// Why answers bound no threshold and slope.
+enum class NoFit : std::uint8_t {
+  TooFewLevels,  ///< fewer than two
+  NotGrowing,    ///< the share of right answers does not grow over the levels, or hardly
+  Step           ///< from one level to the next: any steep slope fits
+};
+
 /// Returns the threshold and slope of the largest likelihood, guess and lapse given. Nothing where
-/// the answers do not bound them: fewer than two levels, a share that does not grow with the level,
-/// or a step between two levels that any steep slope fits. @param level of the intervals, 0..1.
-/// @pre trials > 0 at each level, guess + lapse < 1.
+/// the answers do not bound them. @param level of the intervals, 0..1. @param why set where there
+/// is no fit. @pre trials > 0 at each level, guess + lapse < 1.
 std::optional<PsychometricFit> fit_psychometric(std::span<const LevelScore> scores, double guess,
-                                                double lapse, double level = 0.95);
+                                                double lapse, double level = 0.95,
+                                                NoFit* why = nullptr);
 
 }  // namespace prostm

@@ -1,8 +1,13 @@
 #include "prostm/study/scores.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -35,6 +40,7 @@ class AnswerTable {
     question_ = find("question");
     yes_ = find("answer");
     trial_ = find("trial");
+    level_ = find("level");
     if (question_.has_value() != yes_.has_value()) {
       csv_.fail(std::string("the column \"") + (question_ ? "answer" : "question") +
                 "\" is missing: question and answer belong together");
@@ -61,10 +67,14 @@ class AnswerTable {
                   shown_name(out.scene) + '"');
       }
     }
-    if (trial_ && !trials_.insert({out.participant, name(row, *trial_)}).second) {
-      csv_.fail("participant \"" + shown_name(out.participant) + "\" has trial " +
-                shown_name(row[*trial_]) + " a second time");
+    if (trial_) {
+      out.trial = name(row, *trial_);
+      if (!trials_.insert({out.participant, out.trial}).second) {
+        csv_.fail("participant \"" + shown_name(out.participant) + "\" has trial " +
+                  shown_name(out.trial) + " a second time");
+      }
     }
+    if (level_) out.level = number(row, *level_);
     return out;
   }
 
@@ -99,10 +109,24 @@ class AnswerTable {
     return row[column] == "1";
   }
 
+  double number(const std::vector<std::string>& row, std::size_t column) const {
+    const std::string& text = row[column];
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number =
+        error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+    constexpr double kLeast = 1e-9, kMost = 1e9;  // so that what is fitted stays finite
+    if (!is_number || !(value == 0.0 || (std::abs(value) >= kLeast && std::abs(value) <= kMost))) {
+      csv_.fail(header_[column] + " is \"" + shown_name(text) +
+                "\": it must be a number in every row, 0 or from 1e-9 to 1e9 in size");
+    }
+    return value + 0.0;  // −0 becomes 0
+  }
+
   study::CsvReader& csv_;
   std::vector<std::string> header_;
   std::size_t participant_, method_, scene_, correct_;
-  std::optional<std::size_t> question_, yes_, trial_;
+  std::optional<std::size_t> question_, yes_, trial_, level_;
   std::set<std::pair<std::string, std::string>> trials_;
 };
 
@@ -173,6 +197,43 @@ std::vector<Answer> answers_from_paper(std::string_view text, const std::string&
   std::vector<Answer> out;
   for (const PaperMethod& method : kPaperMethods) add_paper_method(figure, method, count, out);
   if (out.empty()) figure.fail("must have participants");
+  return out;
+}
+
+std::string tidy_csv(std::span<const Answer> answers) {
+  const auto quoted = [](const std::string& value) {
+    if (value.find_first_of(",\"") == value.npos) return value;
+    std::string out = "\"";
+    for (const char c : value) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + '"';
+  };
+  using Column = std::pair<const char*, std::function<std::string(const Answer&)>>;
+  const auto bit = [](bool x) { return std::string(x ? "1" : "0"); };
+  const Answer& first = answers.front();
+  std::vector<Column> columns = {
+      {"participant", [](const Answer& a) { return a.participant; }},
+      {"method", [](const Answer& a) { return a.method; }},
+      {"scene", [](const Answer& a) { return a.scene; }},
+  };
+  if (!first.trial.empty()) columns.emplace_back("trial", [](const Answer& a) { return a.trial; });
+  if (!first.question.empty()) {
+    columns.emplace_back("question", [](const Answer& a) { return a.question; });
+    columns.emplace_back("answer", [&](const Answer& a) { return bit(a.yes); });
+  }
+  columns.emplace_back("correct", [&](const Answer& a) { return bit(a.correct); });
+  if (first.level)
+    columns.emplace_back("level", [](const Answer& a) { return fmt::format("{}", *a.level); });
+
+  std::string out;
+  const auto add_row = [&](const auto& value_of) {
+    for (const Column& column : columns) {
+      out += &column == &columns.front() ? "" : ",";
+      out += quoted(value_of(column));
+    }
+    out += "\r\n";
+  };
+  add_row([](const Column& column) { return std::string(column.first); });
+  for (const Answer& a : answers) add_row([&](const Column& column) { return column.second(a); });
   return out;
 }
 

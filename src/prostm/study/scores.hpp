@@ -1,6 +1,8 @@
 #pragma once
 /// Participants' answers, as files hold them.
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,15 +14,19 @@ struct Answer {
   std::string participant, method;
   std::string scene;  ///< the stimulus
   bool correct = false;
-  std::string question = {};  ///< the scene that was asked for; empty where it is not known
-  bool yes = false;           ///< the answer to it
+  std::string question = {};         ///< the scene that was asked for; empty where it is not known
+  bool yes = false;                  ///< the answer to it
+  std::string trial = {};            ///< empty where it is not known
+  std::optional<double> level = {};  ///< of the stimulus, where it was varied
+
+  bool operator==(const Answer&) const = default;
 };
 
 /// Reads answers from CSV (RFC 4180, UTF-8): a header with the columns participant, method, scene
 /// and correct (0 or 1); where question (a scene) and answer (0 or 1) are there too, they must
-/// agree with correct, and where trial is, a participant has each of its numbers once. Other
-/// columns are not read. @throws InputError with line and column: a column or value that is missing
-/// or wrong, a row cut off.
+/// agree with correct, where trial is, a participant has each of its numbers once, and where level
+/// is, each row has a number there. Other columns are not read. @throws InputError with line and
+/// column: a column or value that is missing or wrong, a row cut off.
 std::vector<Answer> answers_from_csv(std::string_view text, const std::string& file);
 
 /// Reads the scores of the paper's Fig. 4, {"fig4": {"trials_per_participant": n, "AM_1plume":
@@ -31,5 +37,10 @@ std::vector<Answer> answers_from_paper(std::string_view text, const std::string&
 /// Either of them, by the ending of the name: .csv or .json. @throws InputError also when it cannot
 /// be read.
 std::vector<Answer> read_answers(const std::string& path);
+
+/// Returns answers as CSV (RFC 4180) for other programs, a row for each: the columns participant,
+/// method, scene, trial, question, answer, correct and level, those that are known.
+/// answers_from_csv() reads the same answers from it. @pre all answers know the same columns.
+std::string tidy_csv(std::span<const Answer> answers);
 
 }  // namespace prostm

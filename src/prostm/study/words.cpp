@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "prostm/study/analysis.hpp"
 
 namespace prostm {
 namespace {
-
-std::string p_text(double p) {
-  return p < 0.001 ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);
-}
 
 std::string share_text(const Proportion& x) {
   return fmt::format("{} of {} answers were right ({:.1f} %)", x.successes, x.trials,
@@ -29,6 +27,7 @@ class Words {
     if (looks > 1)
       say(fmt::format("These are {} comparisons, and no p is corrected for their number", looks));
     for (const Comparison& of : all.comparisons) say_needed(of);
+    if (!analysis_.thresholds.empty()) say_thresholds();
     return text_;
   }
 
@@ -49,26 +48,27 @@ class Words {
     std::string sentence = fmt::format("With {} {}", method.method, share_text(method.correct));
     if (is_significant(method.p_chance)) {
       sentence += fmt::format(", which is {} the {:g} % of guessing ({})",
-                              above ? "above" : "below", chance, p_text(method.p_chance));
+                              above ? "above" : "below", chance, p_in_words(method.p_chance));
     } else {
       sentence += fmt::format(", which guessing would do too ({:g} %, {})", chance,
-                              p_text(method.p_chance));
+                              p_in_words(method.p_chance));
     }
     say(sentence);
   }
 
   void say_difference(const Comparison& of) {
-    say(fmt::format(
-        "If all answers were independent, the difference between {} and {} would be "
-        "{} (z = {:.2f}, {})",
-        of.first, of.second, verdict(of.pooled_z.p), of.pooled_z.statistic, p_text(of.pooled_z.p)));
+    say(
+        fmt::format("If all answers were independent, the difference between {} and {} would be "
+                    "{} (z = {:.2f}, {})",
+                    of.first, of.second, verdict(of.pooled_z.p), of.pooled_z.statistic,
+                    p_in_words(of.pooled_z.p)));
     say_dispersion();
     const bool within = analysis_.groups == Groups::Within;
     std::string sentence = fmt::format(
         "Over participants, the test that holds for other people, it is {} (permutation {}",
-        verdict(of.permutation.p), p_text(of.permutation.p));
+        verdict(of.permutation.p), p_in_words(of.permutation.p));
     if (of.t)
-      sentence += fmt::format("; {} {}", within ? "paired t" : "Welch's t", p_text(of.t->p));
+      sentence += fmt::format("; {} {}", within ? "paired t" : "Welch's t", p_in_words(of.t->p));
     say(sentence + ")");
     if (!is_significant(of.permutation.p)) {
       say(fmt::format(
@@ -87,9 +87,9 @@ class Words {
                       ? fmt::format(
                             "They are not: participants differ {:.1f} times as much with {} "
                             "as independent answers would make them ({})",
-                            ratio, method.method, p_text(method.dispersion->p))
+                            ratio, method.method, p_in_words(method.dispersion->p))
                       : fmt::format(", and {:.1f} times as much with {} ({})", ratio, method.method,
-                                    p_text(method.dispersion->p));
+                                    p_in_words(method.dispersion->p));
     }
     say(sentence.empty() ? "Trials of one participant are never quite independent" : sentence);
   }
@@ -106,8 +106,8 @@ class Words {
           fmt::format("In {} alone ({:.1f} % with {}, {:.1f} % with {}) the difference is {} over "
                       "answers (z = {:.2f}, {}) and {} over participants ({})",
                       scene.scene, share(of.first), of.first, share(of.second), of.second,
-                      verdict(of.pooled_z.p), of.pooled_z.statistic, p_text(of.pooled_z.p),
-                      verdict(of.permutation.p), p_text(of.permutation.p)));
+                      verdict(of.pooled_z.p), of.pooled_z.statistic, p_in_words(of.pooled_z.p),
+                      verdict(of.permutation.p), p_in_words(of.permutation.p)));
     }
   }
 
@@ -128,6 +128,51 @@ class Words {
                     within ? "" : " with each method", had()));
   }
 
+  void say_thresholds() {
+    say("All of this is about shares of right answers, which compare methods only where all were "
+        "asked at the same levels; thresholds hold for other levels too");
+    const std::vector<ThresholdResult>& all = analysis_.thresholds;
+    for (std::size_t i = 0; i < all.size();) {
+      std::size_t end = i + 1;  // of its participants
+      while (end < all.size() && !all[end].participant.empty()) ++end;
+      say_threshold(all[i], std::span(all).subspan(i + 1, end - i - 1));
+      i = end;
+    }
+    say(
+        fmt::format("A threshold is the level half-way between guessing ({:g} %) and the most "
+                    "({:g} %); intervals are as if answers were independent, and too narrow for "
+                    "people in general where participants differ",
+                    100.0 * *analysis_.settings.guess, 100.0 * (1.0 - *analysis_.settings.lapse)));
+  }
+
+  void say_threshold(const ThresholdResult& of, std::span<const ThresholdResult> participants) {
+    std::string sentence = fmt::format("With {} in {}, ", of.method, of.scene);
+    const auto text = [digits = level_digits(of.scores)](double level) {
+      return fmt::format("{:.{}g}", level, digits);
+    };
+    if (!of.fit) {
+      sentence += fmt::format("no threshold can be fitted: {}", in_words(of.no_fit));
+    } else if (const auto& interval = of.fit->threshold) {
+      sentence += fmt::format("the threshold is {} ({:g} % interval {} to {})",
+                              text(of.fit->function.threshold), 100.0 * analysis_.settings.level,
+                              text(interval->low), text(interval->high));
+    } else {
+      sentence += fmt::format("the threshold is {}, and the answers leave its interval open",
+                              text(of.fit->function.threshold));
+    }
+    std::vector<double> own;
+    for (const ThresholdResult& x : participants) {
+      if (x.fit) own.push_back(x.fit->function.threshold);
+    }
+    sentence += fmt::format("; {} of {} single participants' answers have a fit", own.size(),
+                            participants.size());
+    if (!own.empty()) {
+      const auto [low, high] = std::minmax_element(own.begin(), own.end());
+      sentence += fmt::format(", with thresholds from {} to {}", text(*low), text(*high));
+    }
+    say(sentence);
+  }
+
   std::string had() const {
     if (analysis_.groups == Groups::Within) return std::to_string(analysis_.participants.size());
     std::string out;
@@ -144,6 +189,10 @@ class Words {
 };
 
 }  // namespace
+
+std::string p_in_words(double p) {
+  return p < 0.001 ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);
+}
 
 std::string in_words(const Analysis& analysis) {
   return Words(analysis).text();

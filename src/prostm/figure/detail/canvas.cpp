@@ -1,5 +1,6 @@
 #include "prostm/figure/detail/canvas.hpp"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
@@ -24,8 +25,8 @@ bool ends_in(const std::string& path, std::string_view ending) {
 }
 
 void check_ending(const std::string& path) {
-  if (!ends_in(path, ".png") && !ends_in(path, ".svg")) {
-    throw InputError(path + " names no kind of figure; it must end in .png or .svg");
+  if (!ends_in(path, ".png") && !ends_in(path, ".svg") && !ends_in(path, ".pdf")) {
+    throw InputError(path + " names no kind of figure; it must end in .png, .svg or .pdf");
   }
 }
 
@@ -72,7 +73,7 @@ int picture_side(int cells) {
 
 struct Canvas::Impl {
   std::string path, bytes;
-  bool is_svg = false;
+  bool is_png = false;
   Surface surface;
   std::unique_ptr<cairo_t, Destroy> context;
 
@@ -93,17 +94,22 @@ Canvas::Canvas(const std::string& path, double width, double height)
     : impl_(std::make_unique<Impl>()) {
   check_ending(path);
   impl_->path = path;
-  impl_->is_svg = ends_in(path, ".svg");
-  if (impl_->is_svg) {
+  impl_->is_png = ends_in(path, ".png");
+  if (ends_in(path, ".svg")) {
     impl_->surface.reset(
         cairo_svg_surface_create_for_stream(append_bytes, &impl_->bytes, width, height));
+  } else if (ends_in(path, ".pdf")) {
+    impl_->surface.reset(
+        cairo_pdf_surface_create_for_stream(append_bytes, &impl_->bytes, width, height));
+    // the same picture is the same file, whenever it is drawn
+    cairo_pdf_surface_set_metadata(impl_->surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   } else {
     impl_->surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32,
                                                     static_cast<int>(width * kPixelsPerPoint),
                                                     static_cast<int>(height * kPixelsPerPoint)));
   }
   impl_->context.reset(cairo_create(impl_->surface.get()));
-  if (!impl_->is_svg) cairo_scale(impl_->context.get(), kPixelsPerPoint, kPixelsPerPoint);
+  if (impl_->is_png) cairo_scale(impl_->context.get(), kPixelsPerPoint, kPixelsPerPoint);
   cairo_set_line_join(impl_->context.get(), CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(impl_->context.get(), CAIRO_LINE_CAP_ROUND);
   fill({0.0, 0.0, width, height}, kPaper);
@@ -167,6 +173,17 @@ double Canvas::text_width(const std::string& text, const TextStyle& style) {
   return impl_->advance(text);
 }
 
+std::string Canvas::shortened(const std::string& text, double width, const TextStyle& style) {
+  if (text_width(text, style) <= width) return text;
+  std::string begin = text;
+  while (!begin.empty() && text_width(begin + "…", style) > width) {
+    const auto inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+    while (inside(begin.back())) begin.pop_back();  // the rest of a character of several bytes
+    begin.pop_back();
+  }
+  return begin + "…";
+}
+
 void Canvas::cells(const Box& box, int rows, int cols,
                    const std::function<Colour(int row, int col)>& colour) {
   // a picture of the cells, so that no seams show between them
@@ -213,10 +230,10 @@ void Canvas::unclip() {
 void Canvas::save() {
   impl_->context.reset();
   cairo_surface_t* surface = impl_->surface.get();
-  if (impl_->is_svg) cairo_surface_finish(surface);
+  if (!impl_->is_png) cairo_surface_finish(surface);
   const cairo_status_t status =
-      impl_->is_svg ? cairo_surface_status(surface)
-                    : cairo_surface_write_to_png_stream(surface, append_bytes, &impl_->bytes);
+      impl_->is_png ? cairo_surface_write_to_png_stream(surface, append_bytes, &impl_->bytes)
+                    : cairo_surface_status(surface);
   if (status != CAIRO_STATUS_SUCCESS) {
     throw InputError(
         fmt::format("{} cannot be drawn ({})", impl_->path, cairo_status_to_string(status)));

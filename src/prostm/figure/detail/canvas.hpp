@@ -1,5 +1,5 @@
 #pragma once
-/// A page to draw on, PNG or SVG. Private to figure. Coordinates are points, y down.
+/// A page to draw on, PNG, SVG or PDF. Private to figure. Coordinates are points, y down.
 
 #include <cstdint>
 #include <functional>
@@ -28,7 +28,8 @@ struct Box {
 
 class Canvas {
  public:
-  /// @throws InputError unless `path` ends in .png or .svg. PNG pages have two pixels a point.
+  /// @throws InputError unless `path` ends in .png, .svg or .pdf. PNG pages have two pixels a
+  /// point.
   Canvas(const std::string& path, double width, double height);
   ~Canvas();
 
@@ -40,6 +41,8 @@ class Canvas {
   /// `at` is the base line's start, middle or end.
   void text(const Vec2& at, const std::string& text, const TextStyle& style);
   double text_width(const std::string& text, const TextStyle& style);
+  /// The text, or its beginning and "…" where it would be wider.
+  std::string shortened(const std::string& text, double width, const TextStyle& style);
   /// Stretches a picture of cols × rows cells over the box, row 0 at the bottom; sharp cells, of
   /// any number.
   void cells(const Box& box, int rows, int cols,

@@ -32,7 +32,7 @@ double tick_step(double range, double wanted) {
 }
 
 std::string tick_text(double value) {
-  std::string text = fmt::format("{:.6g}", value + 0.0);  // −0 becomes 0
+  std::string text = fmt::format("{:.10g}", value + 0.0);  // −0 becomes 0
   if (text.front() == '-') text.replace(0, 1, "−");
   return text;
 }

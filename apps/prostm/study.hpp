@@ -1,0 +1,28 @@
+#pragma once
+/// The parts of prostm study analyse: tables, JSON and pictures of an analysis.
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "prostm/study/analysis.hpp"
+
+namespace prostm::app {
+
+/// A p as it stands in a table.
+std::string p_text(double p);
+/// The scene, or "all scenes".
+std::string scene_name(const SceneResult& scene);
+/// The width of a column of names, its heading's at least.
+std::size_t width_of(std::string_view heading, const std::vector<std::string>& names);
+
+void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds);
+nlohmann::ordered_json thresholds_json(const std::vector<ThresholdResult>& thresholds);
+
+/// Draws shares of right answers as the paper's Fig. 4, or psychometric functions where answers
+/// have levels. @throws InputError when the file cannot be written.
+void draw_analysis(const Analysis& analysis, const std::string& path);
+
+}  // namespace prostm::app

@@ -1,0 +1,82 @@
+#include "prostm/study/thresholds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace prostm {
+namespace {
+
+using Levels = std::map<double, Proportion>;
+
+/// All participants of one method in one scene, by name; those of the empty name are all together.
+struct Task {
+  std::string method, scene;
+  std::map<std::string, Levels> participants;
+};
+
+/// Tasks by the places at which scenes, and then methods, come first.
+std::vector<Task> tasks_of(std::span<const Answer> answers) {
+  std::vector<std::string> methods, scenes;
+  const auto place = [](std::vector<std::string>& names, const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at != names.end()) return at - names.begin();
+    names.push_back(name);
+    return std::ssize(names) - 1;
+  };
+  std::map<std::pair<std::ptrdiff_t, std::ptrdiff_t>, Task> tasks;
+  for (const Answer& a : answers) {
+    Task& task = tasks[{place(scenes, a.scene), place(methods, a.method)}];
+    task.method = a.method;
+    task.scene = a.scene;
+    for (const std::string& of : {std::string(), a.participant}) {
+      Proportion& score = task.participants[of][*a.level];
+      ++score.trials;
+      score.successes += a.correct ? 1 : 0;
+    }
+  }
+  std::vector<Task> out;
+  for (auto& [where, task] : tasks) out.push_back(std::move(task));
+  return out;
+}
+
+}  // namespace
+
+std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers, double guess,
+                                            double lapse, double level) {
+  std::vector<ThresholdResult> out;
+  for (const Task& task : tasks_of(answers)) {
+    for (const auto& [participant, levels] : task.participants) {
+      ThresholdResult& result = out.emplace_back();
+      result.method = task.method;
+      result.scene = task.scene;
+      result.participant = participant;
+      for (const auto& [x, score] : levels) result.scores.push_back({x, score});
+      result.fit = fit_psychometric(result.scores, guess, lapse, level, &result.no_fit);
+    }
+  }
+  return out;
+}
+
+int level_digits(std::span<const LevelScore> scores) {
+  constexpr int kOfRange = 4, kMost = 15;
+  const double low = scores.front().level, high = scores.back().level;
+  if (!(high > low)) return kOfRange;
+  const double more = std::log10(std::max(std::abs(low), std::abs(high)) / (high - low));
+  return std::min(kMost, kOfRange + std::max(0, static_cast<int>(more)));
+}
+
+const char* in_words(NoFit reason) {
+  switch (reason) {
+    case NoFit::TooFewLevels:
+      return "all answers are at one level";
+    case NoFit::NotGrowing:
+      return "right answers do not grow with the level, or hardly";
+    case NoFit::Step:
+      return "a step fits as well as any slope";
+  }
+  return "";
+}
+
+}  // namespace prostm

@@ -1,0 +1,34 @@
+#pragma once
+/// Thresholds of methods and of participants, from answers at several levels.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "prostm/study/psychometric.hpp"
+#include "prostm/study/scores.hpp"
+
+namespace prostm {
+
+/// A psychometric function of one method in one scene.
+struct ThresholdResult {
+  std::string method, scene;
+  std::string participant;         ///< empty: all of them together
+  std::vector<LevelScore> scores;  ///< by level, ascending; answers at the same level are pooled
+  std::optional<PsychometricFit> fit;
+  NoFit no_fit = NoFit::TooFewLevels;  ///< where there is no fit
+};
+
+/// Fits each method in each scene, all participants together first and then each, by name. @param
+/// level of the intervals, 0..1. @pre each answer has a level; guess + lapse < 1.
+std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers, double guess,
+                                            double lapse, double level);
+
+/// Digits that tell levels apart by a thousandth of their range, or nearly. @pre levels ascend.
+int level_digits(std::span<const LevelScore> scores);
+
+/// The reason why there is no fit, without a full stop.
+const char* in_words(NoFit reason);
+
+}  // namespace prostm

@@ -1,0 +1,138 @@
+"""prostm study analyse: pictures without texts over each other, thresholds, and tidy tables."""
+
+import csv
+import json
+import math
+import random
+import re
+from itertools import combinations, product
+from xml.etree import ElementTree
+
+import pytest
+
+from conftest import ROOT, shared_file
+
+MADE_UP = ROOT / "data" / "made-up-answers.csv"
+SVG = "{http://www.w3.org/2000/svg}"
+LINK = "{http://www.w3.org/1999/xlink}href"
+
+
+def boxes_of_texts(path):
+    """Returns the page's box and that of each text of an SVG picture of cairo, as (left, top, right, bottom)."""
+    root = ElementTree.parse(path).getroot()
+    glyphs = {}
+    for symbol in root.iter(SVG + "symbol"):
+        numbers = [float(x) for x in re.findall(r"-?\d+(?:\.\d+)?", symbol.find(SVG + "path").get("d"))]
+        if numbers:
+            glyphs["#" + symbol.get("id")] = min(numbers[::2]), min(numbers[1::2]), max(numbers[::2]), max(numbers[1::2])
+    texts = []
+    for group in root.iter(SVG + "g"):
+        places = [(glyphs[use.get(LINK)], float(use.get("x")), float(use.get("y")))
+                  for use in group.findall(SVG + "use") if use.get(LINK) in glyphs]
+        if places:
+            left, top, right, bottom = zip(*((x + a, y + b, x + c, y + d) for (a, b, c, d), x, y in places))
+            texts.append((min(left), min(top), max(right), max(bottom)))
+    return tuple(map(float, root.get("viewBox").split())), texts
+
+
+def write_answers(path, methods, scenes, people, within=True, long_names=False, level=False):
+    """Answers to four trials of each scene; methods differ, so that there are brackets."""
+    draw = random.Random(methods * 100 + scenes * 10 + people)
+    method = "amplitude modulated foci in a style that needs a very long name " if long_names else "m"
+    scene = "four plumes, and hands that move through them, " if long_names else "s"
+    rows = []
+    for person in range(people):
+        mine = range(methods) if within else [person % methods]
+        for m, s, trial in product(mine, range(scenes), range(20 if level else 4)):
+            x = draw.choice((0.2, 0.4, 0.6, 0.8))
+            share = 0.5 + 0.48 / (1 + math.exp(-15 * (x - 0.3 - 0.1 * m))) if level else 0.3 + 0.2 * m
+            rows.append([f"P{person}", f"{method}{m}", f"{scene}{s}", int(draw.random() < share)] + [x] * level)
+    with open(path, "w", newline="") as file:
+        csv.writer(file).writerows([["participant", "method", "scene", "correct"] + ["level"] * level] + rows)
+
+
+def check_texts(path, least):
+    (_, _, width, height), texts = boxes_of_texts(path)
+    assert len(texts) >= least
+    for left, top, right, bottom in texts:
+        assert 0 <= left and 0 <= top and right <= width and bottom <= height
+    for a, b in combinations(texts, 2):
+        over = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+        assert min(over) < 0.1, f"{a} and {b} overlap in {path}"
+
+
+@pytest.mark.parametrize("level", [False, True])
+@pytest.mark.parametrize("long_names", [False, True])
+@pytest.mark.parametrize("methods, scenes", [(1, 1), (2, 1), (2, 2), (3, 5), (4, 6)])
+def test_no_text_of_a_picture_covers_another(prostm, tmp_path, methods, scenes, long_names, level):
+    write_answers(tmp_path / "a.csv", methods, scenes, 6, long_names=long_names, level=level)
+    prostm("study", "analyse", "a.csv", "--figure", "a.svg")
+    check_texts(tmp_path / "a.svg", 10)
+
+
+@pytest.mark.parametrize("people", [4, 60])
+def test_a_picture_holds_few_people_and_many(prostm, tmp_path, people):
+    write_answers(tmp_path / "a.csv", 2, 2, people, within=False)
+    prostm("study", "analyse", "a.csv", "--figure", "a.svg")
+    check_texts(tmp_path / "a.svg", 10)
+
+
+def test_the_papers_scores_are_drawn(prostm, tmp_path):
+    scores = shared_file("data/paper/fig4.json")
+    for name in ("a.svg", "a.png", "a.pdf"):
+        done = prostm("study", "analyse", scores, "--figure", name)
+        assert done.stdout.endswith(f"wrote {name}\n")
+    # title, two methods, axis with its name, chance, shares, scenes, two brackets with two lines each, the note's lines
+    check_texts(tmp_path / "a.svg", 1 + 2 + 6 + 1 + 1 + 6 + 3 + 2 * 2 + 3)
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_thresholds_are_fitted_where_answers_have_levels(prostm, tmp_path):
+    write_answers(tmp_path / "a.csv", 2, 1, 40, level=True)
+    said = prostm("study", "analyse", "a.csv", "--lapse", "0.02", "--guess", "0.5", "--json", "a.json").stdout
+    analysis = json.loads((tmp_path / "a.json").read_text())
+    assert (analysis["guess"], analysis["lapse"]) == (0.5, 0.02)
+    found = {(of["method"], of["participant"]): of for of in analysis["thresholds"]}
+    assert len(found) == 2 * 41
+    rows = list(csv.DictReader(open(tmp_path / "a.csv", newline="")))
+    for method, truth in (("m0", 0.3), ("m1", 0.4)):
+        pooled = found[method, None]
+        low, high = pooled["fit"]["threshold_interval"]
+        assert low < pooled["fit"]["threshold"] < high and high - low < 0.2
+        assert pooled["fit"]["threshold"] == pytest.approx(truth, abs=0.06)
+        assert f"With {method} in s0, the threshold is {pooled['fit']['threshold']:.4g} (95 % interval" in " ".join(
+            said.split())
+        for level in pooled["levels"]:
+            mine = [int(r["correct"]) for r in rows if r["method"] == method and float(r["level"]) == level["level"]]
+            assert (level["correct"], level["answers"]) == (sum(mine), len(mine))
+    for of in found.values():
+        assert (of["fit"] is None) == ("no_fit" in of)
+    assert "no fit: " in said  # of somebody, with 20 answers
+
+
+def test_levels_that_some_answers_lack_are_refused(prostm, refuses, tmp_path):
+    header = "participant,method,scene,correct,level\n"
+    (tmp_path / "a.csv").write_text(header + "1,am,x,1,0.5\n2,am,x,1,\n")
+    refuses("study", "analyse", "a.csv", words=["a.csv, line 3: level is \"\"", "number"])
+    refuses("study", "analyse", MADE_UP, "--lapse", "0.02", words=["no level"])
+    (tmp_path / "a.csv").write_text(header + "1,am,x,1,0.5\n2,am,x,1,0.5\n")
+    refuses("study", "analyse", "a.csv", "--guess", "0.95", words=["guess = 0.95", "0.9"])
+    refuses("study", "analyse", "a.csv", "--lapse", "-0.1", words=["lapse = -0.1"])
+    assert "all answers are at one level" in prostm("study", "analyse", "a.csv").stdout
+
+
+def test_a_tidy_table_has_the_same_answers(prostm, refuses, tmp_path):
+    assert prostm("study", "analyse", MADE_UP, "--tidy", "a.csv").stdout.endswith("wrote a.csv\n")
+    assert (tmp_path / "a.csv").read_bytes().count(b"\r\n") == len(MADE_UP.read_text().splitlines())
+    with open(MADE_UP, newline="") as before, open(tmp_path / "a.csv", newline="") as after:
+        tidy = csv.DictReader(after)
+        assert tidy.fieldnames == ["participant", "method", "scene", "trial", "question", "answer", "correct"]
+        assert [{name: row[name] for name in tidy.fieldnames} for row in csv.DictReader(before)] == list(tidy)
+    said = [prostm("study", "analyse", name).stdout for name in (MADE_UP, "a.csv")]
+    assert said[0] == said[1]
+    write_answers(tmp_path / "b.csv", 2, 1, 2, level=True)
+    prostm("study", "analyse", "b.csv", "--tidy", "c.csv")
+    assert (tmp_path / "b.csv").read_bytes() == (tmp_path / "c.csv").read_bytes()
+    refuses("study", "analyse", MADE_UP, "--tidy", "a.txt", words=["a.txt names no table; it must end in .csv"])
+    refuses("study", "analyse", "a.csv", "--tidy", "a.csv", words=["one file"])
