@@ -335,7 +335,8 @@ void add_analyse(CLI::App& study, Work& work) {
   auto* command = study.add_subcommand("analyse", "what answers do and do not support");
   auto o = std::make_shared<AnalyseOptionsGiven>();
   add_input(*command, o->files, "answers", o->answers,
-            "answers (.csv, docs/study.md), or the scores of the paper's Fig. 4 (.json)")
+            "participants' files of prostm study run (.jsonl), a table of answers (.csv, "
+            "docs/study.md), or the scores of the paper's Fig. 4 (.json)")
       ->required();
   command->add_option("--chance", o->settings.chance, "share of right answers that guessing makes")
       ->capture_default_str();

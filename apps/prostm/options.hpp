@@ -131,7 +131,8 @@ struct StudyRunOptionsGiven {
 
 struct AnalyseOptionsGiven {
   Files files;
-  std::string answers, json, figure;
+  std::vector<std::string> answers;
+  std::string json, figure;
   std::string tidy;  ///< file for the answers
   AnalysisSettings settings;
 };

@@ -164,12 +164,15 @@ std::string wrapped(const std::string& words) {
 }  // namespace
 
 int analyse_command(const AnalyseOptionsGiven& options) {
-  const std::vector<Answer> answers = read_answers(options.answers);
+  std::vector<std::string> notes;
+  const std::vector<Answer> answers = read_answers(options.answers, notes);
   const Analysis analysis = analyse(answers, options.settings);
   const std::string words = in_words(analysis);
   std::FILE* out = prose(options.json);
   fmt::print(out, "{} participants, {}\n\n", analysis.participants.size(),
              analysis.groups == Groups::Within ? "each with all methods" : "each with one method");
+  for (const std::string& note : notes) fmt::print(out, "{}\n", note);
+  if (!notes.empty()) fmt::print(out, "\n");
   print_methods(out, analysis);
   if (!analysis.scenes.front().comparisons.empty()) print_comparisons(out, analysis);
   if (!analysis.thresholds.empty()) print_thresholds(out, analysis.thresholds);

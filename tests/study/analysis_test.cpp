@@ -22,7 +22,9 @@ void add(std::vector<Answer>& out, const std::string& who, const std::string& me
 TEST(Analysis, OfThePapersScores) {
   PROSTM_NEEDS_SHARED("data/paper/fig4.json");
   const test::WithoutTraps in_boost;
-  const Analysis analysis = analyse(read_answers(test::shared_file("data/paper/fig4.json")));
+  std::vector<std::string> notes;
+  const std::vector<std::string> files = {test::shared_file("data/paper/fig4.json")};
+  const Analysis analysis = analyse(read_answers(files, notes));
   ASSERT_EQ(analysis.scenes.size(), 3U);
   EXPECT_EQ(analysis.groups, Groups::Between);
   EXPECT_EQ(analysis.participants.size(), 16U);

@@ -7,6 +7,7 @@
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/study/response_file.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"
 
@@ -119,9 +120,13 @@ TEST(Scores, ComeBackFromATidyTable) {
 }
 
 TEST(Scores, TheNameMustSayTheKind) {
-  EXPECT_THAT(test::input_error([] { read_answers("scores.txt"); }), HasSubstr(".csv"));
-  EXPECT_THAT(test::input_error([] { read_answers("/nowhere/scores.csv"); }),
-              HasSubstr("/nowhere/scores.csv"));
+  const auto refused = [](const std::vector<std::string>& files) {
+    std::vector<std::string> notes;
+    return test::input_error([&] { read_answers(files, notes); });
+  };
+  EXPECT_THAT(refused({"scores.txt"}), HasSubstr(".csv"));
+  EXPECT_THAT(refused({"/nowhere/scores.csv"}), HasSubstr("/nowhere/scores.csv"));
+  EXPECT_THAT(refused({"a.csv", "b.csv"}), HasSubstr("a.csv stands beside other files"));
 }
 
 TEST(Scores, OfThePaper) {
@@ -145,6 +150,58 @@ TEST(Scores, OfThePaper) {
   EXPECT_THAT(refused("\"trials_per_participant\": 4", "\"trials_per_participant\": 5"),
               HasSubstr("even"));
   EXPECT_THAT(refused("STM_4plume", "STM_5plume"), HasSubstr("STM_4plume"));
+}
+
+/// A participant's file with a few trials.
+void write_responses(const std::string& path, const std::string& participant, int trials) {
+  ResponseFile file(path);
+  file.append({{"kind", "begin"},
+               {"format", kResponseFormat},
+               {"participant", participant},
+               {"trials", 2}});
+  for (int i = 1; i <= trials; ++i) {
+    file.append({{"kind", "go"}});
+    file.append({{"kind", "trial"},
+                 {"trial", i},
+                 {"method", "am"},
+                 {"scene", "one-plume"},
+                 {"question", "four-plumes"},
+                 {"answer", 0},
+                 {"correct", 1}});
+  }
+}
+
+TEST(Scores, OfParticipantsFilesAreReadTogether) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> files = {folder.file("1.jsonl"), folder.file("2.jsonl")};
+  write_responses(files[0], "1", 2);
+  write_responses(files[1], "2", 1);
+  std::vector<std::string> notes;
+  const auto answers = read_answers(files, notes);
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[1], (Answer{"1", "am", "one-plume", true, "four-plumes", false, "2", {}}));
+  EXPECT_EQ(answers[2].participant, "2");
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0], HasSubstr("Participant 2 gave 1 of 2 answers"));
+  const std::vector<std::string> twice = {files[0], files[1], files[0]};
+  EXPECT_THAT(test::input_error([&] { read_answers(twice, notes); }),
+              HasSubstr("participant 1 is in"));
+}
+
+TEST(Scores, OfAParticipantsFileNeedItsFirstLineAndWholeTrials) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const auto refused = [&](const std::string& name) {
+    const std::vector<std::string> files = {folder.file(name)};
+    return test::input_error([&] { read_answers(files, notes); });
+  };
+  ResponseFile(folder.file("a.jsonl")).append({{"kind", "trial"}});
+  EXPECT_THAT(refused("a.jsonl"), HasSubstr("line 1 does not begin a participant's file"));
+  write_responses(folder.file("b.jsonl"), "1", 1);
+  ResponseFile(folder.file("b.jsonl")).append({{"kind", "trial"}, {"method", "am"}});
+  EXPECT_THAT(refused("b.jsonl"), HasSubstr("b.jsonl, line 4: "));
+  write_responses(folder.file("c.jsonl"), "1", 0);
+  EXPECT_THAT(refused("c.jsonl"), HasSubstr("has no answer"));
 }
 
 }  // namespace

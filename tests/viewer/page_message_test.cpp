@@ -74,6 +74,18 @@ TEST(PageMessage, CalibrationMuteAndRate) {
   EXPECT_EQ(read<RateMessage>(R"({"type":"rate","hz":60})").rate, 60.0);
 }
 
+TEST(PageMessage, Study) {
+  using Do = StudyAct::Do;
+  EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"next"})").what, Do::Next);
+  const auto answer = read<StudyAct>(R"({"type":"study","do":"answer","yes":true})");
+  EXPECT_EQ(answer.what, Do::Answer);
+  EXPECT_TRUE(answer.yes);
+  EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"explore","scene":3})").scene, 3);
+  const auto about = read<StudyAct>(R"({"type":"study","do":"about","about":{"hand":"left"}})");
+  EXPECT_EQ(about.about, (nlohmann::ordered_json{{"hand", "left"}}));
+  EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"withdraw"})").what, Do::Withdraw);
+}
+
 TEST(PageMessage, WhatIsNoneIsToldInASentence) {
   const char* const hand =
       R"({"type":"hand","palm_mm":[0,0,200],"yaw_deg":0,"pitch_deg":0,"roll_deg":0,"closure":0,)";
@@ -85,7 +97,7 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {std::string(4097, ' '), "4096 bytes"},
       {"{}", "lacks \"type\""},
       {R"({"type":7})", "\"type\" must be a string"},
-      {R"({"type":"reset"})", "set, transport, hand, calibration, mute or rate"},
+      {R"({"type":"reset"})", "set, transport, hand, calibration, mute, rate or study"},
       {R"({"type":"set","value":1})", "lacks \"id\""},
       {R"({"type":"set","id":"gain"})", "lacks \"value\""},
       {R"({"type":"set","id":"gain","value":null})", "\"value\" must be a number"},
@@ -109,7 +121,12 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {R"({"type":"mute"})", "lacks \"on\""},
       {R"({"type":"mute","on":1})", "\"on\" must be true or false"},
       {R"({"type":"rate","hz":0})", "between 1 and 60"},
-      {R"({"type":"rate","hz":"fast"})", "between 1 and 60"}};
+      {R"({"type":"rate","hz":"fast"})", "between 1 and 60"},
+      {R"({"type":"study","do":"peek"})", "next, anyway, answer, pause, consent"},
+      {R"({"type":"study","do":"answer"})", "lacks \"yes\""},
+      {R"({"type":"study","do":"explore","scene":-1})", "between 0 and 1000"},
+      {R"({"type":"study","do":"about","about":[]})", "an object of 20 texts"},
+      {R"({"type":"study","do":"about","about":{"age":30}})", "texts of 200 bytes"}};
   for (const auto& [text, expected] : cases) {
     SCOPED_TRACE(text.substr(0, 100));
     EXPECT_NE(problem_of(text).find(expected), std::string::npos) << problem_of(text);

@@ -182,6 +182,25 @@ TEST_F(Server, APageGetsHelloStateAndWholeFrames) {
   EXPECT_FALSE(test::has_section(second, 5)) << "the field is not";
 }
 
+TEST_F(Server, HasARoomForGuestsWhereAsked) {
+  const std::string upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\n";
+  EXPECT_EQ(status_of(get(port_, "/guest/live", upgrade)), 404);
+  ViewSettings settings = anywhere();
+  settings.guests = true;
+  StandIn source;
+  const ViewServer server(settings, source, some_files());
+  Page guest(server.port(), "", "", "/guest/live"), main(server.port());
+  EXPECT_EQ(guest.next_text().at("type"), "hello");
+  EXPECT_EQ(guest.next_text().at("type"), "guests");
+  EXPECT_EQ(main.next_text().at("type"), "hello");
+  EXPECT_EQ(main.next_text().at("type"), "state");
+  main.next_frame();
+  source.state_version = 2;
+  EXPECT_EQ(main.next_text("state").at("version"), 2);
+  for (int i = 0; i < 10; ++i) main.next_frame();
+  EXPECT_FALSE(guest.hears()) << "neither states nor frames";
+}
+
 TEST_F(Server, TellsEveryPageOfANewState) {
   Page one(port_), two(port_);
   one.next_text("state");

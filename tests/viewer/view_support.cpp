@@ -87,8 +87,12 @@ Json Page::next_text(const std::string& type) {
   }
 }
 
+bool Page::hears() const {
+  return connection_->socket.next_layer().available() > 0;
+}
+
 void Page::catch_up() {
-  while (connection_->socket.next_layer().available() > 0) {
+  while (hears()) {
     beast::flat_buffer buffer;
     connection_->socket.read(buffer);
   }
@@ -109,13 +113,18 @@ std::uint32_t u32_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-bool has_section(const std::string& bytes, unsigned id) {
+int section_count(const std::string& bytes, unsigned id) {
   std::size_t at = 16;
   while (at < bytes.size()) {
-    if ((u32_at(bytes, at) & 0xFFFFU) == id) return true;
+    const std::uint32_t head = u32_at(bytes, at);
+    if ((head & 0xFFFFU) == id) return static_cast<int>(head >> 16);
     at += 8 + (u32_at(bytes, at + 4) + 7) / 8 * 8;
   }
-  return false;
+  return -1;
+}
+
+bool has_section(const std::string& bytes, unsigned id) {
+  return section_count(bytes, id) >= 0;
 }
 
 }  // namespace prostm::test

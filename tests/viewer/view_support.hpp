@@ -39,7 +39,10 @@ class StandIn final : public ViewSource {
   bool shows_frames(Room room) const override { return room == Room::Main; }
   std::string hello(std::uint32_t, Room) override { return R"({"type":"hello","version":1})"; }
   bool refresh_state(Room room, std::string& state) override {
-    if (room == Room::Guest) return false;
+    if (room == Room::Guest) {
+      state = R"({"type":"guests"})";
+      return !std::exchange(guests_told_, true);
+    }
     const int version = state_version;
     if (version == told_) return false;
     told_ = version;
@@ -77,6 +80,7 @@ class StandIn final : public ViewSource {
  private:
   std::uint32_t smoke_cells_ = 0;
   int told_ = 0;
+  bool guests_told_ = false;
   std::mutex mutex_;
   std::vector<std::pair<std::uint32_t, PageMessage>> taken_;
   std::deque<std::pair<std::uint32_t, std::string>> refusals_;
@@ -111,6 +115,8 @@ class Page {
   Json next_text() { return Json::parse(next(true)); }
   /// Returns the next text of a type.
   Json next_text(const std::string& type);
+  /// Whether anything has arrived and was not read.
+  bool hears() const;
   /// Reads the messages that have arrived.
   void catch_up();
   /// Reads until the server closes the connection.
@@ -124,6 +130,8 @@ class Page {
 /// A little-endian number in a frame.
 std::uint32_t u32_at(const std::string& bytes, std::size_t at);
 
+/// Returns how many things a section of a frame has; −1 without such a section.
+int section_count(const std::string& bytes, unsigned id);
 /// Returns whether a frame has a section.
 bool has_section(const std::string& bytes, unsigned id);
 

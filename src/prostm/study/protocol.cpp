@@ -57,7 +57,11 @@ void list_trials(Settings& s, V& v) {
           s.feedback);
   v.field({.name = "break_every", .least = 0, .most = 1000, .help = "trials; 0 for no breaks"},
           s.break_every);
-  v.field({.name = "rest", .unit = "s", .least = 0.1, .most = 60, .help = "still air before each trial"},
+  v.field({.name = "rest",
+           .unit = "s",
+           .least = 0.1,
+           .most = 60,
+           .help = "still air before each trial"},
           s.rest);
   v.field({.name = "settle",
            .unit = "s",

@@ -73,8 +73,8 @@ struct TrialSettings {
   AnswersFrom answers = AnswersFrom::Experimenter;
   bool feedback = false;    ///< tells the participant whether the answer was right
   int break_every = 0;      ///< trials; 0: no breaks
-  double rest = 1.0;  ///< still air before each trial [s]
-  double settle = 2.0;  ///< silence after it, in which the smoke develops [s]
+  double rest = 1.0;        ///< still air before each trial [s]
+  double settle = 2.0;      ///< silence after it, in which the smoke develops [s]
   double time_limit = 0.0;  ///< of the stimulus, which then ends; 0: until the answer [s]
   double strength = 0.10;   ///< difference between conditions that is let pass
   GateUse gate = GateUse::Required;

@@ -15,6 +15,8 @@
 
 namespace prostm {
 
+inline constexpr const char* kResponseFormat = "prostm-responses/1";  ///< in the first line
+
 using ResponseLine = nlohmann::ordered_json;
 
 /// Reads all lines, without their checks. @param cut_off gets the bytes of a last line that is not

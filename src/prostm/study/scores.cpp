@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -18,6 +19,7 @@
 #include "prostm/core/json.hpp"
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/study/detail/csv.hpp"
+#include "prostm/study/response_file.hpp"
 
 namespace prostm {
 namespace {
@@ -237,10 +239,67 @@ std::string tidy_csv(std::span<const Answer> answers) {
   return out;
 }
 
-std::vector<Answer> read_answers(const std::string& path) {
-  if (path.ends_with(".csv")) return answers_from_csv(read_file(path, kMaxBytes), path);
-  if (path.ends_with(".json")) return answers_from_paper(read_file(path, kMaxBytes), path);
-  throw InputError(path + ": the name must end in .csv, answers, or .json, the paper's Fig. 4");
+std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
+                                           std::vector<std::string>& notes) {
+  std::vector<Answer> answers;
+  const std::vector<ResponseLine> lines = responses_from_text(text, file);
+  std::string where = file + ", line 1";
+  try {
+    if (lines.empty() || lines.front().value("format", "") != kResponseFormat)
+      throw InputError(where + " does not begin a participant's file of prostm study run");
+    const std::string participant = lines.front().at("participant");
+    const int trials = lines.front().at("trials");
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const ResponseLine& line = lines[i];
+      if (line.value("kind", "") != "trial") continue;
+      where = fmt::format("{}, line {}", file, i + 1);
+      Answer& a = answers.emplace_back(Answer{participant, line.at("method"), line.at("scene"),
+                                              line.at("correct").get<int>() == 1});
+      a.question = line.at("question");
+      a.yes = line.at("answer").get<int>() == 1;
+      a.trial = std::to_string(line.at("trial").get<int>());
+    }
+    if (static_cast<int>(answers.size()) < trials) {
+      notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", participant,
+                                  answers.size(), trials, file));
+    }
+  } catch (const ResponseLine::exception& error) {
+    throw InputError(fmt::format("{}: {}", where, error.what()));
+  }
+  return answers;
+}
+
+std::vector<Answer> read_answers(std::span<const std::string> paths,
+                                 std::vector<std::string>& notes) {
+  const auto is_responses = [](const std::string& path) { return path.ends_with(".jsonl"); };
+  if (paths.size() == 1 && !is_responses(paths.front())) {
+    const std::string& path = paths.front();
+    if (path.ends_with(".csv")) return answers_from_csv(read_file(path, kMaxBytes), path);
+    if (path.ends_with(".json")) return answers_from_paper(read_file(path, kMaxBytes), path);
+    throw InputError(
+        path +
+        ": the name must end in .csv, answers, .jsonl, a participant's file, or .json, "
+        "the paper's Fig. 4");
+  }
+  std::vector<Answer> all;
+  std::map<std::string, std::string> file_of;
+  for (const std::string& path : paths) {
+    if (!is_responses(path)) {
+      throw InputError(path +
+                       " stands beside other files; several at once are participants' files, whose "
+                       "names end in .jsonl");
+    }
+    const auto answers = answers_from_responses(read_file(path, kMaxBytes), path, notes);
+    if (answers.empty()) continue;
+    const auto [found, is_new] = file_of.emplace(answers.front().participant, path);
+    if (!is_new) {
+      throw InputError(fmt::format("participant {} is in {} and in {}; leave one of them out",
+                                   found->first, found->second, path));
+    }
+    all.insert(all.end(), answers.begin(), answers.end());
+  }
+  if (all.empty()) throw InputError(paths.front() + ": has no answer");
+  return all;
 }
 
 }  // namespace prostm

@@ -34,9 +34,17 @@ std::vector<Answer> answers_from_csv(std::string_view text, const std::string& f
 /// one plume, half four. @throws InputError: what is missing, out of bounds or contradictory.
 std::vector<Answer> answers_from_paper(std::string_view text, const std::string& file);
 
-/// Either of them, by the ending of the name: .csv or .json. @throws InputError also when it cannot
-/// be read.
-std::vector<Answer> read_answers(const std::string& path);
+/// Reads the answers in a participant's file (response_file.hpp). @param notes gets a sentence
+/// where not all trials were answered. @throws InputError: what responses_from_text() throws; no
+/// first line of a study, a trial without its values.
+std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
+                                           std::vector<std::string>& notes);
+
+/// Reads one table (.csv) or the paper's scores (.json), or files of participants (.jsonl), by the
+/// endings of their names. @throws InputError also when a file cannot be read, and for a
+/// participant in two of them.
+std::vector<Answer> read_answers(std::span<const std::string> paths,
+                                 std::vector<std::string>& notes);
 
 /// Returns answers as CSV (RFC 4180) for other programs, a row for each: the columns participant,
 /// method, scene, trial, question, answer, correct and level, those that are known.

@@ -15,7 +15,6 @@ namespace {
 constexpr double kTryAgain = 1.0;     // between tries to write what could not be written [s]
 constexpr double kClockJump = 1.0;    // of the day's clock that is written down [s]
 constexpr double kHandPeriod = 0.05;  // between poses in a trial's line [s]
-constexpr std::string_view kFormat = "prostm-responses/1";
 
 /// A number with so many decimals, so that files stay small.
 double rounded(double value, int decimals) {
@@ -78,7 +77,7 @@ StudySession::StudySession(const Protocol& protocol, int participant, ResponseFi
   training_left_ = protocol.training.seconds;
   wanted_.method = trials_.front().method;
   const ResponseLine first = {{"kind", "begin"},
-                              {"format", kFormat},
+                              {"format", kResponseFormat},
                               {"participant", std::to_string(participant)},
                               {"protocol", protocol_json(protocol)},
                               {"trials", trials_.size()}};

@@ -42,7 +42,8 @@ struct HttpScope {
 /// 400: no Host, or two. 403: a Host that is a name other than localhost, or an address that is not
 /// loopback unless `any_address`, since a foreign site can give its own name our address; or an
 /// Origin that is not the same host. Programs send no Origin and are let in.
-/// @param numbers makes the body of /numbers.json; empty where nobody may see them now, which is 403.
+/// @param numbers makes the body of /numbers.json; an empty one where nobody may see them now is
+/// 403.
 HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, HttpScope scope,
                   const std::function<std::string()>& numbers);
 

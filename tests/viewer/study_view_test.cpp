@@ -1,0 +1,159 @@
+#include "prostm/viewer/study_view.hpp"
+
+#include <thread>
+
+#include "prostm/core/file.hpp"
+#include "prostm/pipeline/runner.hpp"
+#include "study/study_support.hpp"
+#include "support/input_errors.hpp"
+#include "viewer/live_run.hpp"
+
+namespace prostm {
+namespace {
+
+using test::Json;
+using test::Page;
+using testing::HasSubstr;
+
+/// A study of a hand that is held still, on threads and with a server of its own.
+class LiveStudy {
+ public:
+  explicit LiveStudy(const std::string& more)
+      : protocol_(protocol(more)),
+        file_(folder_.file("1.jsonl")),
+        session_(protocol_, 1, file_, {{"prostm", "test"}}, study_time()) {
+    link_.settings.pipeline = protocol_.methods.front().settings;
+    link_.settings.pipeline.scene = "still-air";
+    link_.page_hand = std::make_shared<PageHand>(link_.settings.pipeline.track);
+    link_.make_hands = [this](const std::string&, const PipelineSettings& s) {
+      return std::make_unique<HandSwitch>(make_study_hand(s.study_hand), link_.page_hand,
+                                          Pose::Identity());
+    };
+    auto hands = link_.make_hands("study", link_.settings.pipeline);
+    link_.hands = hands.get();
+    pipeline_ = std::make_unique<Pipeline>(link_.settings.pipeline, std::move(hands), link_.mute);
+    view_ = std::make_unique<StudyView>(
+        link_, ViewHello{"0", "simulated usx", "usx", {}, Vec3::Zero(), 0.36}, session_);
+    ViewSettings settings;
+    settings.port = 0;
+    settings.guests = true;
+    server_ = std::make_unique<ViewServer>(settings, *view_, std::span<const PageFile>());
+    RunOptions options = test::for_long();
+    options.live = &link_;
+    thread_ = std::thread(
+        [this, options] { run(*pipeline_, link_.settings.pipeline, options, observer_); });
+  }
+  ~LiveStudy() {
+    observer_.view = nullptr;
+    thread_.join();
+  }
+
+  int port() const { return server_->port(); }
+  const Protocol& protocol() const { return protocol_; }
+  std::vector<ResponseLine> trials() const {
+    std::vector<ResponseLine> found;
+    for (const ResponseLine& line : responses_from_text(read_file(file_.path()), file_.path()))
+      if (line["kind"] == "trial") found.push_back(line);
+    return found;
+  }
+  /// Waits until the session is closed.
+  void wait() {
+    while (!view_->closed()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+
+ private:
+  struct Observer final : RunObserver {
+    bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
+    bool on_progress(double) override { return goes_on(); }
+    bool goes_on() const { return view.load() != nullptr; }
+    std::atomic<const void*> view{this};
+  };
+  static Protocol protocol(const std::string& more) {
+    Protocol p = test::study_protocol(more);
+    for (StudyMethod& method : p.methods) {
+      method.settings.fluid.cells = 32;
+      method.settings.jets.place = JetPlace::Hand;
+      method.settings.simulated_array.realtime = true;
+      set_live_budget(method.settings);
+    }
+    return p;
+  }
+
+  test::TemporaryFolder folder_;
+  Protocol protocol_;
+  ResponseFile file_;
+  StudySession session_;
+  LiveLink link_;
+  std::unique_ptr<Pipeline> pipeline_;
+  std::unique_ptr<StudyView> view_;
+  std::unique_ptr<ViewServer> server_;
+  Observer observer_;
+  std::thread thread_;
+};
+
+/// The next state of a page in which the session is at a phase.
+Json at_phase(Page& page, const std::string& phase) {
+  for (;;) {
+    Json state = page.next_text("study");
+    if (state.at("phase") == phase) return state;
+  }
+}
+
+TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
+  LiveStudy study(
+      "methods = \"within\"\n[training]\nseconds = 0\n[trials]\nrepeats = 1\nrest = "
+      "0.1\nsettle = 0.5\ngate = \"off\"\n");
+  Page experimenter(study.port()), participant(study.port(), "", "", "/guest/live");
+  EXPECT_EQ(at_phase(participant, "ready").at("room"), "participant");
+  EXPECT_EQ(at_phase(experimenter, "ready").at("room"), "experimenter");
+  participant.say(R"({"type":"study","do":"next"})");
+  EXPECT_EQ(participant.next_text("error").at("sentence"), "the experimenter does that");
+  experimenter.say(R"({"type":"set","id":"gain","value":1})");
+  EXPECT_THAT(experimenter.next_text("error").at("sentence").get<std::string>(),
+              HasSubstr("protocol"));
+  EXPECT_EQ(test::status_of(test::get(study.port(), "/numbers.json")), 403);
+  const auto order = trial_order(study.protocol(), 1);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || order[i].method != order[i - 1].method)
+      experimenter.say(R"({"type":"study","do":"next"})");
+    const Json told = at_phase(experimenter, "presenting"),
+               shown = at_phase(participant, "presenting");
+    EXPECT_TRUE(told.at("condition").is_null());
+    EXPECT_EQ(told.at("question"), shown.at("question").at("text"));
+    EXPECT_EQ(shown.at("question").at("jets_mm").size(), order[i].question == 0 ? 1U : 4U);
+    experimenter.say(R"({"type":"study","do":"answer","yes":true})");
+    at_phase(experimenter, i + 1 == order.size()                    ? "done"
+                           : order[i + 1].method == order[i].method ? "settling"
+                                                                    : "ready");
+  }
+  const auto trials = study.trials();
+  ASSERT_EQ(trials.size(), order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    EXPECT_EQ(trials[i]["scene"] == "one-plume", order[i].scene == 0);
+    EXPECT_EQ(trials[i]["method"] == "am", order[i].method == 0);
+    EXPECT_GT(trials[i]["target_mn"].get<double>(), 0.0) << "the smoke pressed on the hand";
+    EXPECT_GT(trials[i]["rendered_mn"].get<double>(), 0.0);
+  }
+  experimenter.say(R"({"type":"study","do":"next"})");
+  study.wait();
+}
+
+TEST(StudyView, ShowsTheSimulationInTrainingWithoutTheMethod) {
+  LiveStudy study("[training]\nseconds = 600\n");
+  Page experimenter(study.port()), participant(study.port(), "", "", "/guest/live");
+  std::string frame;
+  for (int i = 0; i < 20; ++i) {
+    frame = participant.next_frame();
+    EXPECT_LE(test::section_count(frame, 5), 0) << "fields";
+    EXPECT_LE(test::section_count(frame, 6), 0) << "paths";
+  }
+  EXPECT_EQ(test::section_count(frame, 3), 1) << "hands";
+  experimenter.say(R"({"type":"study","do":"next"})");
+  at_phase(participant, "ready");
+  participant.catch_up();
+  experimenter.say(R"({"type":"study","do":"withdraw"})");
+  EXPECT_EQ(at_phase(experimenter, "withdrawn").at("trials"), 16);
+}
+
+}  // namespace
+}  // namespace prostm
