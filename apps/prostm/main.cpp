@@ -294,10 +294,8 @@ void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help
   });
 }
 
-void add_study(CLI::App& app, Work& work) {
-  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
-  study->require_subcommand(1);
-  auto* command = study->add_subcommand("analyse", "what answers do and do not support");
+void add_analyse(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand("analyse", "what answers do and do not support");
   auto o = std::make_shared<AnalyseOptionsGiven>();
   add_input(*command, o->files, "answers", o->answers,
             "answers (.csv, docs/study.md), or the scores of the paper's Fig. 4 (.json)")
@@ -313,8 +311,48 @@ void add_study(CLI::App& app, Work& work) {
   add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm study analyse data/made-up-answers.csv");
   command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
+}
+
+void add_simulate(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand(
+      "simulate", "the paper's study with model observers in place of people; takes a minute");
+  auto o = std::make_shared<SimulateOptionsGiven>();
+  command->add_option("--participants", o->shape.participants, "with each method")
+      ->capture_default_str();
+  command->add_option("--trials", o->shape.trials, "of each participant, half with each scene")
+      ->capture_default_str();
+  command->add_option("--studies", o->studies, "that intervals are taken over")
+      ->capture_default_str();
+  command->add_option("--hands", o->hands, "of different size and tremor to draw participants from")
+      ->capture_default_str();
+  add_name(*command, "--preset", o->preset, "of pro-stm: paper, paper-valid, best or fast")
+      ->capture_default_str();
+  command->add_option("--noise", o->noise, "factor of the observers' own noise")
+      ->capture_default_str();
+  command->add_option("--grid", o->grid, "cells of the smoke along an edge")->capture_default_str();
+  command->add_option("--seed", o->seed, "of hands and answers")->capture_default_str();
+  command
+      ->add_option("--paper-data", o->paper_data,
+                   "folder with the paper's scores, fig4.json; default: " +
+                       std::string(kPaperData) + ", if it is there")
+      ->type_name("FOLDER")
+      ->each([o = o.get()](const std::string& folder) {
+        o->files.reads("--paper-data", folder + "/fig4.json");
+      });
+  add_output(*command, o->files, "--answers", o->answers, prostm::check_writable,
+             "the answers of one simulated study of the observer skin (.csv), as prostm study "
+             "analyse reads them");
+  add_json(*command, o->files, o->json);
+  command->footer("Example:\n  prostm study simulate --hands 1 --grid 32 --answers model.csv");
+  command->callback([o, &work] { work = {&o->files, [o] { return simulate_command(*o); }}; });
+}
+
+void add_study(CLI::App& app, Work& work) {
+  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
+  study->require_subcommand(1);
+  add_analyse(*study, work);
+  add_simulate(*study, work);
   add_unbuilt(*study, "run", "the trials of a protocol");
-  add_unbuilt(*study, "simulate", "simulated observers in place of people");
 }
 
 /// Parses and runs a command. @return the exit status.
