@@ -89,7 +89,7 @@ TEST(ModelStudy, LikelihoodIsThatOfParticipantsDrawnFromThePool) {
 /// Moments whose only number is `value` in training, and `later` in trials.
 std::vector<Percept> moments(double value, double later) {
   std::vector<Percept> out(2 * kTrialMoments, {value});
-  for (std::size_t i = kTrialMoments; i < out.size(); ++i) out[i] = {later};
+  for (std::size_t i = 1; i < out.size(); i += 2) out[i] = {later};
   return out;
 }
 

@@ -70,19 +70,23 @@ double ModelParticipant::mean_right(std::size_t scene) const {
 
 ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse) {
   std::array<Percept, 2> known;
+  FeltScenes trials;
   for (std::size_t s = 0; s < felt.size(); ++s) {
     if (felt[s].size() < 2 * kTrialMoments)
       throw std::invalid_argument(fmt::format("{} moments of {} must be at least {}",
                                               felt[s].size(), kStudyScenes[s], 2 * kTrialMoments));
-    known[s] = mean_of(std::span(felt[s]).first(felt[s].size() / 2));
+    std::vector<Percept> training;
+    for (std::size_t i = 0; i < felt[s].size(); ++i)
+      (i % 2 == 0 ? training : trials[s]).push_back(felt[s][i]);
+    known[s] = mean_of(training);
   }
   const TemplateObserver observer(known[0], known[1], noise);
   ModelParticipant out;
   out.d_prime = observer.d_prime();
   for (std::size_t s = 0; s < felt.size(); ++s) {
-    const auto trials = std::span(felt[s]).subspan(felt[s].size() / 2);
-    for (std::size_t i = 0; i + kTrialMoments <= trials.size(); ++i) {
-      const double for_second = observer.evidence(mean_of(trials.subspan(i, kTrialMoments)));
+    for (std::size_t i = 0; i + kTrialMoments <= trials[s].size(); ++i) {
+      const Percept trial = mean_of(std::span(trials[s]).subspan(i, kTrialMoments));
+      const double for_second = observer.evidence(trial);
       out.right[s].push_back(chance_of_right(s == 1 ? for_second : -for_second, lapse));
     }
   }

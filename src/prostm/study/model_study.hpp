@@ -31,8 +31,9 @@ struct ModelParticipant {
 using FeltScenes = std::array<std::vector<Percept>, 2>;
 /// Moments that an observer feels in a trial.
 inline constexpr std::size_t kTrialMoments = 3;
-/// Lets an observer learn the means of the first half of the moments as templates, and answer in
-/// trials: each run of kTrialMoments of the second half, whose mean it feels.
+/// Lets an observer learn the means of every second moment as templates, and answer in trials: each
+/// run of kTrialMoments of the other moments, whose mean it feels. Training and trials take turns,
+/// so that nothing that drifts is felt in one of them alone.
 /// @throws std::invalid_argument: fewer than 2 kTrialMoments moments; as TemplateObserver does.
 ModelParticipant observe(const FeltScenes& felt, const ObserverNoise& noise, double lapse);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/random.hpp"
@@ -96,26 +95,11 @@ Percept at_places(const TargetField& raster, std::span<const double> map, const 
   return out;
 }
 
-struct StimulusFeeler::Parts {
-  Parts(const PipelineSettings& given, double full_scale_pressure)
-      : settings(given),
-        emit(emit_settings(given, full_scale_pressure)),
-        rate(given.emission_rate()),
-        packed(given.transducers, air),
-        pool(given.threads) {}
-
-  const PipelineSettings settings;
-  const EmitSettings emit;
-  const double rate;
-  const Medium air = {};
-  const PackedArray packed;
-  WorkerPool pool;
-};
-
-StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_scale_pressure)
-    : parts_(std::make_unique<Parts>(settings, full_scale_pressure)) {}
-
-StimulusFeeler::~StimulusFeeler() = default;
+StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_scale)
+    : settings_(settings),
+      emit_(emit_settings(settings, full_scale)),
+      packed_(settings.transducers, air_),
+      pool_(settings.threads) {}
 
 StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target,
                                      const Pose& X_DH) {
@@ -123,21 +107,16 @@ StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target
   if (plan.empty()) return out;
   const TargetField& raster = target.patches.front();
   std::vector<double> field(raster.size());
-  const PlanSettings& of_paths = parts_->settings.plan;
-  quasi_static_field(plan, 0, raster,
-                     plan.foci.empty() ? of_paths.sigma : parts_->settings.am.sigma,
-                     of_paths.gain_law(), field);
+  quasi_static_field(plan, 0, raster, plan.foci.empty() ? settings_.plan.sigma : settings_.am.sigma,
+                     settings_.plan.gain_law(), field);
   out.field = at_places(raster, field, X_DH);
-  const LoopSamples loop = plan_loop(plan, target, parts_->emit, parts_->rate);
+  const LoopSamples loop = plan_loop(plan, target, emit_, settings_.emission_rate());
   if (is_silent(loop)) return out;
+  const LoopDriveSettings drive{.focus = {}, .transducer = {}, .full_scale_pa = kFullScalePa};
+  const auto go_on = [](int, int) { return true; };
   LoopDriveResult drives;
-  LoopDriveSettings drive;
-  drive.full_scale_pa = kFullScalePa;
-  loop_drives(
-      parts_->settings.transducers, parts_->air, loop, drive, [](int, int) { return true; },
-      drives);
-  const FeltField felt =
-      FeelingSkin(raster).feel(parts_->packed, parts_->air, raster, loop, drives, parts_->pool);
+  loop_drives(settings_.transducers, air_, loop, drive, go_on, drives);
+  const FeltField felt = FeelingSkin(raster).feel(packed_, air_, raster, loop, drives, pool_);
   out.skin = at_places(raster, felt.percept, X_DH);
   out.strength = felt.intensity;
   return out;
@@ -160,8 +139,8 @@ ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, co
   const double full_scale = scene_from_name(scene).full_scale_pressure;
   WorldStage world(settings, std::make_unique<TremblingHand>(settings.study_hand, hand));
   StimulusFeeler feeler(settings, full_scale);
-  PlanSettings of_paths = plan_settings(settings, settings.emission_rate());
-  Planner planner(of_paths, world.max_cells());
+  settings.emit.full_scale_pressure = emit_settings(settings, full_scale).full_scale_pressure;
+  Planner planner(plan_settings(settings, settings.emission_rate()), world.max_cells());
   AmPlanner am(settings.am, world.max_cells());
   ScenePercepts out;
   const double dt = 1.0 / settings.world_rate;

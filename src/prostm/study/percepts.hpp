@@ -2,13 +2,17 @@
 /// The percepts that a method makes from a scene on the hand of a participant: what the model
 /// observers of docs/design.md (Y2) to (Y6) feel.
 
-#include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "prostm/acoustics/propagation_kernels.hpp"
+#include "prostm/core/medium.hpp"
+#include "prostm/core/worker_pool.hpp"
 #include "prostm/pipeline/settings.hpp"
+#include "prostm/plan/plan.hpp"
 #include "prostm/study/observer.hpp"
 #include "prostm/target/target_field.hpp"
 
@@ -37,19 +41,21 @@ struct StimulusPercept {
 /// @param X_DH palm joint: −z to the fingertips, +y dorsal. @param map rows·cols
 Percept at_places(const TargetField& raster, std::span<const double> map, const Pose& X_DH);
 
-/// Plays plans and feels them.
+/// Plays plans on the array of the settings, and feels them.
 class StimulusFeeler {
  public:
-  /// @param full_scale_pressure of the emission, at intensity 1 [Pa].
-  StimulusFeeler(const PipelineSettings& settings, double full_scale_pressure);
-  ~StimulusFeeler();
+  /// @param full_scale of the scene, as for emit_settings() [Pa].
+  StimulusFeeler(const PipelineSettings& settings, double full_scale);
 
   /// @param X_DH as for at_places(). All zeros for a plan without pressure, which nobody feels.
   StimulusPercept feel(const Plan& plan, const TargetFrame& target, const Pose& X_DH);
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  PipelineSettings settings_;
+  EmitSettings emit_;
+  Medium air_;
+  PackedArray packed_;
+  WorkerPool pool_;
 };
 
 /// The hand of a simulated participant: `--hand study` of a size, with a tremor of 8 to 12 Hz.
@@ -65,10 +71,9 @@ ModelHand random_hand(std::uint64_t seed);
 struct ScenePercepts {
   std::vector<StimulusPercept> am, pro_stm;
 };
-/// Runs a scene without a clock on a hand for `settle` seconds, and then feels `moments` moments of
-/// both methods, a plan update or more apart. @param settings their scene and hand are replaced.
-/// @param progress is called after each moment; false ends it. @return as many moments as were
-/// felt.
+/// Runs a scene without a clock on a hand until it has settled, and then feels so many moments of
+/// both methods. @param settings their scene, hand and place of jets are replaced. @param progress
+/// is called after each moment; false ends it.
 ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, const ModelHand& hand,
                          int moments, const std::function<bool()>& progress);
 
