@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <filesystem>
 
 #include "common.hpp"
@@ -185,20 +185,33 @@ void print_table(std::FILE* out, const std::vector<Row>& rows, const std::vector
     print("people", method.name, shares_of(answers_with(people, method.name)), "");
 }
 
+/// Mean strength of a scene on all hands [m].
+double strength_of(const std::vector<HandPercepts>& hands, const StudyMethod& method,
+                   std::size_t scene) {
+  double sum = 0.0;
+  for (const HandPercepts& hand : hands) {
+    for (const StimulusPercept& moment : hand[scene].*method.percepts) sum += moment.strength;
+  }
+  return sum / (kMoments * static_cast<double>(hands.size()));
+}
+
 /// Says how well strength alone tells the scenes apart.
-std::string about_strength(const std::vector<Row>& rows) {
+std::string about_strength(const std::vector<Row>& rows, const std::vector<HandPercepts>& hands) {
   constexpr double kCue = 0.525;  // share of right answers above which strength tells
-  std::string shares;
+  std::vector<std::string> said;
   bool is_cue = false;
-  for (const Row& row : rows) {
-    if (row.observer != "strength") continue;
-    const double right = row.share[2].mean;
-    shares += fmt::format("{}{:.1f} % right with {}", shares.empty() ? "" : " and ", 100.0 * right,
-                          row.method);
+  for (const StudyMethod& method : kMethods) {
+    const auto row = std::ranges::find_if(
+        rows, [&](const Row& r) { return r.observer == "strength" && r.method == method.name; });
+    const double right = row->share[2].mean;
+    said.push_back(fmt::format(
+        "{:.1f} % right with {} (four plumes feel {:.2f} times as strong as "
+        "one)",
+        100.0 * right, method.name, strength_of(hands, method, 1) / strength_of(hands, method, 0)));
     is_cue = is_cue || right > kCue;
   }
   return fmt::format(
-      "Strength alone gives {}, guessing 50 %: {}.", shares,
+      "Strength alone gives {}, guessing 50 %: {}.", fmt::join(said, " and "),
       is_cue ? "the scenes are not equally strong, and strength is a cue" : "strength is no cue");
 }
 
@@ -268,7 +281,7 @@ int simulate_command(const SimulateOptionsGiven& given) {
   }
   const std::vector<Row> rows = rows_of(hands, given, people);
   print_table(out, rows, people);
-  const std::string strength = about_strength(rows);
+  const std::string strength = about_strength(rows, hands);
   fmt::print(out, "\nIn the paper people had {} with am and {} with pro-stm.{}\n{}\n",
              kMethods[0].said, kMethods[1].said,
              people.empty() ? fmt::format(" Each one's scores, {}/fig4.json, are not there, so "
