@@ -36,10 +36,10 @@ std::vector<Observer> observers(double factor) {
 struct StudyMethod {
   const char* name;
   std::vector<StimulusPercept> ScenePercepts::*percepts;
-  const char* said;  ///< the paper's share of right answers
+  double of_people;  ///< share of right answers in the paper
 };
-constexpr std::array kMethods = {StudyMethod{"am", &ScenePercepts::am, "61 %"},
-                                 StudyMethod{"pro-stm", &ScenePercepts::pro_stm, "76 %"}};
+constexpr std::array kMethods = {StudyMethod{"am", &ScenePercepts::am, 0.61},
+                                 StudyMethod{"pro-stm", &ScenePercepts::pro_stm, 0.76}};
 
 using HandPercepts = std::array<ScenePercepts, 2>;  ///< of each of kStudyScenes
 
@@ -205,9 +205,8 @@ std::string about_strength(const std::vector<Row>& rows, const std::vector<HandP
         rows, [&](const Row& r) { return r.observer == "strength" && r.method == method.name; });
     const double right = row->share[2].mean;
     said.push_back(fmt::format(
-        "{:.1f} % right with {} (four plumes feel {:.2f} times as strong as "
-        "one)",
-        100.0 * right, method.name, strength_of(hands, method, 1) / strength_of(hands, method, 0)));
+        "{:.1f} % right with {} (four plumes feel {:.2f} times as strong as one)", 100.0 * right,
+        method.name, strength_of(hands, method, 1) / strength_of(hands, method, 0)));
     is_cue = is_cue || right > kCue;
   }
   return fmt::format(
@@ -215,18 +214,33 @@ std::string about_strength(const std::vector<Row>& rows, const std::vector<HandP
       is_cue ? "the scenes are not equally strong, and strength is a cue" : "strength is no cue");
 }
 
+nlohmann::ordered_json shares_json(const std::array<SimulatedShare, 3>& shares) {
+  const std::array names = {kStudyScenes[0], kStudyScenes[1], "both"};
+  nlohmann::ordered_json out;
+  for (std::size_t s = 0; s < names.size(); ++s)
+    out[names[s]] = {{"right", shares[s].mean},
+                     {"interval", {shares[s].interval.low, shares[s].interval.high}}};
+  return out;
+}
+
 nlohmann::ordered_json rows_json(const std::vector<Row>& rows) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const Row& row : rows) {
     nlohmann::ordered_json& json = out.emplace_back();
     json = {{"observer", row.observer}, {"method", row.method}, {"d_prime", row.d_prime}};
-    const std::array names = {kStudyScenes[0], kStudyScenes[1], "both"};
-    for (std::size_t s = 0; s < names.size(); ++s) {
-      const SimulatedShare& share = row.share[s];
-      json[names[s]] = {{"right", share.mean},
-                        {"interval", {share.interval.low, share.interval.high}}};
-    }
+    json.update(shares_json(row.share));
     if (row.log_likelihood) json["log_likelihood"] = *row.log_likelihood;
+  }
+  return out;
+}
+
+/// The paper's shares, and those of its participants where their scores are there.
+nlohmann::ordered_json people_json(const std::vector<Answer>& people) {
+  nlohmann::ordered_json out;
+  for (const StudyMethod& method : kMethods) {
+    out[method.name] = {{"paper", method.of_people}};
+    if (!people.empty())
+      out[method.name].update(shares_json(shares_of(answers_with(people, method.name))));
   }
   return out;
 }
@@ -243,6 +257,9 @@ void check(const SimulateOptionsGiven& given) {
 std::vector<Answer> people_of(const SimulateOptionsGiven& given) {
   const std::string file = given.paper_data.value_or(kPaperData) + "/fig4.json";
   if (!given.paper_data && !std::filesystem::exists(file)) return {};
+  Files files = given.files;
+  if (!given.paper_data) files.reads("--paper-data", file);
+  files.check();
   return read_answers(file);
 }
 
@@ -282,8 +299,8 @@ int simulate_command(const SimulateOptionsGiven& given) {
   const std::vector<Row> rows = rows_of(hands, given, people);
   print_table(out, rows, people);
   const std::string strength = about_strength(rows, hands);
-  fmt::print(out, "\nIn the paper people had {} with am and {} with pro-stm.{}\n{}\n",
-             kMethods[0].said, kMethods[1].said,
+  fmt::print(out, "\nIn the paper people had {:.0f} % with am and {:.0f} % with pro-stm.{}\n{}\n",
+             100.0 * kMethods[0].of_people, 100.0 * kMethods[1].of_people,
              people.empty() ? fmt::format(" Each one's scores, {}/fig4.json, are not there, so "
                                           "likelihoods are missing (--paper-data).",
                                           kPaperData)
@@ -301,6 +318,7 @@ int simulate_command(const SimulateOptionsGiven& given) {
                           {"seed", given.seed},
                           {"noise", given.noise},
                           {"rows", rows_json(rows)},
+                          {"people", people_json(people)},
                           {"words", strength}});
   say_written(out, given.json);
   return 0;

@@ -62,6 +62,7 @@ def test_the_papers_scores_have_likelihoods(simulated):
     said, result = simulated("--paper-data", shared_file("data/paper/fig4.json").parent)
     assert "people" in said and "60.9" in said and "75.8" in said and "log L" in said
     assert all(row["log_likelihood"] < 0 for row in result["rows"])
+    assert result["people"]["am"]["paper"] == 0.61 and result["people"]["pro-stm"]["both"]["right"] == 97 / 128
     guess = [row["log_likelihood"] for row in result["rows"] if row["observer"] == "guess"]
     assert guess == pytest.approx([-31.9, -51.8], abs=0.05)  # 16 binomial chances of a half, each
 
