@@ -1,6 +1,7 @@
 #include "add_options.hpp"
 
 #include "common.hpp"
+#include "prostm/core/input_error.hpp"
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/figure/figures.hpp"
 
@@ -83,6 +84,27 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
   add_hand(command, common, hand, hand_size);
   command.add_option("--grid", common.grid, "cells along each edge of the fluid's box");
   add_array(command, common, "usx (default), autd3, or an array file (.json)");
+}
+
+std::array<CLI::Option*, 2> add_address(CLI::App& command, RunOptionsGiven& o) {
+  auto* port =
+      command.add_option("--view-port", o.view_port,
+                         "port of the page, 0 for any; default: 8470, or the next free one");
+  auto* address =
+      command
+          .add_option("--view-address", o.view_address,
+                      "address to serve the page on; default: 127.0.0.1, this machine alone")
+          ->type_name("ADDRESS");
+  return {port, address};
+}
+
+void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help) {
+  auto* command = app.add_subcommand(name, help + " (not built yet)");
+  command->prefix_command();
+  command->callback([name, parent = app.get_name()] {
+    throw InputError("prostm " + (parent.empty() ? "" : parent + ' ') + name +
+                     " is not built yet in this version");
+  });
 }
 
 }  // namespace prostm::app

@@ -2,6 +2,7 @@
 /// Options of the command line that several commands have.
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -66,11 +67,19 @@ CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& 
 /// How the file of a field is read. @param of the option that names the file, unless it is always
 /// there.
 void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of = nullptr);
+/// Where pages are served. @return the two options.
+std::array<CLI::Option*, 2> add_address(CLI::App& command, RunOptionsGiven& o);
 /// --hand, --hand-size and --tracker.
 void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,
               std::optional<double>& hand_size);
 /// Those of add_common(), and what a run is made of.
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand, std::optional<double>& hand_size);
+
+/// A command of the design that does not exist yet answers with a sentence, not with a usage error.
+void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help);
+
+/// prostm study, with its own commands.
+void add_study(CLI::App& app, Work& work);
 
 }  // namespace prostm::app

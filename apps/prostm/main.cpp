@@ -2,7 +2,6 @@
 /// status 2.
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -22,19 +21,6 @@
 namespace {
 
 using namespace prostm::app;
-
-/// Where pages are served. @return the two options.
-std::array<CLI::Option*, 2> add_address(CLI::App& command, RunOptionsGiven& o) {
-  auto* port =
-      command.add_option("--view-port", o.view_port,
-                         "port of the page, 0 for any; default: 8470, or the next free one");
-  auto* address =
-      command
-          .add_option("--view-address", o.view_address,
-                      "address to serve the page on; default: 127.0.0.1, this machine alone")
-          ->type_name("ADDRESS");
-  return {port, address};
-}
 
 /// The page of a run.
 void add_view(CLI::App& command, RunOptionsGiven& o) {
@@ -290,84 +276,6 @@ void add_check(CLI::App& app, Work& work) {
   add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm check");
   command->callback([o, &work] { work = {&o->files, [o] { return check_command(*o); }}; });
-}
-
-/// A command of the design that does not exist yet answers with a sentence, not with a usage error.
-void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help) {
-  auto* command = app.add_subcommand(name, help + " (not built yet)");
-  command->prefix_command();
-  command->callback([name, parent = app.get_name()] {
-    throw prostm::InputError("prostm " + (parent.empty() ? "" : parent + ' ') + name +
-                             " is not built yet in this version");
-  });
-}
-
-void add_study_run(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand("run", "leads a participant through a protocol");
-  auto o = std::make_shared<StudyRunOptionsGiven>();
-  RunOptionsGiven& run = o->run;
-  add_input(*command, run.common.files, "protocol", o->protocol,
-            "what is presented and asked (.toml, docs/study.md)")
-      ->required();
-  command->add_option("--participant", o->participant, "number of the participant, from 1")
-      ->required();
-  command->add_option("--answers", o->folder, "folder of the response files")
-      ->type_name("FOLDER")
-      ->capture_default_str();
-  command->add_flag("--resume", o->resume, "go on with a participant who has begun");
-  run.hand = "study";
-  add_hand(*command, run.common, run.hand, run.hand_size);
-  add_input(*command, run.common.files, "--settings", run.common.settings_file,
-            "settings that all methods begin with, a TOML file (docs/files.md)");
-  add_device(*command, run.common);
-  add_array(*command, run.common, "usx (default), autd3, or an array file (.json)");
-  add_lock_memory(*command, run.lock_memory);
-  add_address(*command, run);
-  command->footer(
-      "Example:\n  prostm study run data/protocols/one-plume-or-four.toml --participant 1 --hand "
-      "leap://127.0.0.1:6437");
-  command->callback([o, &work] {
-    work = {&o->run.common.files, [o] { return study_run_command(*o); }};
-  });
-}
-
-void add_analyse(CLI::App& study, Work& work) {
-  auto* command = study.add_subcommand("analyse", "what answers do and do not support");
-  auto o = std::make_shared<AnalyseOptionsGiven>();
-  add_input(*command, o->files, "answers", o->answers,
-            "participants' files of prostm study run (.jsonl), a table of answers (.csv, "
-            "docs/study.md), or the scores of the paper's Fig. 4 (.json)")
-      ->required();
-  command->add_option("--chance", o->settings.chance, "share of right answers that guessing makes")
-      ->capture_default_str();
-  command->add_option("--level", o->settings.level, "of intervals; tests take 1 minus it")
-      ->capture_default_str();
-  command->add_option("--power", o->settings.power, "for which participants are planned")
-      ->capture_default_str();
-  command->add_option("--seed", o->settings.seed, "of random splits of many participants")
-      ->capture_default_str();
-  command->add_option("--guess", o->settings.guess,
-                      "share of right answers at low levels; default: --chance");
-  command->add_option("--lapse", o->settings.lapse,
-                      "share of wrong answers at high levels; default: 0.02");
-  add_json(*command, o->files, o->json);
-  add_output(*command, o->files, "--figure", o->figure, prostm::check_figure,
-             "shares as the paper's Fig. 4, or psychometric functions where answers have levels "
-             "(.png, .svg or .pdf)");
-  add_output(*command, o->files, "--tidy", o->tidy, check_csv_output,
-             "write the answers as a table (.csv) for other programs (docs/study.md)");
-  command->footer(
-      "Example:\n  prostm study analyse data/made-up-answers.csv --figure answers.svg --tidy "
-      "tidy.csv");
-  command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
-}
-
-void add_study(CLI::App& app, Work& work) {
-  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
-  study->require_subcommand(1);
-  add_study_run(*study, work);
-  add_analyse(*study, work);
-  add_unbuilt(*study, "simulate", "simulated observers in place of people");
 }
 
 /// Parses and runs a command. @return the exit status.

@@ -8,6 +8,7 @@
 #include "files.hpp"
 #include "prostm/io/field_file.hpp"
 #include "prostm/study/analysis.hpp"
+#include "prostm/study/model_study.hpp"
 
 namespace prostm::app {
 
@@ -137,6 +138,21 @@ struct AnalyseOptionsGiven {
   AnalysisSettings settings;
 };
 
+inline constexpr const char* kPaperData = "../shared/data/paper";
+
+struct SimulateOptionsGiven {
+  Files files;
+  std::string json, answers;
+  std::optional<std::string> paper_data;  ///< folder of fig4.json
+  std::string preset = "paper";
+  StudyShape shape;
+  int studies = 1000;
+  int hands = 6;
+  int grid = 64;
+  int seed = 1;
+  double noise = 1.0;  ///< factor of the observers' own
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument. The files that the options name have been checked.
 int run_command(const RunOptionsGiven& options);
@@ -153,5 +169,6 @@ int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);
 int study_run_command(const StudyRunOptionsGiven& options);
 int analyse_command(const AnalyseOptionsGiven& options);
+int simulate_command(const SimulateOptionsGiven& options);
 
 }  // namespace prostm::app

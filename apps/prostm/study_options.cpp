@@ -1,0 +1,114 @@
+/// The options of prostm study.
+
+#include "add_options.hpp"
+#include "common.hpp"
+#include "prostm/figure/figures.hpp"
+
+namespace prostm::app {
+namespace {
+
+void add_study_run(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand("run", "leads a participant through a protocol");
+  auto o = std::make_shared<StudyRunOptionsGiven>();
+  RunOptionsGiven& run = o->run;
+  add_input(*command, run.common.files, "protocol", o->protocol,
+            "what is presented and asked (.toml, docs/study.md)")
+      ->required();
+  command->add_option("--participant", o->participant, "number of the participant, from 1")
+      ->required();
+  command->add_option("--answers", o->folder, "folder of the response files")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  command->add_flag("--resume", o->resume, "go on with a participant who has begun");
+  run.hand = "study";
+  add_hand(*command, run.common, run.hand, run.hand_size);
+  add_input(*command, run.common.files, "--settings", run.common.settings_file,
+            "settings that all methods begin with, a TOML file (docs/files.md)");
+  add_device(*command, run.common);
+  add_array(*command, run.common, "usx (default), autd3, or an array file (.json)");
+  add_lock_memory(*command, run.lock_memory);
+  add_address(*command, run);
+  command->footer(
+      "Example:\n  prostm study run data/protocols/one-plume-or-four.toml --participant 1 --hand "
+      "leap://127.0.0.1:6437");
+  command->callback([o, &work] {
+    work = {&o->run.common.files, [o] { return study_run_command(*o); }};
+  });
+}
+
+void add_analyse(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand("analyse", "what answers do and do not support");
+  auto o = std::make_shared<AnalyseOptionsGiven>();
+  add_input(*command, o->files, "answers", o->answers,
+            "participants' files of prostm study run (.jsonl), a table of answers (.csv, "
+            "docs/study.md), or the scores of the paper's Fig. 4 (.json)")
+      ->required();
+  command->add_option("--chance", o->settings.chance, "share of right answers that guessing makes")
+      ->capture_default_str();
+  command->add_option("--level", o->settings.level, "of intervals; tests take 1 minus it")
+      ->capture_default_str();
+  command->add_option("--power", o->settings.power, "for which participants are planned")
+      ->capture_default_str();
+  command->add_option("--seed", o->settings.seed, "of random splits of many participants")
+      ->capture_default_str();
+  command->add_option("--guess", o->settings.guess,
+                      "share of right answers at low levels; default: --chance");
+  command->add_option("--lapse", o->settings.lapse,
+                      "share of wrong answers at high levels; default: 0.02");
+  add_json(*command, o->files, o->json);
+  add_output(*command, o->files, "--figure", o->figure, check_figure,
+             "shares as the paper's Fig. 4, or psychometric functions where answers have levels "
+             "(.png, .svg or .pdf)");
+  add_output(*command, o->files, "--tidy", o->tidy, check_csv_output,
+             "write the answers as a table (.csv) for other programs (docs/study.md)");
+  command->footer(
+      "Example:\n  prostm study analyse data/made-up-answers.csv --figure answers.svg --tidy "
+      "tidy.csv");
+  command->callback([o, &work] { work = {&o->files, [o] { return analyse_command(*o); }}; });
+}
+
+void add_simulate(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand(
+      "simulate", "the paper's study with model observers in place of people; takes a minute");
+  auto o = std::make_shared<SimulateOptionsGiven>();
+  command->add_option("--participants", o->shape.participants, "with each method")
+      ->capture_default_str();
+  command->add_option("--trials", o->shape.trials, "of each participant, half with each scene")
+      ->capture_default_str();
+  command->add_option("--studies", o->studies, "that intervals are taken over")
+      ->capture_default_str();
+  command->add_option("--hands", o->hands, "of different size and tremor to draw participants from")
+      ->capture_default_str();
+  add_name(*command, "--preset", o->preset, "of pro-stm: paper, paper-valid, best or fast")
+      ->capture_default_str();
+  command->add_option("--noise", o->noise, "factor of the observers' own noise")
+      ->capture_default_str();
+  command->add_option("--grid", o->grid, "cells of the smoke along an edge")->capture_default_str();
+  command->add_option("--seed", o->seed, "of hands and answers")->capture_default_str();
+  command
+      ->add_option("--paper-data", o->paper_data,
+                   "folder with the paper's scores, fig4.json; default: " +
+                       std::string(kPaperData) + ", if it is there")
+      ->type_name("FOLDER")
+      ->each([o = o.get()](const std::string& folder) {
+        o->files.reads("--paper-data", folder + "/fig4.json");
+      });
+  add_output(*command, o->files, "--answers", o->answers, check_writable,
+             "the answers of one simulated study of the observer skin (.csv), as prostm study "
+             "analyse reads them");
+  add_json(*command, o->files, o->json);
+  command->footer("Example:\n  prostm study simulate --hands 1 --grid 32 --answers model.csv");
+  command->callback([o, &work] { work = {&o->files, [o] { return simulate_command(*o); }}; });
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Work& work) {
+  auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
+  study->require_subcommand(1);
+  add_study_run(*study, work);
+  add_analyse(*study, work);
+  add_simulate(*study, work);
+}
+
+}  // namespace prostm::app
