@@ -128,6 +128,7 @@ struct StudyRunOptionsGiven {
   int participant = 0;
   std::string folder = "answers";  ///< of the response files
   bool resume = false;
+  std::optional<int> rehearse;  ///< trials, 0: all; nothing: people answer
 };
 
 struct AnalyseOptionsGiven {

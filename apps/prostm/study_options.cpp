@@ -20,6 +20,9 @@ void add_study_run(CLI::App& study, Work& work) {
       ->type_name("FOLDER")
       ->capture_default_str();
   command->add_flag("--resume", o->resume, "go on with a participant who has begun");
+  command->add_option("--rehearse", o->rehearse,
+                      "answer so many trials at random, 0 all of them, without people; the file's "
+                      "name begins with rehearsal");
   run.hand = "study";
   add_hand(*command, run.common, run.hand, run.hand_size);
   add_input(*command, run.common.files, "--settings", run.common.settings_file,

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kMostParticipants = 9999;
 constexpr double kADay = 86400.0;  // [s]
+constexpr int kNoFrame = 3;        // exit status: the tracker never sent a frame
 
 /// Ends the run when the session is closed, on a signal, and when the pages' server fails.
 class Observer final : public RunObserver {
@@ -59,14 +60,17 @@ std::string file_of(const StudyRunOptionsGiven& given) {
     throw InputError(fmt::format("--participant {} must be between 1 and {}", given.participant,
                                  kMostParticipants));
   }
+  if (given.rehearse && *given.rehearse < 0)
+    throw InputError(fmt::format("--rehearse {} must be 0 or more trials", *given.rehearse));
   std::error_code wrong;
   std::filesystem::create_directories(given.folder, wrong);
   if (wrong) {
     throw InputError(
         fmt::format("--answers {} cannot be a folder: {}", given.folder, wrong.message()));
   }
+  const char* kind = given.rehearse ? "rehearsal" : "participant";
   const std::string path =
-      (std::filesystem::path(given.folder) / fmt::format("participant-{}.jsonl", given.participant))
+      (std::filesystem::path(given.folder) / fmt::format("{}-{}.jsonl", kind, given.participant))
           .string();
   const bool begun = std::filesystem::exists(path);
   if (begun && !given.resume) {
@@ -80,6 +84,12 @@ std::string file_of(const StudyRunOptionsGiven& given) {
                                  given.participant, path));
   }
   return path;
+}
+
+std::optional<Rehearsal> rehearsal_of(const StudyRunOptionsGiven& given) {
+  if (!given.rehearse) return {};
+  return Rehearsal(static_cast<std::size_t>(*given.rehearse),
+                   static_cast<std::uint64_t>(given.participant));
 }
 
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
@@ -118,11 +128,12 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   const nlohmann::ordered_json facts = {{"prostm", PROSTM_VERSION},
                                         {"device", settings.device},
                                         {"array", settings.array},
-                                        {"hand", given.run.hand}};
+                                        {"hand", given.run.hand},
+                                        {"rehearsal", given.rehearse.has_value()}};
   StudySession session(protocol, given.participant, file, facts, study_time());
   if (!names_tracker(given.run.hand))
     fmt::print("The hand is not tracked (--hand {}): good for a rehearsal.\n", given.run.hand);
-  const StudyView& study = view.serve(pipeline, session, stdout);
+  const StudyView& study = view.serve(pipeline, session, rehearsal_of(given), stdout);
   Observer observer(view, study);
   RunOptions options;
   options.seconds = kADay;
@@ -131,7 +142,9 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   view.stop();
   if (summary.failure) return tell(summary.failure);
   report(stdout, session, file, summary);
-  return observer.interrupt().requested() ? observer.interrupt().status() : 0;
+  if (observer.interrupt().requested()) return observer.interrupt().status();
+  const auto tracker = pipeline.world_stage().hands().tracker_status();
+  return tracker && tracker->frames == 0 ? kNoFrame : 0;
 }
 
 }  // namespace prostm::app

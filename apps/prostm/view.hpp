@@ -30,7 +30,8 @@ class View {
   /// Starts the server, and prints where it is.
   void serve(Pipeline& pipeline, std::FILE* out);
   /// Starts the server of a study's two pages, and prints where they are. @return its view.
-  StudyView& serve(Pipeline& pipeline, StudySession& session, std::FILE* out);
+  StudyView& serve(Pipeline& pipeline, StudySession& session, std::optional<Rehearsal> rehearsal,
+                   std::FILE* out);
   /// Ends the server; what it showed is free to be used.
   void stop() { server_.reset(); }
   /// @throws when the server has failed.

@@ -32,11 +32,13 @@ def split_commands(text):
 
 
 def shortened(command):
-    """The same for 3 s where it would keep the clock's time for longer, and with few fields where it would record or
-    plan many."""
+    """The same for 3 s where it would keep the clock's time for longer, with few fields where it would record or plan
+    many, and with one trial and nobody where it would lead a participant."""
     words = re.sub(r"--frames \S+", f"--frames {FRAMES}", command.split("  #")[0])
     if words.startswith("prostm soak"):
         return re.sub(r" --minutes \S+", "", words) + f" --minutes {SECONDS / 60}"
+    if words.startswith("prostm study run"):
+        return words + ("" if "--rehearse" in words else " --rehearse 1")
     if not words.startswith("prostm run") or "--as-fast-as-possible" in words or "--stepped" in words:
         return words
     short, replaced = re.subn(r"--seconds \S+", f"--seconds {SECONDS}", words)

@@ -5,7 +5,7 @@ from pages import ROOT
 
 # each finds the files that those before it wrote; first-run.md types prostm check, which takes long
 COMMANDS = ["run", "plan", "field", "solve", "capture", "bench", "settings", "devices", "selftest", "soak",
-            "study analyse", "study simulate", "help"]
+            "study analyse", "study run", "study simulate", "help"]
 
 
 def test_the_examples_of_help_run_in_the_projects_folder(tmp_path):

@@ -86,7 +86,8 @@ def test_files_are_read(page, folder):
     for block in blocks_of(page):
         if block.language == "toml":
             (folder / "page.toml").write_text(block.text)
-            shell.type_command("prostm settings --settings page.toml", folder)
+            shell.type_command("prostm study run page.toml --participant 1 --answers protocol" if "[study]" in block.text
+                               else "prostm settings --settings page.toml", folder)
         elif block.language == "json":
             reader = READERS.get(json.loads(block.text).get("format"))
             if reader is not None:

@@ -158,7 +158,8 @@ void write_responses(const std::string& path, const std::string& participant, in
   file.append({{"kind", "begin"},
                {"format", kResponseFormat},
                {"participant", participant},
-               {"trials", 2}});
+               {"trials", 2},
+               {"run", {{"rehearsal", false}}}});
   for (int i = 1; i <= trials; ++i) {
     file.append({{"kind", "go"}});
     file.append({{"kind", "trial"},

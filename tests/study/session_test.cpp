@@ -5,6 +5,7 @@
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/study/rehearsal.hpp"
 #include "study/study_support.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"
@@ -342,6 +343,47 @@ TEST(StudySession, IsNeverBroughtOutOfStepByActs) {
       s.pass(0.5 * random.uniform());
     }
   }
+}
+
+TEST(StudySession, IsRehearsedToItsEndByItself) {
+  const test::TemporaryFolder folder;
+  Sitting s(test::study_protocol("consent = \"?\"\ndemographics = true\n[trials]\nrepeats = "
+                                 "2\nbreak_every = 2\n"),
+            folder.file("1.jsonl"));
+  GateResult gate;
+  gate.finding.problem = GateProblem::Tilted;
+  s.sight.gate = gate;
+  Rehearsal rehearsal(0, 1);
+  const auto closes = [&] {
+    const auto act = rehearsal.act(s.session, s.sight.time);
+    if (act) s.session.take(*act, s.sight);
+    return s.session.closed();
+  };
+  EXPECT_TRUE(s.until(closes, 120.0));
+  EXPECT_EQ(s.session.phase(), StudyPhase::Done);
+  EXPECT_EQ(lines_of(s.file, "trial").size(), 4U);
+
+  Sitting other(test::study_protocol(), folder.file("2.jsonl"), 2);
+  Rehearsal part(3, 1);
+  EXPECT_TRUE(other.until(
+      [&] {
+        const auto act = part.act(other.session, other.sight.time);
+        if (act) other.session.take(*act, other.sight);
+        return part.is_done();
+      },
+      120.0));
+  EXPECT_EQ(lines_of(other.file, "trial").size(), 3U);
+
+  other.sight.palm.reset();
+  Rehearsal without_hand(1, 1);
+  EXPECT_TRUE(other.until(
+      [&] {
+        const auto act = without_hand.act(other.session, other.sight.time);
+        if (act) other.session.take(*act, other.sight);
+        return without_hand.is_done();
+      },
+      120.0));
+  EXPECT_EQ(lines_of(other.file, "trial").size(), 3U);
 }
 
 TEST(StudySession, TellsTheTimeOfDay) {

@@ -259,6 +259,8 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
       a.yes = line.at("answer").get<int>() == 1;
       a.trial = std::to_string(line.at("trial").get<int>());
     }
+    if (lines.front().at("run").at("rehearsal"))
+      notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are random.");
     if (static_cast<int>(answers.size()) < trials) {
       notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", participant,
                                   answers.size(), trials, file));

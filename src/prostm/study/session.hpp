@@ -49,7 +49,7 @@ struct StudyAct {
   } what = Do::Next;
   bool yes = false;
   int scene = 0;
-  nlohmann::ordered_json about = {};  ///< texts by name
+  nlohmann::ordered_json about = nlohmann::ordered_json::object();  ///< texts by name
 };
 template <>
 inline constexpr std::array<std::string_view, 8> kNames<StudyAct::Do> = {

@@ -66,8 +66,12 @@ StudySight study_time() {
   return sight;
 }
 
-StudyView::StudyView(LiveLink& link, ViewHello hello, StudySession& session)
-    : link_(link), run_(link, std::move(hello)), session_(session) {
+StudyView::StudyView(LiveLink& link, ViewHello hello, StudySession& session,
+                     std::optional<Rehearsal> rehearsal)
+    : link_(link),
+      run_(link, std::move(hello)),
+      session_(session),
+      rehearsal_(std::move(rehearsal)) {
   link_.snapshots.watch(true);  // the session looks, whether pages do or not
   link_.mute->set(MuteReason::Study, true);
 }
@@ -91,13 +95,19 @@ void StudyView::tick() {
   link_.control.refresh();
   LiveRefusal refusal;
   while (link_.control.next_refusal(refusal)) problem_ = refusal.sentence;
-  present(session_.look(sight()));
+  const StudySight now = sight();
+  present(session_.look(now));
+  if (!rehearsal_) return;
+  const auto act = rehearsal_->act(session_, now.time);
+  if (act) session_.take(*act, now);
+  present(session_.wanted());
+  if (rehearsal_->is_done()) closed_.store(true, std::memory_order_relaxed);
 }
 
 /// Asks the run for what is wanted, where that has changed.
 void StudyView::present(const StudyWanted& wanted) {
   link_.mute->set(MuteReason::Study, !wanted.sound);
-  closed_.store(session_.closed(), std::memory_order_relaxed);
+  if (session_.closed()) closed_.store(true, std::memory_order_relaxed);
   if (version_ > 0 && wanted.method == method_ && wanted.scene == scene_) return;
   const Protocol& protocol = session_.protocol();
   auto settings = std::make_shared<LiveSettings>(link_.settings);

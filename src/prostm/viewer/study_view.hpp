@@ -4,10 +4,11 @@
 
 #include <atomic>
 #include <map>
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "prostm/pipeline/live.hpp"
+#include "prostm/study/rehearsal.hpp"
 #include "prostm/study/session.hpp"
 #include "prostm/viewer/pipeline_view.hpp"
 #include "prostm/viewer/view_source.hpp"
@@ -23,9 +24,11 @@ StudySight study_time();
 class StudyView final : public ViewSource {
  public:
   /// @param session is used by the server's thread from now on. All must outlive this.
-  StudyView(LiveLink& link, ViewHello hello, StudySession& session);
+  /// @param rehearsal that stands in for people, if any does.
+  StudyView(LiveLink& link, ViewHello hello, StudySession& session,
+            std::optional<Rehearsal> rehearsal = {});
 
-  /// Somebody has closed a session that is over. Any thread.
+  /// Somebody has closed a session that is over, or a rehearsal is done. Any thread.
   bool closed() const { return closed_.load(std::memory_order_relaxed); }
 
   void watch(bool) override {}
@@ -48,6 +51,7 @@ class StudyView final : public ViewSource {
   LiveLink& link_;
   PipelineView run_;
   StudySession& session_;
+  std::optional<Rehearsal> rehearsal_;
   std::map<std::uint32_t, Room> pages_;
   ViewFrame frame_;  // the newest
   ViewNews news_;

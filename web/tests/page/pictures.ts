@@ -3,6 +3,7 @@
 import { join } from "node:path";
 import "../../src/inspection";
 import { clean, openBrowser, Program, until } from "./program";
+import { comes, protocol, Study } from "./study";
 
 const out = process.argv[process.argv.length - 1] ?? ".";
 const kPictures = [
@@ -12,7 +13,28 @@ const kPictures = [
 ] as const;
 
 const browser = await openBrowser();
+
+/// The participant's page while a stimulus is presented.
+async function takeStudy(): Promise<void> {
+  const study = new Study(protocol('[study]\ntitle = "One plume or four"\n[training]\nseconds = 0\n[trials]\ngate = "off"'), 1);
+  try {
+    await study.start();
+    const size = { viewport: { width: 1000, height: 640 } };
+    const [experimenter, participant] = [await browser.newPage(size), await browser.newPage(size)];
+    await experimenter.goto(study.url);
+    await participant.goto(`${study.url}participant`);
+    await comes(experimenter, "ready");
+    await experimenter.keyboard.press("Enter");
+    await comes(participant, "presenting");
+    await participant.screenshot({ path: join(out, "study-participant.png") });
+    await experimenter.screenshot({ path: join(out, "study-experimenter.png") });
+  } finally {
+    await study.kill();
+  }
+}
+
 try {
+  await takeStudy();
   for (const { name, theme, study } of kPictures) {
     const program = new Program(["--scene", "four-plumes", "--seconds", "3600", ...(study ? ["--hand", "study"] : [])]);
     try {
