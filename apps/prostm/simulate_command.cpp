@@ -272,7 +272,7 @@ void write_answers(const SimulateOptionsGiven& given, const std::vector<Row>& ro
     const std::vector<Answer> of = simulate_study(row.pool, given.shape, row.method, random);
     answers.insert(answers.end(), of.begin(), of.end());
   }
-  write_file(given.answers, answers_to_csv(answers));
+  write_file(given.answers, tidy_csv(answers));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ std::string file_of(const StudyRunOptionsGiven& given) {
   const std::string path =
       (std::filesystem::path(given.folder) / fmt::format("{}-{}.jsonl", kind, given.participant))
           .string();
-  const bool begun = std::filesystem::exists(path);
+  const bool begun = std::filesystem::exists(path) && !std::filesystem::is_empty(path);
   if (begun && !given.resume) {
     throw InputError(
         fmt::format("participant {} has begun ({}); give a new one another number, or --resume to "
@@ -90,6 +90,18 @@ std::optional<Rehearsal> rehearsal_of(const StudyRunOptionsGiven& given) {
   if (!given.rehearse) return {};
   return Rehearsal(static_cast<std::size_t>(*given.rehearse),
                    static_cast<std::uint64_t>(given.participant));
+}
+
+/// Starts the pages. Where that fails nobody has begun. @param begun the file that has just been
+/// begun, if any.
+const StudyView& serve(const StudyRunOptionsGiven& given, Pipeline& pipeline, StudySession& session,
+                       View& view, const std::string& begun) {
+  try {
+    return view.serve(pipeline, session, rehearsal_of(given), stdout);
+  } catch (...) {
+    if (!begun.empty()) std::filesystem::remove(begun);
+    throw;
+  }
 }
 
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
@@ -123,17 +135,19 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   Pipeline pipeline(settings, std::move(hands), view.link().mute);
 
   ResponseFile file(path);
-  if (file.found_cut_off())
-    fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);
+  const bool begins = file.lines().empty();
   const nlohmann::ordered_json facts = {{"prostm", PROSTM_VERSION},
                                         {"device", settings.device},
                                         {"array", settings.array},
                                         {"hand", given.run.hand},
                                         {"rehearsal", given.rehearse.has_value()}};
   StudySession session(protocol, given.participant, file, facts, study_time());
+  const StudyView& study = serve(given, pipeline, session, view, begins ? path : "");
+  if (file.found_cut_off())
+    fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);
   if (!names_tracker(given.run.hand))
     fmt::print("The hand is not tracked (--hand {}): good for a rehearsal.\n", given.run.hand);
-  const StudyView& study = view.serve(pipeline, session, rehearsal_of(given), stdout);
+  std::fflush(stdout);
   Observer observer(view, study);
   RunOptions options;
   options.seconds = kADay;

@@ -1,16 +1,20 @@
-"""prostm study analyse: pictures without texts over each other, thresholds, and tidy tables."""
+"""prostm study analyse: pictures without texts over each other, thresholds, and tidy tables. prostm study run: what it
+refuses, a rehearsal, and a session that is killed."""
 
 import csv
 import json
 import math
 import random
 import re
+import signal
+import socket
+import subprocess
 from itertools import combinations, product
 from xml.etree import ElementTree
 
 import pytest
 
-from conftest import ROOT, shared_file
+from conftest import ROOT, shared_file, wait_for
 
 MADE_UP = ROOT / "data" / "made-up-answers.csv"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -136,3 +140,98 @@ def test_a_tidy_table_has_the_same_answers(prostm, refuses, tmp_path):
     assert (tmp_path / "b.csv").read_bytes() == (tmp_path / "c.csv").read_bytes()
     refuses("study", "analyse", MADE_UP, "--tidy", "a.txt", words=["a.txt names no table; it must end in .csv"])
     refuses("study", "analyse", "a.csv", "--tidy", "a.csv", words=["one file"])
+
+
+PROTOCOL = ROOT / "data" / "protocols" / "one-plume-or-four.toml"
+SHORT = """
+[training]
+seconds = 0
+[trials]
+repeats = 1
+rest = 0.1
+settle = 0.5
+gate = "off"
+[scene.one-plume]
+question = "One?"
+[scene.four-plumes]
+question = "Four?"
+[method.am.pipeline]
+method = "am"
+[method.am.fluid]
+cells = 32
+"""
+STUDY = ["study", "run", "short.toml", "--view-port", "0", "--participant"]
+
+
+@pytest.mark.parametrize("text, words", [
+    ("[study", ["p.toml, line 1", "not valid TOML"]),
+    (SHORT + "[trails]\n", ["p.toml, line ", "trails", "trials"]),
+    (SHORT.replace("repeats = 1", "repeats = 0"), ["p.toml, line 5: trials.repeats", "between 1 and 1000"]),
+    (SHORT.replace('question = "One?"', ""), ["[scene.one-plume] has no question"]),
+    (SHORT.replace("one-plume", "fog"), ["[scene.fog]", "still-air"]),
+    (SHORT[:SHORT.index("[method")], ["0 [method.NAME]"]),
+    (SHORT + "[method.b.pipeline]\ndevice = \"sim\"\n", ["[method.b] gives pipeline.device", "command line"]),
+    (SHORT[:100], ["p.toml"]),
+], ids=["syntax", "table", "bounds", "question", "scene", "methods", "device", "half"])
+def test_a_protocol_that_is_wrong_is_refused_with_its_place(refuses, tmp_path, text, words):
+    (tmp_path / "p.toml").write_text(text)
+    refuses("study", "run", "p.toml", "--participant", "1", words=words)
+    assert not (tmp_path / "answers").exists()
+
+
+def test_a_session_that_cannot_begin_leaves_nothing(refuses, tmp_path):
+    (tmp_path / "short.toml").write_text(SHORT)
+    (tmp_path / "file").touch()
+    refuses(*STUDY, "0", words=["--participant 0", "1 and 9999"])
+    refuses(*STUDY, "1", "--answers", "file", words=["--answers file cannot be a folder"])
+    refuses(*STUDY, "1", "--resume", words=["participant 1 has not begun", "leave --resume out"])
+    refuses(*STUDY, "1", "--rehearse", "-1", words=["--rehearse -1"])
+    refuses(*STUDY, "1", "--hand", "nowhere.hands.jsonl", words=["nowhere.hands.jsonl"])
+    refuses("study", "run", "nowhere.toml", "--participant", "1", words=["nowhere.toml"])
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        refuses(*STUDY, "1", "--view-port", port, words=["--view-port is given 2 times"])
+        refuses("study", "run", "short.toml", "--participant", "1", "--view-port", port, words=[port, "in use"])
+    assert not list((tmp_path / "answers").iterdir())
+
+
+def test_a_rehearsal_goes_through_all_trials_and_is_told_from_answers(prostm, tmp_path):
+    (tmp_path / "short.toml").write_text(SHORT)
+    for participant in "12":
+        said = prostm(*STUDY, participant, "--rehearse", "0").stdout
+        assert f"Participant {participant}: 2 of 2 answers in answers/rehearsal-{participant}.jsonl." in said
+    said = prostm("study", "analyse", "answers/rehearsal-1.jsonl", "answers/rehearsal-2.jsonl").stdout
+    assert said.count("is a rehearsal: nobody felt anything") == 2
+    assert "2 participants" in said
+
+
+def test_a_session_that_is_killed_goes_on_and_one_that_was_edited_does_not(program, prostm, refuses, tmp_path):
+    (tmp_path / "short.toml").write_text(SHORT)
+    file = tmp_path / "answers" / "participant-7.jsonl"
+    process = subprocess.Popen([str(program), *STUDY, "7"], cwd=tmp_path, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    wait_for(lambda: file.exists() and file.read_text().endswith("\n"))
+    refuses(*STUDY, "7", "--resume", words=["participant-7.jsonl", "another program"])
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    refuses(*STUDY, "7", words=["participant 7 has begun", "--resume"])
+    with open(file, "a") as half:
+        half.write('{"kind":"trial","trial":1')
+    process = subprocess.Popen([str(program), *STUDY, "7", "--resume"], cwd=tmp_path, text=True, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    lines = [process.stdout.readline() for _ in range(4)]
+    process.send_signal(signal.SIGINT)
+    rest, _ = process.communicate(timeout=60)
+    said = "".join(lines) + rest
+    assert process.returncode == 130, said
+    assert "The last line of answers/participant-7.jsonl was cut off" in said
+    assert (file.parent / "participant-7.jsonl.cut-off").read_text() == '{"kind":"trial","trial":1\n'
+    text = file.read_text()
+    file.write_text(text.replace('"seed":1,', '"seed":2,'))
+    refuses(*STUDY, "7", "--resume", words=["line 1 does not match its check", "edited"])
+    refuses("study", "analyse", file, words=["line 1 does not match its check"])
+    file.write_text(text)
+    (tmp_path / "short.toml").write_text(SHORT.replace("rest = 0.1", "rest = 0.2"))
+    refuses(*STUDY, "7", "--resume", words=["begun with another protocol"])

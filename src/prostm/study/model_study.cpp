@@ -107,6 +107,7 @@ std::vector<Answer> simulate_study(std::span<const ModelParticipant> pool, const
   for (int i = 1; i <= shape.participants; ++i) {
     const ModelParticipant& who = drawn(pool, random);
     const std::string name = fmt::format("model-{}-{}", method, i);
+    int trial = 0;
     for (const auto& [scene, question] : shuffled_trials(shape.trials, random)) {
       const double p = drawn(std::span<const double>(who.right[scene]), random);
       const bool correct = random.uniform() < p;
@@ -115,7 +116,8 @@ std::vector<Answer> simulate_study(std::span<const ModelParticipant> pool, const
                      .scene = kStudyScenes[scene],
                      .correct = correct,
                      .question = kStudyScenes[question],
-                     .yes = (scene == question) == correct});
+                     .yes = (scene == question) == correct,
+                     .trial = std::to_string(++trial)});
     }
   }
   return out;
@@ -162,16 +164,6 @@ double log_likelihood(std::span<const ModelParticipant> pool, std::span<const An
     sum += std::log(chance);
   }
   return sum;
-}
-
-std::string answers_to_csv(std::span<const Answer> answers) {
-  std::string out = "participant,trial,method,scene,question,answer,correct\n";
-  std::map<std::string, int> trials;
-  for (const Answer& a : answers) {
-    out += fmt::format("{},{},{},{},{},{:d},{:d}\n", a.participant, ++trials[a.participant],
-                       a.method, a.scene, a.question, a.yes, a.correct);
-  }
-  return out;
 }
 
 }  // namespace prostm

@@ -65,7 +65,4 @@ std::array<SimulatedShare, 3> simulate_shares(std::span<const ModelParticipant> 
 /// @pre every trial's chance in the pool is above 0 and below 1, so that no score is impossible.
 double log_likelihood(std::span<const ModelParticipant> pool, std::span<const Answer> answers);
 
-/// A table as answers_from_csv() reads, with questions. @pre answers have questions.
-std::string answers_to_csv(std::span<const Answer> answers);
-
 }  // namespace prostm

@@ -61,7 +61,7 @@ async function answer(study: Study, [experimenter, participant]: [Page, Page]): 
       given += after - before;
       return true;
     }
-    check((await participant.locator("#asked").isVisible()) || (await participant.waitForTimeout(200), await participant.locator("#asked").isVisible()), "the question is shown");
+    await participant.waitForFunction(() => !document.getElementById("asked")!.hidden);
     await experimenter.keyboard.press(random() < 0.5 ? "y" : "n");
     await experimenter.waitForFunction((done) => document.querySelector("progress")!.value === done, before + 1);
     ++given;
@@ -78,7 +78,7 @@ for (let person = 1; person <= kPeople; ++person) {
     if (!dead) await pages[0].keyboard.press("Enter");
     if (!dead) check((await study.ended()) === 0, "the program ends by itself");
     for (const page of pages) await page.close();
-    if (!dead) break;
+    if (!dead || study.trials().length === kTrials) break;
   }
   const numbers = study.trials().map((t) => t.trial as number);
   doubled += numbers.length - new Set(numbers).size;

@@ -1,0 +1,32 @@
+/// Protocols: any text is a protocol whose orders are whole, or gives an InputError.
+#include <cstdint>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/study/order.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace prostm;
+  static const PipelineSettings base;
+  try {
+    const Protocol protocol =
+        protocol_from_toml({reinterpret_cast<const char*>(data), size}, "fuzz.toml", base);
+    static_cast<void>(protocol_json(protocol).size());
+    constexpr int kFew = 50;  // more take too long for a fuzzer
+    if (protocol.trials.repeats > kFew || protocol.methods.size() > 5) return 0;
+    const auto trials = trial_order(protocol, 3);
+    const std::size_t methods =
+        protocol.study.methods == MethodsOf::Between ? 1 : protocol.methods.size();
+    if (trials.size() != methods * static_cast<std::size_t>(protocol.trials_of_method()))
+      std::abort();
+    for (const Trial& t : trials) {
+      if (t.method < 0 || t.method >= static_cast<int>(protocol.methods.size())) std::abort();
+      for (const int scene : {t.scene, t.question})
+        if (scene < 0 || scene >= static_cast<int>(protocol.scenes.size())) std::abort();
+    }
+  } catch (const InputError&) {
+    // the required answer to bad input
+  }
+  return 0;
+}
