@@ -201,6 +201,10 @@ TEST(Scores, OfAParticipantsFileNeedItsFirstLineAndWholeTrials) {
   write_responses(folder.file("b.jsonl"), "1", 1);
   ResponseFile(folder.file("b.jsonl")).append({{"kind", "trial"}, {"method", "am"}});
   EXPECT_THAT(refused("b.jsonl"), HasSubstr("b.jsonl, line 4: "));
+  write_responses(folder.file("d.jsonl"), "1", 1);
+  ResponseFile(folder.file("d.jsonl"))
+      .append({{"kind", "correction"}, {"trial", 2}, {"answer", 0}, {"correct", 0}});
+  EXPECT_THAT(refused("d.jsonl"), HasSubstr("line 4 corrects another trial than the last"));
   write_responses(folder.file("c.jsonl"), "1", 0);
   EXPECT_THAT(refused("c.jsonl"), HasSubstr("has no answer"));
 }

@@ -6,6 +6,7 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/study/rehearsal.hpp"
+#include "prostm/study/scores.hpp"
 #include "study/study_support.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"
@@ -16,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using Do = StudyAct::Do;
 
-const nlohmann::ordered_json kFacts = {{"prostm", "test"}};
+const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 
 /// A session with its file, in a run that does at once what is wanted.
 struct Sitting {
@@ -163,6 +164,33 @@ TEST(StudySession, NotesAGateThatIsNotRequired) {
   ASSERT_TRUE(s.present());
   s.answer(false);
   EXPECT_EQ(lines_of(s.file, "trial")[0]["gate"]["pass"], false);
+}
+
+TEST(StudySession, CorrectsTheLastAnswerUntilTheNextIsAskedFor) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("1.jsonl");
+  const Protocol p = test::study_protocol("[training]\nseconds = 0\n[trials]\nfeedback = true\n");
+  {
+    Sitting s(p, path);
+    EXPECT_THAT(s.act(Do::Correct), HasSubstr("not for now"));
+    ASSERT_TRUE(s.present());
+    const bool right = s.right();
+    s.answer(true);
+    EXPECT_EQ(s.act(Do::Correct), "");
+    EXPECT_EQ(s.session.last_answer(), false);
+    EXPECT_EQ(s.session.feedback(), !right);
+    ASSERT_TRUE(s.until(StudyPhase::Presenting));
+    EXPECT_THAT(s.act(Do::Correct), HasSubstr("not for now"));
+  }
+  Sitting s(p, path);
+  EXPECT_EQ(s.session.last_answer(), false);
+  s.act(Do::Correct);
+  s.act(Do::Correct);
+  std::vector<std::string> notes;
+  const auto answers = answers_from_responses(read_file(path), path, notes);
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_FALSE(answers[0].yes);
+  EXPECT_EQ(answers[0].correct, answers[0].scene != answers[0].question);
 }
 
 TEST(StudySession, PresentsATrialAgainAfterAPause) {
@@ -330,7 +358,7 @@ TEST(StudySession, IsNeverBroughtOutOfStepByActs) {
               path);
     std::size_t done = 0;
     for (int i = 0; i < 1000; ++i) {
-      const auto what = static_cast<Do>(random.below(random.below(50) == 0 ? 8 : 7));
+      const auto what = static_cast<Do>(random.below(random.below(50) == 0 ? 9 : 8));
       const bool presenting = s.session.phase() == StudyPhase::Presenting;
       const std::string refused =
           s.session.take({what, random.below(2) == 0, random.below(4) - 1, {}}, s.sight);

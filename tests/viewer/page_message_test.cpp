@@ -122,7 +122,7 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {R"({"type":"mute","on":1})", "\"on\" must be true or false"},
       {R"({"type":"rate","hz":0})", "between 1 and 60"},
       {R"({"type":"rate","hz":"fast"})", "between 1 and 60"},
-      {R"({"type":"study","do":"peek"})", "next, anyway, answer, pause, consent"},
+      {R"({"type":"study","do":"peek"})", "next, anyway, answer, correct, pause"},
       {R"({"type":"study","do":"answer"})", "lacks \"yes\""},
       {R"({"type":"study","do":"explore","scene":-1})", "between 0 and 1000"},
       {R"({"type":"study","do":"about","about":[]})", "an object of 20 texts"},

@@ -53,6 +53,8 @@ void list_trials(Settings& s, V& v) {
   v.field({.name = "questions", .help = "drawn for each trial, or balanced over a scene's trials"},
           s.questions);
   v.field({.name = "answers", .help = "who enters them"}, s.answers);
+  v.field({.name = "noise", .help = "the participant's page plays noise over the array's sound"},
+          s.noise);
   v.field({.name = "feedback", .help = "tells the participant whether an answer was right"},
           s.feedback);
   v.field({.name = "break_every", .least = 0, .most = 1000, .help = "trials; 0 for no breaks"},

@@ -71,6 +71,7 @@ struct TrialSettings {
   int repeats = 8;  ///< of each scene, with each method
   Questions questions = Questions::Random;
   AnswersFrom answers = AnswersFrom::Experimenter;
+  bool noise = false;       ///< the participant's page plays noise, which masks the array's sound
   bool feedback = false;    ///< tells the participant whether the answer was right
   int break_every = 0;      ///< trials; 0: no breaks
   double rest = 1.0;        ///< still air before each trial [s]

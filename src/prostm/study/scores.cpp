@@ -251,13 +251,18 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
     const int trials = lines.front().at("trials");
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const ResponseLine& line = lines[i];
-      if (line.value("kind", "") != "trial") continue;
+      const std::string kind = line.value("kind", "");
+      if (kind != "trial" && kind != "correction") continue;
       where = fmt::format("{}, line {}", file, i + 1);
-      Answer& a = answers.emplace_back(Answer{participant, line.at("method"), line.at("scene"),
-                                              line.at("correct").get<int>() == 1});
-      a.question = line.at("question");
-      a.yes = line.at("answer").get<int>() == 1;
-      a.trial = std::to_string(line.at("trial").get<int>());
+      const std::string trial = std::to_string(line.at("trial").get<int>());
+      if (kind == "trial") {
+        answers.push_back({participant, line.at("method"), line.at("scene"), false,
+                           line.at("question"), false, trial});
+      } else if (answers.empty() || answers.back().trial != trial) {
+        throw InputError(where + " corrects another trial than the last");
+      }
+      answers.back().correct = line.at("correct").get<int>() == 1;
+      answers.back().yes = line.at("answer").get<int>() == 1;
     }
     if (lines.front().at("run").at("rehearsal"))
       notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are random.");

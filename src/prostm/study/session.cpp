@@ -117,6 +117,7 @@ void StudySession::resume() {
     told = told || kind == "about";
     withdrawn = withdrawn || kind == "withdrawn";
     if (kind == "training") trained = true;
+    if (kind == "trial" || kind == "correction") last_ = line.value("answer", 0) == 1;
     if (kind != "trial") continue;
     const Trial& t = trial();
     add_strength(t, 1e-3 * line.value("target_mn", 0.0), 1e-3 * line.value("rendered_mn", 0.0));
@@ -289,6 +290,7 @@ std::string StudySession::answer(bool yes, const StudySight& sight) {
   add_strength(trial(), strength_.target / looks, strength_.rendered / looks);
   if (protocol_.trials.feedback) feedback_ = line["correct"] == 1;
   write(line, sight);
+  last_ = yes;
   ++done_;
   if (done_ == trials_.size()) {
     enter(StudyPhase::Done, sight.time);
@@ -301,6 +303,18 @@ std::string StudySession::answer(bool yes, const StudySight& sight) {
     enter(rests ? StudyPhase::Break : StudyPhase::Settling, sight.time);
   }
   return problem_;
+}
+
+std::string StudySession::correct(const StudySight& sight) {
+  const Trial& t = trials_[done_ - 1];
+  last_ = !*last_;
+  const bool right = *last_ == (t.scene == t.question);
+  if (protocol_.trials.feedback) feedback_ = right;
+  return write({{"kind", "correction"},
+                {"trial", done_},
+                {"answer", *last_ ? 1 : 0},
+                {"correct", right ? 1 : 0}},
+               sight);
 }
 
 std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
@@ -342,6 +356,10 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
     case Do::Answer:
       if (phase_ != StudyPhase::Presenting) return refuse();
       return answer(act.yes, sight);
+    case Do::Correct:
+      if (phase_ == StudyPhase::Presenting || !last_ || phase_ == StudyPhase::Withdrawn)
+        return refuse();
+      return correct(sight);
     case Do::Pause:
       if (phase_ != StudyPhase::Settling && phase_ != StudyPhase::Presenting) return refuse();
       enter(StudyPhase::Paused, sight.time);

@@ -41,6 +41,7 @@ struct StudyAct {
     Next,     ///< goes on from Ready, Break and Paused; ends Training; closes what is over
     Anyway,   ///< presents a trial that the gate does not let pass
     Answer,   ///< to the question: `yes`
+    Correct,  ///< the last answer was the other one, before the next is asked for
     Pause,    ///< a trial under way is presented again
     Consent,  ///< the participant agrees
     About,    ///< `about`
@@ -52,8 +53,8 @@ struct StudyAct {
   nlohmann::ordered_json about = nlohmann::ordered_json::object();  ///< texts by name
 };
 template <>
-inline constexpr std::array<std::string_view, 8> kNames<StudyAct::Do> = {
-    "next", "anyway", "answer", "pause", "consent", "about", "explore", "withdraw"};
+inline constexpr std::array<std::string_view, 9> kNames<StudyAct::Do> = {
+    "next", "anyway", "answer", "correct", "pause", "consent", "about", "explore", "withdraw"};
 
 /// The run as it is now.
 struct StudySight {
@@ -101,6 +102,8 @@ class StudySession {
   double training_left() const { return training_left_; }  ///< [s]
   int explored() const { return explored_; }               ///< scene of Training
   const std::optional<GateResult>& gate() const { return gate_; }
+  /// The last answer, yes or no; nothing before the first.
+  std::optional<bool> last_answer() const { return last_; }
   /// Why the trial does not begin, as things are; empty where it does.
   const std::string& waits_for() const { return waits_for_; }
   /// Whether the last answer was right; nothing before the first and without feedback.
@@ -122,6 +125,7 @@ class StudySession {
   void settle(const StudySight& sight);
   void present(const StudySight& sight);
   std::string answer(bool yes, const StudySight& sight);
+  std::string correct(const StudySight& sight);
   std::string end_training(const StudySight& sight);
   std::string write(ResponseLine line, const StudySight& sight);
   std::string write_rest(double time);
@@ -145,7 +149,7 @@ class StudySession {
   bool closed_ = false;
   std::optional<GateResult> gate_, gate_at_onset_;
   std::string waits_for_, problem_;
-  std::optional<bool> feedback_;
+  std::optional<bool> feedback_, last_;
   std::vector<ResponseLine> unwritten_;
   double tried_ = 0.0;                      // to write them [s]
   double utc_offset_ = 0.0;                 // of the two clocks [s]

@@ -133,7 +133,8 @@ StudyAct read_study(const Json& json) {
   constexpr double kMostScenes = 1000;
   StudyAct act;
   act.what = choice<StudyAct::Do>(
-      json, "do", {"next", "anyway", "answer", "pause", "consent", "about", "explore", "withdraw"});
+      json, "do",
+      {"next", "anyway", "answer", "correct", "pause", "consent", "about", "explore", "withdraw"});
   if (act.what == StudyAct::Do::Answer) act.yes = truth(json, "yes");
   if (act.what == StudyAct::Do::Explore)
     act.scene = static_cast<int>(number(json, "scene", 0.0, kMostScenes));

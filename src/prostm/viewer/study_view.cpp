@@ -180,7 +180,9 @@ std::string StudyView::experimenter() const {
                {"problem", session_.problem().empty() ? problem_ : session_.problem()},
                {"scenes", Json::array()},
                {"question", nullptr},
-               {"condition", nullptr}};
+               {"condition", nullptr},
+               {"last", nullptr}};
+  if (session_.last_answer()) json["last"] = *session_.last_answer();
   for (const StudyScene& scene : p.scenes) json["scenes"].push_back(scene.name);
   const auto& gate = session_.gate();
   if (p.study.blind && gate && !gate->pass && !is_of_hand(gate->finding.problem) &&
@@ -211,6 +213,7 @@ std::string StudyView::participant() const {
                {"explored", session_.explored()},
                {"answers", name_of(p.trials.answers)},
                {"consent", p.study.consent},
+               {"noise", p.trials.noise},
                {"scenes", Json::array()},
                {"hand", frame_.hand_count > 0},
                {"waits_for", ""},

@@ -44,6 +44,8 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   setText(find("answers-by"), study.answers === "participant" ? "The participant answers; these are for when they cannot." : "");
   find("anyway").hidden = phase !== "settling" || study.waits_for === "";
   find("pause").hidden = phase !== "settling" && phase !== "presenting";
+  find("correct").hidden = study.last === null || phase === "presenting" || phase === "withdrawn";
+  setText(find("last"), study.last === null ? "" : `The last answer was ${study.last ? "yes" : "no"}: change it`);
   find("withdraw").hidden = phase === "done" || phase === "withdrawn";
   find("scenes").hidden = phase !== "training";
   showScenes(find("scenes"), study, (scene) => page.act({ type: "study", do: "explore", scene }));
@@ -61,6 +63,10 @@ find("no").addEventListener("click", () => answer(false));
 find("next").addEventListener("click", next);
 find("anyway").addEventListener("click", () => page.act({ type: "study", do: "anyway" }));
 find("pause").addEventListener("click", pause);
+find("correct").addEventListener("click", () => {
+  page.act({ type: "study", do: "correct" });
+  find("correct").blur(); // Enter is for what comes next, not for changing it back
+});
 const leave = find<HTMLDialogElement>("leave");
 find("withdraw").addEventListener("click", () => leave.showModal());
 find("stay").addEventListener("click", () => leave.close());

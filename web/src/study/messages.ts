@@ -26,19 +26,21 @@ export interface Experimenter extends StudyBase {
   output: boolean;
   question: string | null;
   condition: { method: string; scene: string } | null;
+  last: boolean | null; // the last answer: yes or no
   strengths: string;
   problem: string;
 }
 export interface Participant extends StudyBase {
   room: "participant";
   consent: string;
+  noise: boolean; // is played in training and trials
   feedback: boolean | null;
   question: { text: string; jets_mm: [number, number, number][] } | null; // x, y, radius
 }
 export type Study = Experimenter | Participant;
 
 export type StudyAct =
-  | { type: "study"; do: "next" | "anyway" | "pause" | "consent" | "withdraw" }
+  | { type: "study"; do: "next" | "anyway" | "correct" | "pause" | "consent" | "withdraw" }
   | { type: "study"; do: "answer"; yes: boolean }
   | { type: "study"; do: "explore"; scene: number }
   | { type: "study"; do: "about"; about: Record<string, string> };
@@ -55,5 +57,5 @@ export function isStudy(x: Record<string, unknown>): boolean {
     return Number.isFinite(x.participant) && isText(x.problem) && isText(x.strengths) && (x.question === null || isText(x.question));
   const asked = x.question as { text?: unknown; jets_mm?: unknown } | null;
   const isJet = (jet: unknown) => isList(jet, (v) => Number.isFinite(v)) && (jet as number[]).length === 3;
-  return x.room === "participant" && isText(x.consent) && (asked === null || (isText(asked.text) && isList(asked.jets_mm, isJet)));
+  return x.room === "participant" && isText(x.consent) && typeof x.noise === "boolean" && (asked === null || (isText(asked.text) && isList(asked.jets_mm, isJet)));
 }

@@ -2,6 +2,7 @@
 
 import { find, setText } from "../dom";
 import { drawHand } from "./hand_drawing";
+import { Noise } from "./noise";
 import { listen, minutes, showScenes, StudyPage } from "./page";
 import type { Participant, Phase } from "./messages";
 import "../styles/base.css";
@@ -16,6 +17,7 @@ const kWords: Record<Phase, string> = {
   done: "That was all. Thank you!", withdrawn: "You have left the study. Thank you for your time.",
 };
 
+const noise = new Noise();
 const page = new StudyPage<Participant>("/guest/live", "participant", (study) => {
   const { phase, question } = study;
   setText(find("words"), kWords[phase]);
@@ -35,6 +37,8 @@ const page = new StudyPage<Participant>("/guest/live", "participant", (study) =>
   setText(find("spoken"), phase === "presenting" && study.answers === "experimenter" ? "Say yes or no." : "");
   const told = study.feedback === null || phase === "presenting" ? "" : study.feedback ? "That was right." : "That was wrong.";
   setText(find("feedback"), told);
+  noise.play(study.noise && (phase === "training" || phase === "settling" || phase === "presenting"));
+  find("noise").hidden = !study.noise || noise.ready;
 });
 
 const answer = (yes: boolean) => {
@@ -45,6 +49,10 @@ find("yes").addEventListener("click", () => answer(true));
 find("no").addEventListener("click", () => answer(false));
 find("agree").addEventListener("click", () => page.act({ type: "study", do: "consent" }));
 find("refuse").addEventListener("click", () => page.act({ type: "study", do: "withdraw" }));
+find("noise").addEventListener("click", async () => {
+  await noise.begin();
+  find("noise").hidden = noise.ready;
+});
 find<HTMLFormElement>("about-form").addEventListener("submit", (event) => {
   event.preventDefault();
   const fields = new FormData(event.target as HTMLFormElement);

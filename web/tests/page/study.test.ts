@@ -62,6 +62,9 @@ describe("a session of a study", () => {
     await comes(participant, "done");
     expect(traffic.sizes.length - sizes).toBeLessThan(10); // the last pictures of the training
     expect(study.trials().map((t) => t.answer)).toEqual([1, 1, 0, 0]);
+    await experimenter.getByRole("button", { name: "The last answer was no: change it" }).click();
+    await experimenter.getByRole("button", { name: "The last answer was yes: change it" }).waitFor();
+    expect(study.lines().filter((line) => line.kind === "correction").map((line) => [line.trial, line.answer])).toEqual([[4, 1]]);
   });
 
   it("sends the participant nothing that tells the answer or the method", () => {
@@ -70,7 +73,7 @@ describe("a session of a study", () => {
       expect(text).not.toMatch(/"(method|scene|condition|correct|gate|stimulus)"|pro-stm|\bam\b/);
       const message = JSON.parse(text) as Json;
       if (message.type !== "study") continue;
-      const keys = ["type", "room", "title", "phase", "done", "trials", "training_left_s", "picture", "explored", "answers", "consent", "scenes", "hand", "waits_for", "feedback", "question"];
+      const keys = ["type", "room", "title", "phase", "done", "trials", "training_left_s", "picture", "explored", "answers", "consent", "noise", "scenes", "hand", "waits_for", "feedback", "question"];
       expect(Object.keys(message)).toEqual(keys);
       expect(message.feedback).toBe(null);
       // the jets are those of the question
@@ -92,7 +95,7 @@ describe("a session of a study", () => {
 describe("participants who answer themselves", () => {
   it("do so with consent, words about them, keys and feedback where the protocol says so", async () => {
     const study = new Study(protocol('[study]\nconsent = "I take part."\ndemographics = true\nblind = false\n[training]\nseconds = 0\n' +
-      '[trials]\nrepeats = 1\nsettle = 0.5\ngate = "off"\nanswers = "participant"\nfeedback = true\nbreak_every = 1'), 2);
+      '[trials]\nrepeats = 1\nsettle = 0.5\ngate = "off"\nanswers = "participant"\nnoise = true\nfeedback = true\nbreak_every = 1'), 2);
     await study.start();
     const [experimenter, participant] = [await browser.newPage(), await browser.newPage()];
     await experimenter.goto(study.url);
@@ -103,13 +106,15 @@ describe("participants who answer themselves", () => {
     await participant.getByLabel("Age").selectOption("25 to 34");
     await participant.getByRole("button", { name: "Go on" }).click();
     await comes(experimenter, "ready");
+    await participant.getByRole("button", { name: "Switch the noise on" }).click();
+    await participant.waitForFunction(() => document.getElementById("noise")!.hidden);
     for (let i = 0; i < 2; ++i) {
       await experimenter.keyboard.press("Enter");
       await comes(participant, "presenting");
       expect(await experimenter.locator("#condition").textContent()).toMatch(/^(one|four)-plumes? with (am|pro-stm)$/);
       if (i === 0) await participant.keyboard.press("ArrowRight");
       else await participant.locator("#no").click();
-      await comes(participant, i === 0 ? "break" : "done");
+      for (const page of [participant, experimenter]) await comes(page, i === 0 ? "break" : "done");
       expect(await participant.locator("#feedback").textContent()).toBe(study.trials()[i]!.correct === 1 ? "That was right." : "That was wrong.");
     }
     expect(study.lines().find((line) => line.kind === "about")?.answers).toEqual({ age: "25 to 34" });
