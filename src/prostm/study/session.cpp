@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
@@ -373,7 +374,7 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
 }
 
 std::string StudySession::strengths() const {
-  double least = INFINITY, most = 0.0;
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const Strength& s : strengths_) {
     if (s.looks == 0) continue;
     least = std::min(least, s.rendered / s.looks);
