@@ -41,9 +41,10 @@ double rendered_force(const ViewFrame& frame) {
 }
 
 Pose pose_of(const ViewJoint& joint) {
-  const Eigen::Map<const Eigen::Matrix<float, 8, 1>> values(joint.data());
+  using Joint = Eigen::Matrix<float, 8, 1>;
+  const Eigen::Matrix<double, 8, 1> values = Eigen::Map<const Joint>(joint.data()).cast<double>();
   Pose pose = Pose::Identity();
-  pose.translation() = values.head<3>().cast<double>();
+  pose.translation() = values.head<3>();
   pose.linear() = Quat(values[6], values[3], values[4], values[5]).normalized().toRotationMatrix();
   return pose;
 }
