@@ -26,8 +26,9 @@ class Nothing final : public ViewSource {
     frame.hand_count = 1;
     ++news.fields;
   }
-  std::string hello(std::uint32_t) override { return "{}"; }
-  bool refresh_state(std::string& state) override {
+  bool shows_frames(Room) const override { return true; }
+  std::string hello(std::uint32_t, Room) override { return "{}"; }
+  bool refresh_state(Room, std::string& state) override {
     state = "{}";
     return true;
   }
@@ -43,6 +44,7 @@ ViewServer& server() {
   static ViewSettings settings = [] {
     ViewSettings s;
     s.port = 0;
+    s.guests = true;
     s.request_time = 1.0;
     return s;
   }();
