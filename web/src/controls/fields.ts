@@ -24,7 +24,7 @@ export interface Field {
   show(control: Control, force?: boolean): void;
 }
 
-const kAnswered = 600; // a value set here stands until the program must have answered [ms]
+const kAnswered = 3000; // a value set here stands until the program has it, but no longer than this [ms]
 
 const kWordsInARow = 26; // letters of all choices together that still fit beside each other
 
@@ -158,7 +158,7 @@ export function makeField(control: Control, act: Actions): Field {
   const root = make("div", attributes, label, ...made.parts, error);
   const show = (c: Control, force = false) => {
     last = c;
-    if (force) wanted = undefined;
+    if (force || c.value === wanted) wanted = undefined;
     root.dataset.value = String(c.value);
     root.classList.toggle("disabled", !c.enabled);
     (made.show as (c: Control, force: boolean) => void)({ ...c, value: wanted ?? c.value } as Control, force);
