@@ -384,8 +384,9 @@ describe("a page far from its program", () => {
     });
     await far.goto(program.address + kHash);
     await until(far, () => (window.prostm?.frames ?? 0) > 2, 0, "frames in the page");
-    for (const to of [false, true]) {
-      const box = far.locator('[data-control="array_width"] input');
+    const box = far.locator('[data-control="array_width"] input');
+    const before = await box.isChecked();
+    for (const to of [!before, before]) {
       await box.click();
       for (let i = 0; i < 20; ++i) expect(await box.isChecked()).toBe(to);
       await becomes("array_width", to);
