@@ -18,8 +18,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto trials = trial_order(protocol, 3);
     const std::size_t methods =
         protocol.study.methods == MethodsOf::Between ? 1 : protocol.methods.size();
-    if (trials.size() != methods * static_cast<std::size_t>(protocol.trials_of_method()))
-      std::abort();
+    const auto repeats = static_cast<std::size_t>(protocol.trials.repeats);
+    if (trials.size() != methods * protocol.scenes.size() * repeats) std::abort();
     for (const Trial& t : trials) {
       if (t.method < 0 || t.method >= static_cast<int>(protocol.methods.size())) std::abort();
       for (const int scene : {t.scene, t.question})

@@ -199,6 +199,16 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
   return make(std::move(recording), settings.track, true, 1.0 / settings.world_rate);
 }
 
+void check_mode(const PipelineSettings& settings, RunMode mode) {
+  const DeviceInfo device = device_named(settings.device).kind->info(settings.device_setup());
+  const std::string problem = mode_problem(device, mode);
+  if (!problem.empty()) throw InputError("--device " + settings.device + problem);
+}
+
+bool never_came(const std::optional<TrackerStatus>& tracker) {
+  return tracker && tracker->frames == 0;
+}
+
 namespace {
 
 /// Also of a thread, which needs room for its stack.

@@ -12,6 +12,7 @@
 #include "prostm/acoustics/focus_solver.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/io/settings_file.hpp"
+#include "prostm/pipeline/runner.hpp"
 #include "prostm/pipeline/settings.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/track/hand_source.hpp"
@@ -124,6 +125,13 @@ void print_metrics(std::FILE* out, const std::string& heading, const std::vector
 /// Three decimals; what rounds to zero has no sign.
 std::string thousandths(double value);
 
+/// Checks that the device of the settings can play in a mode. @throws InputError.
+void check_mode(const PipelineSettings& settings, RunMode mode);
+
+/// Whether a live tracker never sent anything.
+bool never_came(const std::optional<TrackerStatus>& tracker);
+
+inline constexpr int kNoFrame = 3;   ///< exit status: the tracker never sent a frame
 inline constexpr int kBadInput = 2;  ///< exit status, also for files that cannot be written
 
 }  // namespace prostm::app

@@ -26,13 +26,7 @@
 namespace prostm::app {
 namespace {
 
-constexpr int kNoFrame = 3;           // exit status: the tracker never sent a frame
 constexpr double kTrackerLook = 0.1;  // [s]
-
-/// Whether a live tracker never sent anything.
-bool never_came(const std::optional<TrackerStatus>& tracker) {
-  return tracker && tracker->frames == 0;
-}
 
 /// Records, keeps the instant nearest to one for the picture, and watches for signals and for a
 /// page's server that fails.
@@ -206,9 +200,7 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
                                              : RunMode::RealTime;
   const bool realtime = options.mode == RunMode::RealTime;
   settings.simulated_array.realtime = realtime;
-  const DeviceInfo device = device_named(settings.device).kind->info(settings.device_setup());
-  const std::string problem = mode_problem(device, options.mode);
-  if (!problem.empty()) throw InputError("--device " + settings.device + problem);
+  check_mode(settings, options.mode);
   if (given.switch_at) settings.emit.switch_at = from_name<SwitchAt>(*given.switch_at, "--switch");
   if (realtime && !given.common.budget_ms) set_live_budget(settings);
   settings.side_view = !given.common.figure.empty();

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kMostParticipants = 9999;
 constexpr double kADay = 86400.0;  // [s]
-constexpr int kNoFrame = 3;        // exit status: the tracker never sent a frame
 
 /// Ends the run when the session is closed, on a signal, and when the pages' server fails.
 class Observer final : public RunObserver {
@@ -37,13 +36,13 @@ class Observer final : public RunObserver {
 
 /// The settings that all methods begin with.
 PipelineSettings base_settings(const RunOptionsGiven& given) {
+  if (given.hand == "page")
+    throw InputError("--hand page is moved on the page of a run, and those of a study have none");
   PipelineSettings settings = make_settings(given.common, std::nullopt, true);
   settle_hand(given.hand, given.hand_size, settings);
   settings.simulated_array.realtime = true;
   settings.jets.place = JetPlace::Hand;  // a stimulus is centred under the palm
-  const DeviceInfo device = device_named(settings.device).kind->info(settings.device_setup());
-  const std::string problem = mode_problem(device, RunMode::RealTime);
-  if (!problem.empty()) throw InputError("--device " + settings.device + problem);
+  check_mode(settings, RunMode::RealTime);
   return settings;
 }
 
@@ -157,8 +156,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   if (summary.failure) return tell(summary.failure);
   report(stdout, session, file, summary);
   if (observer.interrupt().requested()) return observer.interrupt().status();
-  const auto tracker = pipeline.world_stage().hands().tracker_status();
-  return tracker && tracker->frames == 0 ? kNoFrame : 0;
+  return never_came(pipeline.world_stage().hands().tracker_status()) ? kNoFrame : 0;
 }
 
 }  // namespace prostm::app

@@ -40,12 +40,12 @@ class View {
   void announce(std::FILE* out) const;
 
  private:
-  const RunOptionsGiven& given_;
-  LiveLink link_;
   ViewHello hello(Pipeline& pipeline) const;
   void start(bool guests);
   void warn(std::FILE* out) const;
 
+  const RunOptionsGiven& given_;
+  LiveLink link_;
   std::unique_ptr<ViewSource> source_;
   std::vector<PageFile> files_;  // of the server
   std::unique_ptr<ViewServer> server_;

@@ -186,6 +186,7 @@ def test_a_session_that_cannot_begin_leaves_nothing(refuses, tmp_path):
     refuses(*STUDY, "1", "--answers", "file", words=["--answers file cannot be a folder"])
     refuses(*STUDY, "1", "--resume", words=["participant 1 has not begun", "leave --resume out"])
     refuses(*STUDY, "1", "--rehearse", "-1", words=["--rehearse -1"])
+    refuses(*STUDY, "1", "--hand", "page", words=["--hand page", "those of a study have none"])
     refuses(*STUDY, "1", "--hand", "nowhere.hands.jsonl", words=["nowhere.hands.jsonl"])
     refuses("study", "run", "nowhere.toml", "--participant", "1", words=["nowhere.toml"])
     with socket.socket() as taken:

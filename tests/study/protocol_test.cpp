@@ -37,7 +37,7 @@ TEST(Protocol, KeepsScenesAndMethodsInTheOrderOfTheFile) {
   ASSERT_EQ(p.scenes.size(), 2U);
   EXPECT_EQ(p.scenes[0].name, "two-plumes");
   EXPECT_EQ(p.scenes[1].question, "One?");
-  EXPECT_EQ(p.trials_of_method(), 10);
+  EXPECT_EQ(p.trials.repeats, 5);
 }
 
 TEST(Protocol, OfThePaperIsThePapers) {
@@ -46,7 +46,7 @@ TEST(Protocol, OfThePaperIsThePapers) {
   EXPECT_EQ(p.study.participants, 16);
   EXPECT_EQ(p.training.seconds, 120.0);
   EXPECT_TRUE(p.training.picture);
-  EXPECT_EQ(p.trials_of_method(), 16);
+  EXPECT_EQ(trial_order(p, 1).size(), 16U);
   EXPECT_EQ(p.trials.questions, Questions::Random);
   EXPECT_FALSE(p.trials.feedback);
   EXPECT_EQ(p.trials.time_limit, 0.0);

@@ -286,6 +286,19 @@ TEST(StudySession, GoesOnAfterItWasKilledAnywhere) {
   }
 }
 
+TEST(StudySession, TrainsAnewWhenItWasKilledInTraining) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("1.jsonl");
+  {
+    Sitting s(test::study_protocol(), path);
+    s.pass(50.0);
+  }
+  Sitting s(test::study_protocol(), path);
+  EXPECT_EQ(s.session.phase(), StudyPhase::Training);
+  EXPECT_EQ(s.session.training_left(), 120.0);
+  EXPECT_EQ(s.session.wanted(), (StudyWanted{trial_order(s.protocol, 1)[0].method, 0, true, true}));
+}
+
 TEST(StudySession, GoesOnOnlyWithItsOwnProtocolAndParticipant) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("1.jsonl");

@@ -44,7 +44,7 @@ class LiveStudy {
         [this, options] { run(*pipeline_, link_.settings.pipeline, options, observer_); });
   }
   ~LiveStudy() {
-    observer_.view = nullptr;
+    observer_.stops = true;
     thread_.join();
   }
 
@@ -65,8 +65,8 @@ class LiveStudy {
   struct Observer final : RunObserver {
     bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
     bool on_progress(double) override { return goes_on(); }
-    bool goes_on() const { return view.load() != nullptr; }
-    std::atomic<const void*> view{this};
+    bool goes_on() const { return !stops; }
+    std::atomic<bool> stops{false};
   };
   static Protocol protocol(const std::string& more) {
     Protocol p = test::study_protocol(more);

@@ -105,9 +105,6 @@ struct Protocol {
   TrialSettings trials;
   std::vector<StudyMethod> methods;  ///< as they stand in the file, as do scenes
   std::vector<StudyScene> scenes;
-
-  /// Trials of each participant with each method.
-  int trials_of_method() const { return trials.repeats * static_cast<int>(scenes.size()); }
 };
 
 /// Reads a protocol (docs/study.md). @param base the settings that methods begin with.

@@ -86,8 +86,11 @@ StudySession::StudySession(const Protocol& protocol, int participant, ResponseFi
     ResponseLine line = first;
     line["run"] = facts;
     file.append(stamped(std::move(line), now));
-    enter(protocol.study.consent.empty() ? StudyPhase::About : StudyPhase::Consent, now.time);
-    if (phase_ == StudyPhase::About && !protocol.study.demographics) begin_method(now.time);
+    if (protocol.study.consent.empty()) {
+      pass_consent(now.time);
+    } else {
+      enter(StudyPhase::Consent, now.time);
+    }
     return;
   }
   for (const auto& [key, value] : first.items()) {
@@ -98,18 +101,19 @@ StudySession::StudySession(const Protocol& protocol, int participant, ResponseFi
         "participant another number",
         file.path(), key));
   }
-  resume();
-  if (phase_ == StudyPhase::Done || phase_ == StudyPhase::Withdrawn) {
+  const StudyPhase phase = replay();
+  if (phase == StudyPhase::Done || phase == StudyPhase::Withdrawn) {
     throw InputError(fmt::format("{}: participant {} {}; give the next one another number",
                                  file.path(), participant,
-                                 phase_ == StudyPhase::Done ? "has given all answers" : "left"));
+                                 phase == StudyPhase::Done ? "has given all answers" : "left"));
   }
   write({{"kind", "resume"}}, now);
-  since_ = now.time;
+  wanted_.method = trial().method;
+  enter(phase, now.time);
 }
 
-/// Finds what the lines of the file have done.
-void StudySession::resume() {
+/// Does again what the lines of the file did. @return the phase to go on from.
+StudyPhase StudySession::replay() {
   bool consented = protocol_.study.consent.empty(), told = !protocol_.study.demographics;
   bool trained = false, withdrawn = false;
   for (const ResponseLine& line : file_.lines()) {
@@ -120,19 +124,18 @@ void StudySession::resume() {
     if (kind == "training") trained = true;
     if (kind == "trial" || kind == "correction") last_ = line.value("answer", 0) == 1;
     if (kind != "trial") continue;
-    const Trial& t = trial();
-    add_strength(t, 1e-3 * line.value("target_mn", 0.0), 1e-3 * line.value("rendered_mn", 0.0));
+    if (done_ == trials_.size()) throw InputError(file_.path() + " has more trials than there are");
+    add_strength(trial(), 1e-3 * line.value("target_mn", 0.0),
+                 1e-3 * line.value("rendered_mn", 0.0));
     ++done_;
     if (starts_method()) trained = false;
   }
-  if (done_ < trials_.size()) wanted_.method = trial().method;
-  phase_ = withdrawn                 ? StudyPhase::Withdrawn
-           : done_ == trials_.size() ? StudyPhase::Done
-           : !consented              ? StudyPhase::Consent
-           : !told                   ? StudyPhase::About
-           : trained || protocol_.training.seconds == 0.0 || !starts_method()
-               ? StudyPhase::Ready
-               : StudyPhase::Training;
+  if (withdrawn) return StudyPhase::Withdrawn;
+  if (done_ == trials_.size()) return StudyPhase::Done;
+  if (!consented) return StudyPhase::Consent;
+  if (!told) return StudyPhase::About;
+  const bool trains = protocol_.training.seconds > 0.0 && starts_method() && !trained;
+  return trains ? StudyPhase::Training : StudyPhase::Ready;
 }
 
 /// Whether the next trial is the first with its method.
@@ -154,6 +157,11 @@ void StudySession::enter(StudyPhase phase, double time) {
     wanted_.sound = true;
     wanted_.picture = protocol_.training.picture;
   }
+}
+
+void StudySession::pass_consent(double time) {
+  if (protocol_.study.demographics) return enter(StudyPhase::About, time);
+  begin_method(time);
 }
 
 void StudySession::begin_method(double time) {
@@ -328,8 +336,7 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
   switch (act.what) {
     case Do::Consent:
       if (phase_ != StudyPhase::Consent) return refuse();
-      enter(StudyPhase::About, sight.time);
-      if (!protocol_.study.demographics) begin_method(sight.time);
+      pass_consent(sight.time);
       return write({{"kind", "consent"}}, sight);
     case Do::About:
       if (phase_ != StudyPhase::About) return refuse();

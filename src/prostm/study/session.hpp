@@ -119,7 +119,8 @@ class StudySession {
     int looks = 0;
   };
 
-  void resume();
+  StudyPhase replay();
+  void pass_consent(double time);
   void enter(StudyPhase phase, double time);
   void begin_method(double time);
   void settle(const StudySight& sight);

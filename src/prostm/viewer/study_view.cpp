@@ -151,77 +151,71 @@ std::string StudyView::hello(std::uint32_t page, Room room) {
 
 bool StudyView::refresh_state(Room room, std::string& state) {
   if (room == Room::Main) tick();
-  state = room == Room::Main ? experimenter() : participant();
+  const Json json = room == Room::Main ? experimenter() : participant();
+  state = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string& told = told_[static_cast<std::size_t>(room)];
   if (state == told) return false;
   told = state;
   return true;
 }
 
-std::string StudyView::experimenter() const {
+/// The part that both pages are told: it depends on nothing that is presented.
+Json StudyView::both(const char* room) const {
   const Protocol& p = session_.protocol();
-  const StudyPhase phase = session_.phase();
-  const bool trial = session_.trials_done() < session_.trials().size();
   Json json = {{"type", "study"},
-               {"room", "experimenter"},
+               {"room", room},
                {"title", p.study.title},
-               {"participant", session_.participant()},
-               {"phase", name_of(phase)},
-               {"blind", p.study.blind},
+               {"phase", name_of(session_.phase())},
                {"done", session_.trials_done()},
                {"trials", session_.trials().size()},
                {"training_left_s", std::ceil(session_.training_left())},
-               {"picture", session_.wanted().picture},
                {"explored", session_.explored()},
-               {"answers", name_of(p.trials.answers)},
-               {"output", session_.wanted().sound},
-               {"hand", frame_.hand_count > 0},
-               {"waits_for", session_.waits_for()},
-               {"strengths", session_.strengths()},
-               {"problem", session_.problem().empty() ? problem_ : session_.problem()},
                {"scenes", Json::array()},
-               {"question", nullptr},
-               {"condition", nullptr},
-               {"last", nullptr}};
-  if (session_.last_answer()) json["last"] = *session_.last_answer();
+               {"answers", name_of(p.trials.answers)},
+               {"hand", frame_.hand_count > 0}};
   for (const StudyScene& scene : p.scenes) json["scenes"].push_back(scene.name);
+  return json;
+}
+
+Json StudyView::experimenter() const {
+  const Protocol& p = session_.protocol();
+  const StudyPhase phase = session_.phase();
+  Json json = both("experimenter");
+  json["participant"] = session_.participant();
+  json["blind"] = p.study.blind;
+  json["output"] = !link_.mute->on();
+  json["waits_for"] = session_.waits_for();
+  json["strengths"] = session_.strengths();
+  json["problem"] = session_.problem().empty() ? problem_ : session_.problem();
+  json["last"] = nullptr;
+  if (session_.last_answer()) json["last"] = *session_.last_answer();
+  json["question"] = nullptr;
+  json["condition"] = nullptr;
   const auto& gate = session_.gate();
   if (p.study.blind && gate && !gate->pass && !is_of_hand(gate->finding.problem) &&
       !session_.waits_for().empty())
     json["waits_for"] = "The pressure on the hand is not the stimulus yet.";
-  if (!trial) return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (session_.trials_done() == session_.trials().size()) return json;
+  const Trial& trial = session_.trial();
   if (phase == StudyPhase::Settling || phase == StudyPhase::Presenting)
-    json["question"] = p.scenes[static_cast<std::size_t>(session_.trial().question)].question;
+    json["question"] = p.scenes[static_cast<std::size_t>(trial.question)].question;
   if (!p.study.blind) {
-    json["condition"] = {
-        {"method", p.methods[static_cast<std::size_t>(session_.trial().method)].name},
-        {"scene", p.scenes[static_cast<std::size_t>(session_.trial().scene)].name}};
+    json["condition"] = {{"method", p.methods[static_cast<std::size_t>(trial.method)].name},
+                         {"scene", p.scenes[static_cast<std::size_t>(trial.scene)].name}};
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json;
 }
 
-std::string StudyView::participant() const {
+Json StudyView::participant() const {
   const Protocol& p = session_.protocol();
   const StudyPhase phase = session_.phase();
-  Json json = {{"type", "study"},
-               {"room", "participant"},
-               {"title", p.study.title},
-               {"phase", name_of(phase)},
-               {"done", session_.trials_done()},
-               {"trials", session_.trials().size()},
-               {"training_left_s", std::ceil(session_.training_left())},
-               {"picture", session_.wanted().picture},
-               {"explored", session_.explored()},
-               {"answers", name_of(p.trials.answers)},
-               {"consent", p.study.consent},
-               {"noise", p.trials.noise},
-               {"scenes", Json::array()},
-               {"hand", frame_.hand_count > 0},
-               {"waits_for", ""},
-               {"feedback", nullptr},
-               {"question", nullptr}};
-  for (const StudyScene& scene : p.scenes) json["scenes"].push_back(scene.name);
+  Json json = both("participant");
+  json["consent"] = p.study.consent;
+  json["noise"] = p.trials.noise;
+  json["waits_for"] = "";
+  json["feedback"] = nullptr;
   if (session_.feedback()) json["feedback"] = *session_.feedback();
+  json["question"] = nullptr;
   const auto& gate = session_.gate();
   if (phase == StudyPhase::Settling && gate && is_of_hand(gate->finding.problem))
     json["waits_for"] = session_.waits_for();
@@ -229,7 +223,7 @@ std::string StudyView::participant() const {
     const StudyScene& asked = p.scenes[static_cast<std::size_t>(session_.trial().question)];
     json["question"] = {{"text", asked.question}, {"jets_mm", jets_json(asked.name)}};
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json;
 }
 
 std::string StudyView::act(Room room, const StudyAct& act) {

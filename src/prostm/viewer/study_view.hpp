@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -45,8 +46,9 @@ class StudyView final : public ViewSource {
   StudySight sight();
   void present(const StudyWanted& wanted);
   std::string act(Room room, const StudyAct& act);
-  std::string experimenter() const;
-  std::string participant() const;
+  nlohmann::ordered_json both(const char* room) const;
+  nlohmann::ordered_json experimenter() const;
+  nlohmann::ordered_json participant() const;
 
   LiveLink& link_;
   PipelineView run_;

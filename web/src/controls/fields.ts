@@ -25,7 +25,6 @@ export interface Field {
 }
 
 const kAnswered = 3000; // a value set here stands until the program has it, but no longer than this [ms]
-
 const kWordsInARow = 26; // letters of all choices together that still fit beside each other
 
 function segments(control: ChoiceControl, id: string, act: Actions): Made<ChoiceControl> {

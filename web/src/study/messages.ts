@@ -12,7 +12,6 @@ interface StudyBase {
   done: number; // answers
   trials: number;
   training_left_s: number;
-  picture: boolean; // the participant sees the simulation
   explored: number; // the scene of training, by its place
   scenes: string[];
   answers: "experimenter" | "participant"; // who enters them

@@ -73,7 +73,7 @@ describe("a session of a study", () => {
       expect(text).not.toMatch(/"(method|scene|condition|correct|gate|stimulus)"|pro-stm|\bam\b/);
       const message = JSON.parse(text) as Json;
       if (message.type !== "study") continue;
-      const keys = ["type", "room", "title", "phase", "done", "trials", "training_left_s", "picture", "explored", "answers", "consent", "noise", "scenes", "hand", "waits_for", "feedback", "question"];
+      const keys = ["type", "room", "title", "phase", "done", "trials", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
       expect(Object.keys(message)).toEqual(keys);
       expect(message.feedback).toBe(null);
       // the jets are those of the question
