@@ -8,8 +8,6 @@ export class Noise {
 
   /// Whether it can be heard when it is wanted: a browser lets a page sound only once somebody has pressed something.
   get ready(): boolean { return this.context?.state === "running"; }
-  /// @return how loud it is now, 0 to 1.
-  get level(): number { return this.gain?.gain.value ?? 0; }
 
   /// Called by a press.
   async begin(): Promise<void> {

@@ -5,7 +5,7 @@ import { find, setText } from "../dom";
 import { Picture } from "./picture";
 import type { Study, StudyAct } from "./messages";
 
-/// One word for a phase, for whoever looks from further away.
+/// How far the session is, in words.
 export function progress(study: Study): string {
   const next = Math.min(study.done + 1, study.trials);
   return study.phase === "done" ? `All ${study.trials} trials done` : `Trial ${next} of ${study.trials}`;
