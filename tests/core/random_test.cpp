@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <vector>
 
 namespace prostm {
 namespace {
@@ -74,6 +76,24 @@ TEST(Random, MomentsOfNormal) {
   EXPECT_NEAR(moment[2], 1.0, 5.0 * std::sqrt(2.0 / n));
   EXPECT_NEAR(moment[3], 0.0, 5.0 * std::sqrt(15.0 / n));
   EXPECT_NEAR(moment[4], 3.0, 5.0 * std::sqrt(96.0 / n));
+}
+
+TEST(Random, ShuffleGivesEveryOrderEquallyOften) {
+  Random random(9);
+  std::map<std::vector<int>, int> counts;
+  constexpr int kDraws = 24000;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<int> values = {0, 1, 2, 3};
+    random.shuffle(values);
+    ++counts[values];
+  }
+  EXPECT_EQ(counts.size(), 24U);
+  // 1000 each with a standard deviation of 31
+  for (const auto& [values, count] : counts) EXPECT_NEAR(count, kDraws / 24, 160);
+  std::vector<int> one = {5}, none;
+  random.shuffle(one);
+  random.shuffle(none);
+  EXPECT_EQ(one, std::vector<int>{5});
 }
 
 TEST(Random, BelowCoversItsRangeEvenly) {

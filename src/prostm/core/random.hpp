@@ -3,8 +3,10 @@
 /// not).
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <random>
+#include <utility>
 
 #include "prostm/core/units.hpp"
 
@@ -20,6 +22,12 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform integer in [0, n). @pre n > 0. The modulo bias is below n / 2^64.
   int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
+  /// Puts values into a random order (Fisher and Yates).
+  template <class Values>
+  void shuffle(Values& values) {
+    for (std::size_t i = values.size(); i > 1; --i)
+      std::swap(values[i - 1], values[static_cast<std::size_t>(below(static_cast<int>(i)))]);
+  }
   /// Standard normal (Box-Muller, one value a call).
   double normal() {
     const double u = 1.0 - uniform();  // in (0, 1], so that the logarithm is finite

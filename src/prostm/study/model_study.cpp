@@ -43,8 +43,7 @@ std::vector<std::pair<std::size_t, std::size_t>> shuffled_trials(int trials, Ran
     const auto k = static_cast<std::size_t>(i);
     out.emplace_back(k % 2, k / 2 % 2);
   }
-  for (int i = trials - 1; i > 0; --i)
-    std::swap(out[static_cast<std::size_t>(i)], out[static_cast<std::size_t>(random.below(i + 1))]);
+  random.shuffle(out);
   return out;
 }
 

@@ -1,7 +1,6 @@
 #include "prostm/study/order.hpp"
 
 #include <numeric>
-#include <utility>
 
 #include "prostm/core/random.hpp"
 
@@ -17,20 +16,13 @@ Random random_for(const Protocol& protocol, std::uint32_t purpose, std::uint32_t
 }
 constexpr std::uint32_t kMethods = 1, kTrials = 2;
 
-/// Fisher and Yates.
-template <class T>
-void shuffle(std::vector<T>& values, Random& random) {
-  for (std::size_t i = values.size(); i > 1; --i)
-    std::swap(values[i - 1], values[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
-}
-
 /// The place of this participant among the rows of their block, drawn at random.
 std::size_t row_of(const Protocol& protocol, int participant, std::size_t rows) {
   const auto n = static_cast<std::size_t>(participant - 1);
   std::vector<std::size_t> order(rows);
   std::iota(order.begin(), order.end(), std::size_t{0});
   Random random = random_for(protocol, kMethods, static_cast<std::uint32_t>(n / rows));
-  shuffle(order, random);
+  random.shuffle(order);
   return order[n % rows];
 }
 
@@ -45,7 +37,7 @@ std::vector<int> draw_questions(const Protocol& protocol, Random& random) {
   // where scenes do not divide them, those that have one more are drawn too
   std::vector<int> all(static_cast<std::size_t>(scenes));
   std::iota(all.begin(), all.end(), 0);
-  shuffle(all, random);
+  random.shuffle(all);
   for (std::size_t i = 0; i < questions.size(); ++i) questions[i] = all[i % all.size()];
   return questions;
 }
@@ -82,7 +74,7 @@ std::vector<Trial> trial_order(const Protocol& protocol, int participant) {
     for (int scene = 0; scene < static_cast<int>(protocol.scenes.size()); ++scene)
       for (const int question : draw_questions(protocol, random))
         block.push_back({method, scene, question});
-    shuffle(block, random);
+    random.shuffle(block);
     trials.insert(trials.end(), block.begin(), block.end());
   }
   return trials;

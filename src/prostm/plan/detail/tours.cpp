@@ -115,9 +115,7 @@ double shortest_tour(const DistanceTable& distance, std::span<std::uint8_t> tour
 
   Random random(seed);
   for (int start = 1; start < kTourStarts; ++start) {
-    for (std::size_t i = order.size() - 1; i > 0; --i) {
-      std::swap(order[i], order[static_cast<std::size_t>(random.below(static_cast<int>(i) + 1))]);
-    }
+    random.shuffle(order);
     const std::span<std::uint8_t> candidate(order.data(), order.size());
     two_opt(distance, candidate);
     const double length = tour_length(distance, candidate);
