@@ -18,20 +18,20 @@ constexpr double kADay = 86400.0;  // [s]
 /// Ends the run when the session is closed, on a signal, and when the pages' server fails.
 class Observer final : public RunObserver {
  public:
-  Observer(const View& view, const StudyView& study) : view_(view), study_(study) {}
+  Observer(const View& view, const StudyView& study, const Interrupt& interrupt)
+      : view_(view), study_(study), interrupt_(interrupt) {}
   bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
   bool on_progress(double) override {
     view_.check();
     return goes_on();
   }
-  const Interrupt& interrupt() const { return interrupt_; }
 
  private:
   bool goes_on() const { return !interrupt_.requested() && !study_.closed(); }
 
   const View& view_;
   const StudyView& study_;
-  Interrupt interrupt_;
+  const Interrupt& interrupt_;
 };
 
 /// The settings that all methods begin with.
@@ -133,6 +133,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   obey_lock_memory(given.run.lock_memory, stdout);
   Pipeline pipeline(settings, std::move(hands), view.link().mute);
 
+  const Interrupt interrupt;  // from here on a Ctrl-C ends in a report
   ResponseFile file(path);
   const bool begins = file.lines().empty();
   const nlohmann::ordered_json facts = {{"prostm", PROSTM_VERSION},
@@ -147,7 +148,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   if (!names_tracker(given.run.hand))
     fmt::print("The hand is not tracked (--hand {}): good for a rehearsal.\n", given.run.hand);
   std::fflush(stdout);
-  Observer observer(view, study);
+  Observer observer(view, study, interrupt);
   RunOptions options;
   options.seconds = kADay;
   options.live = &view.link();
@@ -155,7 +156,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   view.stop();
   if (summary.failure) return tell(summary.failure);
   report(stdout, session, file, summary);
-  if (observer.interrupt().requested()) return observer.interrupt().status();
+  if (interrupt.requested()) return interrupt.status();
   return never_came(pipeline.world_stage().hands().tracker_status()) ? kNoFrame : 0;
 }
 
