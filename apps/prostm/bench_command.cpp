@@ -1,72 +1,18 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common.hpp"
-#include "prostm/am/am_planner.hpp"
+#include "field_bench.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/emit/played.hpp"
 #include "prostm/io/recorder.hpp"
-#include "prostm/plan/planner.hpp"
-#include "prostm/score/score.hpp"
-#include "prostm/textbook/textbook.hpp"
 
 namespace prostm::app {
 namespace {
 
 constexpr std::size_t kStages = kPlanStages;
-using StageTimes = std::array<double, kStages>;  // [s]
 
-/// The paper's Table I [µs] (Intel i7-6820HK, another machine): mean and standard deviation, for
-/// scenes named as ours.
-struct PaperTable {
-  const char* scene;
-  std::array<double, kStages> mean, deviation;
-};
-constexpr PaperTable kPaper[] = {
-    {"one-plume", {285, 1548, 2550, 744, 12, 17896, 24303}, {106, 386, 646, 235, 4, 1664, 2256}},
-    {"four-plumes", {142, 948, 1224, 324, 10, 11120, 14640}, {59, 338, 554, 179, 4, 3344, 4281}}};
-
-/// The paper on AM: "update rates of roughly 250 Hz on both test scenarios".
-constexpr double kPaperAmRate = 250.0;
-
-StageTimes times_of(const PlanStats& s) {
-  StageTimes times{};
-  for (std::size_t i = 0; i < kStages; ++i) times[i] = value_of(plan_stages()[i], s);
-  return times;
-}
-
-/// The median of each stage over the repeats of one field.
-StageTimes median(const std::vector<StageTimes>& repeats) {
-  StageTimes out{};
-  for (std::size_t stage = 0; stage < kStages; ++stage) {
-    std::vector<double> t;
-    for (const StageTimes& times : repeats) t.push_back(times[stage]);
-    std::nth_element(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(t.size() / 2), t.end());
-    out[stage] = t[t.size() / 2];
-  }
-  return out;
-}
-
-/// One planner's times and quality over the fields of a recording.
-struct Column {
-  explicit Column(std::string planner) : name(std::move(planner)) {}
-
-  std::string name;
-  std::array<Distribution, kStages> stage;
-  Distribution rmse, correlation, coverage;
-
-  void add(const StageTimes& times, const Metrics& m) {
-    for (std::size_t i = 0; i < kStages; ++i) stage[i].add(times[i]);
-    rmse.add(m.rmse);
-    correlation.add(m.correlation);
-    coverage.add(m.coverage);
-  }
-};
-
-void print_column(std::FILE* out, const Column& column) {
+void print_column(std::FILE* out, const PlannerColumn& column) {
   fmt::print(out, "  {}, as played: mean RMSE {:.3f}, correlation {:.3f}, coverage {:.3f}\n",
              column.name, column.rmse.summary().mean, column.correlation.summary().mean,
              column.coverage.summary().mean);
@@ -81,7 +27,7 @@ void print_column(std::FILE* out, const Column& column) {
 }
 
 void print_paper(std::FILE* out, const std::string& scene) {
-  for (const PaperTable& table : kPaper) {
+  for (const PaperTable& table : paper_tables()) {
     if (scene != table.scene) continue;
     fmt::print(out, "  the paper's Table I, on its own machine:\n    {:<10} {:>9} {:>9}  [us]\n",
                "", "mean", "sd");
@@ -93,7 +39,7 @@ void print_paper(std::FILE* out, const std::string& scene) {
 }
 
 /// The row of the paper's Table I that AM would have, as updates a second.
-void print_am(std::FILE* out, const Column& am) {
+void print_am(std::FILE* out, const PlannerColumn& am) {
   const Summary t = am.stage[kStages - 1].summary();
   if (t.n == 0) return;
   fmt::print(out,
@@ -112,7 +58,7 @@ struct Reference {
 };
 
 nlohmann::ordered_json stage_row(const std::string& file, const std::string& scene,
-                                 const Column& ours, std::size_t stage,
+                                 const PlannerColumn& ours, std::size_t stage,
                                  const Reference& reference) {
   const Summary a = ours.stage[stage].summary();
   return {{"name", fmt::format("{}: {} {}", file, ours.name, plan_stages()[stage].name)},
@@ -130,94 +76,56 @@ nlohmann::ordered_json stage_row(const std::string& file, const std::string& sce
           {"ratio", a.p50 > 0.0 ? reference.p50 / a.p50 : std::nan("")}};
 }
 
-/// The planners of one recording. With --method am the last alone is measured.
-struct Columns {
-  Column baseline, ours, am{"am"};
-};
+/// The planners of one recording: the textbook's, ours and AM; with --method am the last alone.
+std::vector<PlannerColumn> columns_of(const PipelineSettings& settings) {
+  using Kind = PlannerColumn::Kind;
+  std::vector<PlannerColumn> columns;
+  const Preset preset = settings.plan.preset;
+  if (settings.method != Method::Am) {
+    columns.emplace_back("textbook", Kind::Textbook);
+    columns.emplace_back("prostm " + std::string(name_of(preset)), Kind::Paths, preset);
+  }
+  columns.emplace_back("am", Kind::Foci);
+  return columns;
+}
 
 void append_rows(nlohmann::ordered_json& rows, const std::string& file, const std::string& scene,
-                 const Columns& columns) {
-  for (std::size_t i = 0; i < kStages; ++i) {
-    const Summary slow = columns.baseline.stage[i].summary();
-    if (columns.ours.stage[i].summary().n == 0) continue;
-    rows.push_back(
-        stage_row(file, scene, columns.ours, i, {columns.baseline.name, slow.p50, slow.mean}));
+                 const std::vector<PlannerColumn>& columns) {
+  for (std::size_t i = 0; columns.size() > 1 && i < kStages; ++i) {
+    const Summary slow = columns[0].stage[i].summary();
+    if (columns[1].stage[i].summary().n == 0) continue;
+    rows.push_back(stage_row(file, scene, columns[1], i, {columns[0].name, slow.p50, slow.mean}));
   }
-  if (columns.am.stage[kStages - 1].summary().n == 0) return;
-  rows.push_back(stage_row(file, scene, columns.am, kStages - 1,
+  if (columns.back().total().n == 0) return;
+  rows.push_back(stage_row(file, scene, columns.back(), kStages - 1,
                            {"the paper's AM", 1.0 / kPaperAmRate, 1.0 / kPaperAmRate}));
 }
 
-/// Times and scores the planners on one field, in turn: the median of the repeats counts. A field
-/// that one of them finds nothing on is left out for all.
-class FieldBench {
- public:
-  FieldBench(const PipelineSettings& settings, int repeats)
-      : settings_(settings),
-        am_alone_(settings.method == Method::Am),
-        repeats_(repeats),
-        planner_(playable_plan_settings(settings, settings.emission_rate()), kMaxFieldCells),
-        am_(settings.am, kMaxFieldCells) {}
-
-  void measure(const TargetField& target, Columns& columns) {
-    Plan slow, ours, foci;
-    std::vector<StageTimes> slow_times, times, foci_times;
-    for (int r = 0; r < repeats_; ++r) {
-      PlanStats stats;
-      if (!am_alone_) {
-        if (textbook::plan(target, settings_.plan, slow, stats) != PlanStatus::Planned) return;
-        slow_times.push_back(times_of(stats));
-        if (planner_.plan(target, ours, stats) != PlanStatus::Planned) return;
-        times.push_back(times_of(stats));
-      }
-      if (am_.plan(target, foci, stats) != PlanStatus::Planned) return;
-      foci_times.push_back(times_of(stats));
-    }
-    columns.am.add(median(foci_times), score(target, foci, settings_.am.sigma));
-    if (am_alone_) return;
-    columns.baseline.add(median(slow_times), score(target, slow, settings_.plan.sigma));
-    columns.ours.add(median(times), score(target, ours, settings_.plan.sigma));
-  }
-
- private:
-  /// Scores the field as it is played.
-  Metrics score(const TargetField& target, const Plan& plan, double sigma) const {
-    const SegmentPressures played = played_pressures(
-        plan, target, emit_settings(settings_, max_pressure(target)), settings_.emission_rate());
-    return score_plan(target, plan, 0, sigma, settings_.plan.gain_law(), &played);
-  }
-
-  const PipelineSettings& settings_;
-  bool am_alone_;
-  int repeats_;
-  Planner planner_;
-  AmPlanner am_;
-};
-
 /// Every field of a recording, on this one thread. False when interrupted.
 bool measure(const RecordingReader& recording, FieldBench& bench, const Interrupt& interrupt,
-             Progress& progress, Columns& columns) {
+             Progress& progress) {
   for (int f = 0; f < recording.frames(); ++f) {
     const TargetFrame frame = recording.frame(f);
-    for (const TargetField& target : frame.patches) bench.measure(target, columns);
+    for (const TargetField& target : frame.patches) bench.measure(target);
     progress.show(f + 1, recording.frames(), "fields");
     if (interrupt.requested()) return false;
   }
   return true;
 }
 
-void print_columns(std::FILE* out, const std::string& scene, const Columns& columns) {
-  const Summary total = columns.ours.stage[kStages - 1].summary(),
-                slow = columns.baseline.stage[kStages - 1].summary();
-  if (total.n > 0) {
+void print_columns(std::FILE* out, const std::string& scene,
+                   const std::vector<PlannerColumn>& columns) {
+  const PlannerColumn& am = columns.back();
+  if (columns.size() > 1 && columns[1].total().n > 0) {
     print_paper(out, scene);
-    print_column(out, columns.baseline);
-    print_column(out, columns.ours);
-    fmt::print(out, "  textbook / prostm, of the p50 totals: {:.2f}\n", slow.p50 / total.p50);
-  } else if (columns.am.stage[0].summary().n > 0) {
-    print_column(out, columns.am);
+    print_column(out, columns[0]);
+    print_column(out, columns[1]);
+    fmt::print(out, "  textbook / prostm, of the p50 totals: {:.2f}\n",
+               columns[0].total().p50 / columns[1].total().p50);
+  } else if (am.total().n > 0) {
+    print_column(out, am);
   }
-  print_am(out, columns.am);
+  print_am(out, am);
 }
 
 }  // namespace
@@ -232,23 +140,21 @@ int bench_command(const BenchOptionsGiven& given) {
   const Interrupt interrupt;
   for (const std::string& file : given.files) {
     const RecordingReader recording(file);
-    Columns columns{Column("textbook"),
-                    Column("prostm " + std::string(name_of(settings.plan.preset)))};
-    FieldBench bench(settings, given.repeats);
+    FieldBench bench(settings, columns_of(settings), given.repeats);
     bool complete = false;
     {
       Progress progress("planning " + file);
-      complete = measure(recording, bench, interrupt, progress, columns);
+      complete = measure(recording, bench, interrupt, progress);
     }
-    const auto fields = columns.am.stage[kStages - 1].summary().n;
+    const std::size_t fields = bench.fields();
     if (complete && fields == 0)
       throw InputError(file + ": none of its fields has pressure to plan for");
     fmt::print(
         out, "{} ({}): {} fields, median of {} runs each, one thread, interleaved\n", file,
         recording.attribute("scene").empty() ? "no scene named" : recording.attribute("scene"),
         fields, given.repeats);
-    print_columns(out, recording.attribute("scene"), columns);
-    append_rows(rows, file, recording.attribute("scene"), columns);
+    print_columns(out, recording.attribute("scene"), bench.columns());
+    append_rows(rows, file, recording.attribute("scene"), bench.columns());
     if (!complete) break;
   }
   write_json(given.common.json, rows);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "captured_fields.hpp"
 #include "common.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/recorder.hpp"
@@ -7,35 +8,6 @@
 
 namespace prostm::app {
 namespace {
-
-/// Records updates that have pressure until there are enough.
-class Capture final : public RunObserver {
- public:
-  Capture(Recorder& recorder, int frames) : recorder_(recorder), frames_(frames) {}
-
-  bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
-    if (plan.status == PlanStatus::Planned && taken_ < frames_) {
-      const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
-      recorder_.append(contact.target, contact.hands, &made, plan.gate);
-      ++taken_;
-    }
-    return taken_ < frames_ && !interrupt_.requested();
-  }
-  bool on_progress(double) override {
-    progress_.show(taken_, frames_, "frames");
-    return taken_ < frames_ && !interrupt_.requested();
-  }
-  int taken() const { return taken_; }
-  /// Nothing more comes.
-  void end() { progress_.clear(); }
-  const Interrupt& interrupt() const { return interrupt_; }
-
- private:
-  Recorder& recorder_;
-  int frames_, taken_ = 0;
-  Interrupt interrupt_;
-  Progress progress_{"capturing"};
-};
 
 /// @throws InputError for a hand that needs a clock.
 void check_hand(const CaptureOptionsGiven& given) {
@@ -61,27 +33,26 @@ int capture_command(const CaptureOptionsGiven& given) {
   recorder.set_attribute("scene", settings.scene);
   recorder.set_attribute("hand", given.hand);
 
-  // a hand is away for part of its time; one that never meets the smoke must not capture without
-  // end
-  RunOptions options;
-  options.mode = RunMode::AsFastAsPossible;
-  options.seconds = 120.0 + 10.0 * given.frames * settings.steps_per_plan() / settings.world_rate;
-  Capture capture(recorder, given.frames);
-  const RunSummary summary = run(pipeline, settings, options, capture);
-  capture.end();
-  if (summary.failure) std::rethrow_exception(summary.failure);
+  const Interrupt interrupt;
+  Progress progress("capturing");
+  const double limit = capture_limit(settings, given.frames);
+  const int taken = capture_fields(pipeline, settings, recorder, given.frames, [&](int so_far) {
+    progress.show(so_far, given.frames, "frames");
+    return !interrupt.requested();
+  });
+  progress.clear();
   recorder.close();
   std::FILE* out = prose(given.common.json);
-  fmt::print(out, "{} fields of {} had pressure\n", capture.taken(), settings.scene);
+  fmt::print(out, "{} fields of {} had pressure\n", taken, settings.scene);
   say_written(out, given.out);
   write_json(given.common.json,
-             {{"file", given.out}, {"scene", settings.scene}, {"frames", capture.taken()}});
+             {{"file", given.out}, {"scene", settings.scene}, {"frames", taken}});
   say_written(out, given.common.json);
-  if (capture.interrupt().requested()) return capture.interrupt().status();
-  if (capture.taken() < given.frames) {
+  if (interrupt.requested()) return interrupt.status();
+  if (taken < given.frames) {
     throw InputError(
         fmt::format("only {} of {} fields had pressure in {:.0f} s of {}; is the hand in the box?",
-                    capture.taken(), given.frames, options.seconds, given.hand));
+                    taken, given.frames, limit, given.hand));
   }
   return 0;
 }

@@ -154,6 +154,14 @@ struct SimulateOptionsGiven {
   double noise = 1.0;  ///< factor of the observers' own
 };
 
+struct ReportOptionsGiven {
+  Files files;
+  std::string out;                        ///< folder
+  std::optional<std::string> paper_data;  ///< folder of fig2.field.json, fig2.json and fig4.json
+  int seed = 2026;
+  bool quick = false, fresh = false;
+};
+
 /// Each returns the exit status of the program; bad input is thrown as InputError or
 /// std::invalid_argument. The files that the options name have been checked.
 int run_command(const RunOptionsGiven& options);
@@ -171,5 +179,6 @@ int check_command(const CheckOptionsGiven& options);
 int study_run_command(const StudyRunOptionsGiven& options);
 int analyse_command(const AnalyseOptionsGiven& options);
 int simulate_command(const SimulateOptionsGiven& options);
+int report_command(const ReportOptionsGiven& options);
 
 }  // namespace prostm::app

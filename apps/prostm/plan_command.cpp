@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "field_words.hpp"
+#include "plan_pictures.hpp"
 #include "prostm/acoustics/focus_width.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/file.hpp"
@@ -94,27 +95,6 @@ TargetField another_target(const TargetField& target, std::uint64_t seed) {
   return other;
 }
 
-/// Returns the pressures of a plan as they are played.
-SegmentPressures played(const TargetField& target, const Plan& plan,
-                        const PipelineSettings& settings) {
-  if (plan.empty()) return {};
-  return played_pressures(plan, target, emit_settings(settings, max_pressure(target)),
-                          settings.emission_rate());
-}
-
-PlanFigure as_figure(const TargetField& target, const Plan& plan, const PlanTrace& trace,
-                     const PipelineSettings& settings) {
-  PlanFigure figure;
-  figure.target = &target;
-  figure.plan = &plan;
-  figure.trace = &trace;
-  figure.reconstruction.resize(target.size());
-  const SegmentPressures pressures = played(target, plan, settings);
-  quasi_static_field(plan, 0, target, settings.sigma(), settings.plan.gain_law(),
-                     figure.reconstruction, &pressures);
-  return figure;
-}
-
 /// The six panels, and under them those of `--beside`.
 void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given,
                  const PipelineSettings& settings) {
@@ -125,11 +105,7 @@ void draw_figure(const PlanFigure& figure, const PlanOptionsGiven& given,
   const PlanSettings& s = settings.plan;
   const DigitisedFigure other = digitised_figure_from_json(read_file(given.beside), given.beside,
                                                            *figure.target, s.gain_law(), s.speed);
-  PlanFigure beside = as_figure(*figure.target, other.plan, other.trace, settings);
-  beside.reconstruction = other.reconstruction;
-  const SegmentPressures pressures = played(*figure.target, other.plan, settings);
-  beside.metrics = score_plan(*figure.target, other.plan, 0, s.sigma, s.gain_law(), &pressures);
-  beside.title = given.beside;
+  const PlanFigure beside = as_figure(*figure.target, other, settings, given.beside);
   draw_plan(figure, given.common.figure, &beside);
 }
 

@@ -10,15 +10,13 @@
 #include <vector>
 
 #include "common.hpp"
+#include "instant.hpp"
 #include "mute_watch.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/stage_timer.hpp"
-#include "prostm/emit/played.hpp"
-#include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/rate_news.hpp"
 #include "prostm/pipeline/runner.hpp"
-#include "prostm/plan/quasi_static.hpp"
 #include "prostm/track/live/tracker_news.hpp"
 #include "run_summary.hpp"
 #include "view.hpp"
@@ -149,49 +147,6 @@ class Observer final : public RunObserver {
   Progress progress_{"running"};
 };
 
-/// @pre the observer has an instant.
-void draw_instant(const Observer& observer, const PipelineSettings& settings,
-                  const std::string& path) {
-  const WorldFrame& contact = observer.contact();
-  const GridShape& grid = contact.side.grid;
-  SceneFigure figure;
-  figure.nx = grid.nx;
-  figure.nz = grid.nz;
-  figure.cell = grid.cell;
-  figure.origin = grid.p_DF({0, 2}) + Vec2::Constant(0.5 * grid.cell);
-  figure.smoke = contact.side.smoke;
-  figure.hand = contact.side.hand;
-  for (const Vec3& p : settings.transducers.position) figure.array.emplace_back(p.x(), p.z());
-  LiftedPlan lifted;
-  lift(observer.plan().plan, contact.target, lifted);
-  for (const LiftedPath& lifted_path : lifted.paths) {
-    figure.foci.insert(figure.foci.end(), lifted_path.p_D.begin(), lifted_path.p_D.end());
-  }
-  for (const LiftedFocus& focus : lifted.foci) figure.foci.push_back(focus.p_D);
-  EmitSettings emit = settings.emit;
-  emit.full_scale_pressure = observer.plan().full_scale_pressure;
-  const double rate = observer.plan().emission_rate;
-  const SegmentPressures played =
-      played_pressures(observer.plan().plan, contact.target, emit, rate);
-  const PlanSettings plan = plan_settings(settings, rate);
-  std::vector<std::string> widths;  // of a focal point on each patch [mm]
-  for (std::size_t patch = 0; patch < contact.target.patches.size(); ++patch) {
-    const TargetField& target = contact.target.patches[patch];
-    const double sigma = settings.method == Method::Am ? settings.am.sigma : plan.sigma_on(target);
-    widths.push_back(fmt::format("{:.1f}", 1e3 * sigma));
-    std::vector<double> field(target.size());
-    quasi_static_field(observer.plan().plan, static_cast<int>(patch), target, sigma,
-                       settings.plan.gain_law(), field, &played);
-    figure.targets.push_back(target);
-    figure.reconstructions.push_back(std::move(field));
-  }
-  figure.plan = observer.plan().plan;
-  figure.title = fmt::format("{} at {:.2f} s", settings.scene, contact.target.time);
-  if (!widths.empty())
-    figure.title += fmt::format("; focal points with σ = {} mm", fmt::join(widths, " and "));
-  draw_scene(figure, path);
-}
-
 /// Returns the run's options, and changes the settings as the command line asks.
 RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) {
   RunOptions options;
@@ -280,7 +235,7 @@ struct Ending {
     const std::string& path = given.common.figure;
     if (path.empty()) return;
     if (observer.has_instant()) {
-      draw_instant(observer, settings, path);
+      draw_instant(observer.contact(), observer.plan(), settings, path);
       written.push_back(path);
       return;
     }

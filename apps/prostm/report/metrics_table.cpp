@@ -1,0 +1,17 @@
+#include "metrics_table.hpp"
+
+namespace prostm::app {
+
+std::vector<report::Column> metrics_columns(const std::string& heading) {
+  return {{"name", heading},          {"rmse", "RMSE"},       {"correlation", "correlation"},
+          {"skill_8", "skill S_8.5"}, {"overlap", "overlap"}, {"spill", "spill"},
+          {"coverage", "coverage"}};
+}
+
+nlohmann::ordered_json metrics_row(const std::string& name, const Metrics& m) {
+  return {{"name", name},          {"rmse", m.rmse},       {"correlation", m.correlation},
+          {"skill_8", m.skill_8},  {"overlap", m.overlap}, {"spill", m.spill},
+          {"coverage", m.coverage}};
+}
+
+}  // namespace prostm::app

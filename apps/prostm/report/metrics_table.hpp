@@ -1,0 +1,17 @@
+#pragma once
+/// Tables of metrics.
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "prostm/report/part.hpp"
+#include "prostm/score/score.hpp"
+
+namespace prostm::app {
+
+/// @param heading of the first column.
+std::vector<report::Column> metrics_columns(const std::string& heading);
+nlohmann::ordered_json metrics_row(const std::string& name, const Metrics& metrics);
+
+}  // namespace prostm::app

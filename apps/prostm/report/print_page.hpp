@@ -1,0 +1,15 @@
+#pragma once
+/// A printable copy of a page, made by a browser.
+
+#include <optional>
+#include <string>
+
+namespace prostm::app {
+
+/// The first browser on PATH that can print a page: Chromium, by the names that it has.
+std::optional<std::string> find_browser();
+
+/// Lets the browser print a page as a PDF. @return whether it did; what it said is lost.
+bool print_page(const std::string& browser, const std::string& page, const std::string& pdf);
+
+}  // namespace prostm::app

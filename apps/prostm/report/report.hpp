@@ -1,0 +1,79 @@
+#pragma once
+/// The parts of prostm report. Each computes one subject of the page, and knows nothing of the
+/// others but the fields that the first of them recorded.
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "prostm/io/recorder.hpp"
+#include "prostm/pipeline/settings.hpp"
+#include "prostm/report/part.hpp"
+
+namespace prostm::app {
+
+/// Thrown by progress when a signal came.
+struct ReportStopped {};
+
+/// What the parts have in common.
+struct ReportWork {
+  bool quick = false;
+  int seed = 1;
+  std::string paper_data;  ///< folder of the paper's figures as data; empty: not there
+  const report::PartFolder& folder;
+  /// Tells the share of the part that is done, 0..1. @throws ReportStopped
+  std::function<void(double share)> progress;
+
+  /// One value for a whole report, another for a quick one.
+  template <class Value>
+  Value full_or_quick(Value full, Value fast) const {
+    return quick ? fast : full;
+  }
+  /// The text of a file of the paper's data; nothing where it is not there. @throws InputError
+  std::optional<std::string> paper_file(const std::string& name) const;
+  /// The settings of every part: prostm's own.
+  PipelineSettings settings(const std::string& scene) const;
+  /// The hand of this report: the scripted one, seen by a tracker with noise, with a height and a
+  /// period that follow from the seed.
+  std::unique_ptr<HandSource> hand(const PipelineSettings& settings) const;
+};
+
+/// The scenes of the paper.
+inline constexpr std::array kReportScenes = {"one-plume", "four-plumes"};
+/// The fields that the report recorded of a scene. @throws InputError: they cannot be read.
+RecordingReader recorded_fields(const ReportWork& work, const std::string& scene);
+/// The first patch of a frame.
+TargetField recorded_field(const RecordingReader& recording, int frame);
+
+/// A subject of the page.
+struct ReportPart {
+  const char* name;
+  const char* title;
+  double seconds, quick_seconds;  ///< about how long it takes on two cores
+  bool of_paper;                  ///< whether it reads the paper's data
+  /// Adds "values" (all its numbers), "blocks" (what the page shows) and, where numbers differ from
+  /// run to run, "timing" (blocks of these) to the document, and writes its pictures.
+  void (*make)(const ReportWork& work, nlohmann::ordered_json& document);
+};
+std::span<const ReportPart> report_parts();
+
+void make_about(const ReportWork& work, nlohmann::ordered_json& document);
+void make_scenes(const ReportWork& work, nlohmann::ordered_json& document);
+void make_table_one(const ReportWork& work, nlohmann::ordered_json& document);
+void make_figure_one(const ReportWork& work, nlohmann::ordered_json& document);
+void make_figure_two(const ReportWork& work, nlohmann::ordered_json& document);
+void make_figure_three(const ReportWork& work, nlohmann::ordered_json& document);
+void make_figure_four(const ReportWork& work, nlohmann::ordered_json& document);
+void make_models(const ReportWork& work, nlohmann::ordered_json& document);
+void make_methods(const ReportWork& work, nlohmann::ordered_json& document);
+void make_gallery(const ReportWork& work, nlohmann::ordered_json& document);
+void make_skin(const ReportWork& work, nlohmann::ordered_json& document);
+void make_fluid(const ReportWork& work, nlohmann::ordered_json& document);
+void make_solvers(const ReportWork& work, nlohmann::ordered_json& document);
+void make_latency(const ReportWork& work, nlohmann::ordered_json& document);
+void make_deviations(const ReportWork& work, nlohmann::ordered_json& document);
+void make_machine(const ReportWork& work, nlohmann::ordered_json& document);
+
+}  // namespace prostm::app
