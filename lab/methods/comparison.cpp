@@ -15,49 +15,6 @@ namespace {
 
 constexpr int kCells = 54;  // per edge of the raster; each of 3 mm
 
-/// Means over fields for one way of rendering.
-struct Means {
-  Distribution rmse, correlation, model_skill, model_overlap;             // by Eq. (1)
-  Distribution skill_0, skill_8, overlap, spill;                          // scores of the envelope
-  Distribution felt_skill_8, felt_correlation, felt_overlap, felt_spill;  // scores of the percept
-  Distribution lack, felt_lack;                                           // 1 − S_8.5 of each
-  Distribution side_lobe, ghosts, ghost;
-  struct Level {
-    Distribution pressure, percept, intensity, lobe, ghost;  // [Pa], [µm]
-  };
-  std::array<Level, 3> level;  // by Equal
-
-  void add(const Rendering& r, const Rendering& reference) {
-    rmse.add(r.of_model.rmse);
-    correlation.add(r.of_model.correlation);
-    model_skill.add(r.of_model.skill_0);
-    model_overlap.add(r.of_model.overlap);
-    skill_0.add(r.of_envelope.skill_0);
-    skill_8.add(r.of_envelope.skill_8);
-    overlap.add(r.of_envelope.overlap);
-    spill.add(r.of_envelope.spill);
-    felt_skill_8.add(r.of_felt.skill_8);
-    lack.add(1.0 - r.of_envelope.skill_8);
-    felt_lack.add(1.0 - r.of_felt.skill_8);
-    felt_correlation.add(r.of_felt.correlation);
-    felt_overlap.add(r.of_felt.overlap);
-    felt_spill.add(r.of_felt.spill);
-    side_lobe.add(r.field.side_lobe);
-    ghosts.add(r.ghosts.count);
-    ghost.add(r.ghosts.largest);
-    for (const Equal equal : {Equal::Drive, Equal::Power, Equal::Percept}) {
-      const double factor = factor_for(equal, r, reference);
-      Level& out = level[static_cast<std::size_t>(equal)];
-      if (factor == 0.0) continue;
-      out.pressure.add(factor * r.field.largest);
-      out.lobe.add(factor * r.field.side_lobe * r.field.largest);
-      out.percept.add(1e6 * factor * r.felt.largest);
-      out.intensity.add(1e6 * factor * r.felt.intensity);
-      out.ghost.add(1e6 * factor * r.ghosts.largest * r.felt.largest);
-    }
-  }
-};
-
 double mean(const Distribution& d) {
   return d.summary().mean;
 }
@@ -116,6 +73,44 @@ void print_levels(const std::array<Means, kWays.size()>& means) {
 
 }  // namespace
 
+void Means::add(const Rendering& r, const Rendering& reference) {
+  rmse.add(r.of_model.rmse);
+  correlation.add(r.of_model.correlation);
+  model_skill.add(r.of_model.skill_0);
+  model_overlap.add(r.of_model.overlap);
+  skill_0.add(r.of_envelope.skill_0);
+  skill_8.add(r.of_envelope.skill_8);
+  overlap.add(r.of_envelope.overlap);
+  spill.add(r.of_envelope.spill);
+  felt_skill_8.add(r.of_felt.skill_8);
+  lack.add(1.0 - r.of_envelope.skill_8);
+  felt_lack.add(1.0 - r.of_felt.skill_8);
+  felt_correlation.add(r.of_felt.correlation);
+  felt_overlap.add(r.of_felt.overlap);
+  felt_spill.add(r.of_felt.spill);
+  side_lobe.add(r.field.side_lobe);
+  ghosts.add(r.ghosts.count);
+  ghost.add(r.ghosts.largest);
+  for (const Equal equal : {Equal::Drive, Equal::Power, Equal::Percept}) {
+    const double factor = factor_for(equal, r, reference);
+    Level& out = level[static_cast<std::size_t>(equal)];
+    if (factor == 0.0) continue;
+    out.pressure.add(factor * r.field.largest);
+    out.lobe.add(factor * r.field.side_lobe * r.field.largest);
+    out.percept.add(1e6 * factor * r.felt.largest);
+    out.intensity.add(1e6 * factor * r.felt.intensity);
+    out.ghost.add(1e6 * factor * r.ghosts.largest * r.felt.largest);
+  }
+}
+
+void add_ways(Renderer& renderer, const TargetField& target,
+              std::array<Means, kWays.size()>& means) {
+  const Rendering reference = renderer.render(Way::Best, target);
+  for (std::size_t w = 0; w < kWays.size(); ++w) {
+    means[w].add(kWays[w] == Way::Best ? reference : renderer.render(kWays[w], target), reference);
+  }
+}
+
 double factor_for(Equal equal, const Rendering& rendering, const Rendering& reference) {
   if (equal == Equal::Percept) return reference.felt.largest / rendering.felt.largest;
   if (rendering.mean_power == 0.0) return 0.0;
@@ -153,13 +148,7 @@ Targets recorded_targets(const std::string& path, int frames) {
 void compare_ways(const Targets& targets, std::vector<Row>& rows) {
   Renderer renderer(usx_array(), targets.at(0));
   std::array<Means, kWays.size()> means;
-  for (const TargetField& target : targets) {
-    const Rendering reference = renderer.render(Way::Best, target);
-    for (std::size_t w = 0; w < kWays.size(); ++w) {
-      means[w].add(kWays[w] == Way::Best ? reference : renderer.render(kWays[w], target),
-                   reference);
-    }
-  }
+  for (const TargetField& target : targets) add_ways(renderer, target, means);
   print_model(means);
   print_shapes(means);
   print_levels(means);

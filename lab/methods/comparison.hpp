@@ -1,6 +1,7 @@
 #pragma once
 /// Compares the ways to render a target.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,24 @@ Targets generated_targets(int frames);
 /// Returns so many frames of a recording's second half, when jets have settled on a still hand: the
 /// first patch of each. @throws InputError where a frame has no pressure, or another raster.
 Targets recorded_targets(const std::string& path, int frames);
+
+/// Means over fields for one way of rendering.
+struct Means {
+  Distribution rmse, correlation, model_skill, model_overlap;             ///< by Eq. (1)
+  Distribution skill_0, skill_8, overlap, spill;                          ///< of the envelope
+  Distribution felt_skill_8, felt_correlation, felt_overlap, felt_spill;  ///< of the percept
+  Distribution lack, felt_lack;                                           ///< 1 − S_8.5 of each
+  Distribution side_lobe, ghosts, ghost;
+  struct Level {
+    Distribution pressure, percept, intensity, lobe, ghost;  ///< [Pa], [µm]
+  };
+  std::array<Level, 3> level;  ///< by Equal; without values where a way has no drives
+
+  void add(const Rendering& r, const Rendering& reference);
+};
+/// Renders a target in every way, and adds what comes to the means of each.
+void add_ways(Renderer& renderer, const TargetField& target,
+              std::array<Means, kWays.size()>& means);
 
 /// Renders targets in every way with the USX-like array, and prints means: first the quantities
 /// that no factor changes, then pressures and percepts under each control.

@@ -12,22 +12,7 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kCircumferences[] = {0.05, 0.1, 0.15, 0.2};  // [m]
-constexpr int kFastest = 15;                                  // [m/s]
-constexpr std::size_t kNominal = 4;
-
-/// One curve over the speeds 1 to 15 m/s.
-struct Curve {
-  std::vector<double> intensity;     ///< [m]
-  std::vector<double> displacement;  ///< largest rms on the palm [m]
-  std::vector<double> velocity;      ///< largest rms on the palm [m/s]
-};
-
-std::vector<double> speeds() {
-  std::vector<double> all;
-  for (int v = 1; v <= kFastest; ++v) all.push_back(v);
-  return all;
-}
+constexpr int kFastest = 15;  // [m/s]
 
 double largest_rms_displacement(const SkinResponse& response, std::size_t cells) {
   double most = 0.0;
@@ -51,25 +36,20 @@ void append(SkinResponse& response, const Palm& palm, const PressureLoop& loop, 
   curve.velocity.push_back(*std::max_element(map.begin(), map.end()));
 }
 
-/// Curves of a circle on each of the nine skins, and on the nominal one with memoryless
-/// transducers.
-struct CircleCurves {
-  std::vector<Curve> skins;
-  Curve memoryless;
-};
-
 CircleCurves compute(double circumference, const StmField& field, const Palm& palm,
-                     std::vector<SkinResponse>& responses) {
-  CircleCurves curves{std::vector<Curve>(responses.size()), {}};
+                     std::vector<SkinResponse>& responses, const Step& step) {
+  CircleCurves curves{circumference, std::vector<Curve>(responses.size()), {}};
   const Lap lap = circle_lap(circumference);
-  for (const double speed : speeds()) {
+  for (const double speed : circle_speeds()) {
     const double period = circumference / speed;
     const std::vector<double> real = field.pressure(lap, period, false);
     for (std::size_t s = 0; s < responses.size(); ++s) {
       append(responses[s], palm, {period, StmField::kSamples, real}, curves.skins[s]);
     }
     const std::vector<double> ideal = field.pressure(lap, period, true);
-    append(responses[kNominal], palm, {period, StmField::kSamples, ideal}, curves.memoryless);
+    append(responses[responses.size() / 2], palm, {period, StmField::kSamples, ideal},
+           curves.memoryless);
+    step();
   }
   return curves;
 }
@@ -78,12 +58,12 @@ CircleCurves compute(double circumference, const StmField& field, const Palm& pa
 std::string peaks(const CircleCurves& curves, std::vector<double> Curve::*quantity) {
   double low = HUGE_VAL, high = 0.0;
   for (const Curve& curve : curves.skins) {
-    const double at = peak_place(speeds(), curve.*quantity);
+    const double at = peak_place(circle_speeds(), curve.*quantity);
     low = std::min(low, at);
     high = std::max(high, at);
   }
   return fmt::format("{:.1f} ({:.1f} – {:.1f})",
-                     peak_place(speeds(), curves.skins[kNominal].*quantity), low, high);
+                     peak_place(circle_speeds(), curves.nominal().*quantity), low, high);
 }
 
 void print_peaks_of_skins(const std::vector<CircleCurves>& all) {
@@ -92,7 +72,7 @@ void print_peaks_of_skins(const std::vector<CircleCurves>& all) {
   for (std::size_t s = 0; s < skins.size(); ++s) {
     fmt::print("  plateau {:>4.0f} m/s, loss {:.2f}:", skins[s].fast_speed, skins[s].loss);
     for (const CircleCurves& curves : all) {
-      fmt::print(" {:>6.1f}", peak_place(speeds(), curves.skins[s].intensity));
+      fmt::print(" {:>6.1f}", peak_place(circle_speeds(), curves.skins[s].intensity));
     }
     fmt::print("\n");
   }
@@ -103,17 +83,17 @@ void print_curves(double circumference, const CircleCurves& curves) {
              1e3 * circumference);
   fmt::print("{:>8} {:>8} {:>9} {:>17} {:>12} {:>20} {:>18}\n", "m/s", "Hz", "nominal",
              "low – high", "memoryless", "displacement [µm]", "velocity [mm/s]");
-  for (std::size_t i = 0; i < speeds().size(); ++i) {
+  for (std::size_t i = 0; i < circle_speeds().size(); ++i) {
     double low = HUGE_VAL, high = 0.0;
     for (const Curve& curve : curves.skins) {
       low = std::min(low, curve.intensity[i]);
       high = std::max(high, curve.intensity[i]);
     }
-    const Curve& nominal = curves.skins[kNominal];
+    const Curve& nominal = curves.nominal();
     fmt::print("{:>8.0f} {:>8.1f} {:>9.3f} {:>8.3f} – {:>6.3f} {:>12.3f} {:>20.3f} {:>18.3f}\n",
-               speeds()[i], speeds()[i] / circumference, 1e6 * nominal.intensity[i], 1e6 * low,
-               1e6 * high, 1e6 * curves.memoryless.intensity[i], 1e6 * nominal.displacement[i],
-               1e3 * nominal.velocity[i]);
+               circle_speeds()[i], circle_speeds()[i] / circumference, 1e6 * nominal.intensity[i],
+               1e6 * low, 1e6 * high, 1e6 * curves.memoryless.intensity[i],
+               1e6 * nominal.displacement[i], 1e3 * nominal.velocity[i]);
   }
 }
 
@@ -121,8 +101,8 @@ Chart chart_of(const std::string& title, const std::vector<CircleCurves>& all, b
   Chart chart{title, "speed of the focal point / (m/s)", "felt alike at 250 Hz / µm rms", false, {},
               false};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Curve& curve = memoryless ? all[i].memoryless : all[i].skins[kNominal];
-    ChartSeries series{fmt::format("{:.0f} mm", 1e3 * kCircumferences[i]), speeds(), {}};
+    const Curve& curve = memoryless ? all[i].memoryless : all[i].nominal();
+    ChartSeries series{fmt::format("{:.0f} mm", 1e3 * kCircumferences[i]), circle_speeds(), {}};
     for (const double value : curve.intensity) series.y.push_back(1e6 * value);
     chart.series.push_back(series);
   }
@@ -131,34 +111,49 @@ Chart chart_of(const std::string& title, const std::vector<CircleCurves>& all, b
 
 }  // namespace
 
-void compute_circles(const std::string& figure, std::vector<Row>& rows) {
+std::vector<double> circle_speeds() {
+  std::vector<double> all;
+  for (int v = 1; v <= kFastest; ++v) all.push_back(v);
+  return all;
+}
+
+std::vector<CircleCurves> circle_curves(std::span<const double> circumferences, Skins skins,
+                                        const Step& step) {
   const Palm palm;
   const StmField field(usx_array(), palm);
   std::vector<SkinResponse> responses;
-  for (const SkinSettings& settings : skin_settings_interval()) {
+  for (const SkinSettings& settings : skins)
     responses.emplace_back(SkinModel(settings), palm.patch);
-  }
   std::vector<CircleCurves> all;
-  for (const double circumference : kCircumferences) {
-    all.push_back(compute(circumference, field, palm, responses));
-    print_curves(circumference, all.back());
-  }
+  for (const double circumference : circumferences)
+    all.push_back(compute(circumference, field, palm, responses, step));
+  return all;
+}
+
+void draw_circles(const std::vector<CircleCurves>& all, const std::string& path) {
+  draw_charts({chart_of("Transducers that follow in 0.23 ms", all, false),
+               chart_of("Transducers that follow at once", all, true)},
+              path);
+}
+
+void compute_circles(const std::string& figure, std::vector<Row>& rows) {
+  const auto skins = skin_settings_interval();
+  const std::vector<CircleCurves> all = circle_curves(kCircumferences, skins, [] {});
+  for (const CircleCurves& curves : all) print_curves(curves.circumference, curves);
   fmt::print(
       "\nspeed of the peak [m/s], nominal (lowest – highest of nine skins); published: 5 to 8\n");
   fmt::print("{:>8} {:>22} {:>12} {:>24} {:>24}\n", "mm", "intensity", "memoryless", "displacement",
              "velocity");
   for (std::size_t i = 0; i < all.size(); ++i) {
     fmt::print("{:>8.0f} {:>22} {:>12.1f} {:>24} {:>24}\n", 1e3 * kCircumferences[i],
-               peaks(all[i], &Curve::intensity), peak_place(speeds(), all[i].memoryless.intensity),
+               peaks(all[i], &Curve::intensity),
+               peak_place(circle_speeds(), all[i].memoryless.intensity),
                peaks(all[i], &Curve::displacement), peaks(all[i], &Curve::velocity));
     rows.push_back(value_row(fmt::format("circle {:.0f} mm, peak", 1e3 * kCircumferences[i]), "m/s",
-                             peak_place(speeds(), all[i].skins[kNominal].intensity)));
+                             peak_place(circle_speeds(), all[i].nominal().intensity)));
   }
   print_peaks_of_skins(all);
-  if (figure.empty()) return;
-  draw_charts({chart_of("Transducers that follow in 0.23 ms", all, false),
-               chart_of("Transducers that follow at once", all, true)},
-              figure);
+  if (!figure.empty()) draw_circles(all, figure);
 }
 
 }  // namespace prostm::bench

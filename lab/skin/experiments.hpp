@@ -3,12 +3,85 @@
 /// section 10. Each prints its tables, appends its figures to `rows`, and draws a picture on
 /// request. docs/experiments has a page on each.
 
+#include <array>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "prostm/acoustics/skin_model.hpp"
 #include "report.hpp"
 
 namespace prostm::bench {
+
+/// Skins to compute with; the nominal one stands in the middle.
+using Skins = std::span<const SkinSettings>;
+/// Called now and then while an experiment is computed; what it throws ends that.
+using Step = std::function<void()>;
+
+/// A circle's curves over the speeds 1 to 15 m/s on one skin.
+struct Curve {
+  std::vector<double> intensity;     ///< [m]
+  std::vector<double> displacement;  ///< largest rms on the palm [m]
+  std::vector<double> velocity;      ///< largest rms on the palm [m/s]
+};
+/// Curves of a circle on each skin, and on the nominal one with memoryless transducers.
+struct CircleCurves {
+  double circumference = 0.0;  ///< [m]
+  std::vector<Curve> skins;
+  Curve memoryless;
+
+  const Curve& nominal() const { return skins[skins.size() / 2]; }
+};
+inline constexpr std::array kCircumferences = {0.05, 0.1, 0.15, 0.2};  ///< [m]
+std::vector<double> circle_speeds();                                   ///< [m/s]
+std::vector<CircleCurves> circle_curves(std::span<const double> circumferences, Skins skins,
+                                        const Step& step);
+void draw_circles(const std::vector<CircleCurves>& all, const std::string& path);
+
+/// Two foci, modulated at 200 Hz: the middle over the higher peak, by gap; 1 means a single place.
+struct GapCurves {
+  std::vector<double> gaps;               ///< [m]
+  std::vector<double> acoustic;           ///< of the radiation pressure
+  std::vector<std::vector<double>> felt;  ///< on each skin
+};
+inline constexpr double kNoticed = 0.8;  ///< a dip by a Weber fraction of 0.2
+GapCurves gap_curves(Skins skins, const Step& step);
+/// The gap from which the dip stays at or below a level, interpolated; 0 if it never does [m].
+double gap_where(const std::vector<double>& gaps, const std::vector<double>& dips, double level);
+void draw_gap(const GapCurves& curves, const std::string& path);
+
+/// Reach of the waves about a focal point on a line: rms distance of ẇ² along it [m].
+struct Reach {
+  double ahead = 0.0, behind = 0.0;
+};
+/// At one speed [m/s]: on the nominal skin, in a window that is longer behind and in an even one,
+/// and behind over ahead on each skin.
+struct SpeedReach {
+  double speed = 0.0;
+  Reach nominal, even;
+  std::vector<double> ratios;
+};
+std::vector<SpeedReach> line_reaches(std::span<const double> speeds, Skins skins, const Step& step);
+void draw_lines(const std::string& path);
+
+/// Shape of a square's map of skin velocity.
+struct Look {
+  double outline = 0.0;      ///< mean along the square [m/s]
+  double inside = 0.0;       ///< largest in the inner half, over the largest of the map
+  double middle = 0.0;       ///< centre over the mean along the square
+  bool peak_inside = false;  ///< a local maximum lies in the inner half
+  double half_width = 0.0;   ///< side of a square with the area above half of the largest [m]
+};
+/// At each of some speeds on one skin: of the rms velocity and of the largest.
+struct SquareLooks {
+  std::vector<Look> rms, largest;
+};
+inline constexpr std::array kSquareSides = {0.01, 0.03};  ///< [m]
+/// @return the looks on each skin.
+std::vector<SquareLooks> square_looks(double side, std::span<const double> speeds, Skins skins,
+                                      const Step& step);
+void draw_squares(const std::string& path);
 
 /// Perceived intensity of circles against speed, compared with Frier et al. 2018.
 void compute_circles(const std::string& figure, std::vector<Row>& rows);

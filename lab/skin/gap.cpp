@@ -13,9 +13,8 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kRate = 200.0;   // [Hz]
-constexpr int kSamples = 16;      // per period of the modulation
-constexpr double kNoticed = 0.8;  // middle over the peaks: a dip by a Weber fraction of 0.2
+constexpr double kRate = 200.0;  // [Hz]
+constexpr int kSamples = 16;     // per period of the modulation
 const SkinPatch kPatch{49, 65, 1.5e-3};
 
 /// Returns the middle over the higher peak, along the line of two foci; 1 means a single place.
@@ -35,7 +34,39 @@ std::vector<double> modulated(const std::vector<double>& at_rest) {
   return pressure;
 }
 
-/// Returns the gap from which the dip stays at or below a level, interpolated; 0 if it never does.
+std::string gap_text(double gap) {
+  return gap > 0.0 ? fmt::format("{:.1f}", 1e3 * gap) : "over 60";
+}
+
+}  // namespace
+
+GapCurves gap_curves(Skins skins, const Step& step) {
+  const TransducerArray array = usx_array();
+  const Palm palm{kPatch};
+  std::vector<SkinResponse> responses;
+  for (const SkinSettings& settings : skins) {
+    responses.emplace_back(SkinModel(settings), kPatch);
+    responses.back().prepare(1.0 / kRate, kSamples);
+  }
+  GapCurves out;
+  out.felt.resize(skins.size());
+  for (double gap = 6e-3; gap < 60.5e-3; gap += 1.5e-3) {
+    const std::vector<double> at_rest =
+        foci_pressure(array, palm, {Vec2(-0.5 * gap, 0.0), Vec2(0.5 * gap, 0.0)});
+    const std::vector<double> pressure = modulated(at_rest);
+    out.gaps.push_back(gap);
+    out.acoustic.push_back(dip(at_rest));
+    std::vector<double> map(palm.cells());
+    for (std::size_t s = 0; s < skins.size(); ++s) {
+      responses[s].respond({1.0 / kRate, kSamples, pressure});
+      percept_map(responses[s], map);
+      out.felt[s].push_back(dip(map));
+    }
+    step();
+  }
+  return out;
+}
+
 double gap_where(const std::vector<double>& gaps, const std::vector<double>& dips, double level) {
   for (std::size_t i = gaps.size(); i-- > 0;) {
     if (dips[i] <= level) continue;
@@ -46,36 +77,11 @@ double gap_where(const std::vector<double>& gaps, const std::vector<double>& dip
   return gaps.front();
 }
 
-std::string gap_text(double gap) {
-  return gap > 0.0 ? fmt::format("{:.1f}", 1e3 * gap) : "over 60";
-}
-
-}  // namespace
-
 void compute_gap(const std::string& figure, std::vector<Row>& rows) {
-  const TransducerArray array = usx_array();
-  const Palm palm{kPatch};
   const auto skins = skin_settings_interval();
-  std::vector<SkinResponse> responses;
-  for (const SkinSettings& settings : skins) {
-    responses.emplace_back(SkinModel(settings), kPatch);
-    responses.back().prepare(1.0 / kRate, kSamples);
-  }
-  std::vector<double> gaps, acoustic;
-  std::vector<std::vector<double>> felt(skins.size());
-  for (double gap = 6e-3; gap < 60.5e-3; gap += 1.5e-3) {
-    const std::vector<double> at_rest =
-        foci_pressure(array, palm, {Vec2(-0.5 * gap, 0.0), Vec2(0.5 * gap, 0.0)});
-    const std::vector<double> pressure = modulated(at_rest);
-    gaps.push_back(gap);
-    acoustic.push_back(dip(at_rest));
-    std::vector<double> map(palm.cells());
-    for (std::size_t s = 0; s < skins.size(); ++s) {
-      responses[s].respond({1.0 / kRate, kSamples, pressure});
-      percept_map(responses[s], map);
-      felt[s].push_back(dip(map));
-    }
-  }
+  const GapCurves curves = gap_curves(skins, [] {});
+  const std::vector<double>&gaps = curves.gaps, &acoustic = curves.acoustic;
+  const std::vector<std::vector<double>>& felt = curves.felt;
   fmt::print("\ntwo foci at {:.0f} Hz: middle over the higher peak\n", kRate);
   fmt::print("{:>8} {:>20} {:>16} {:>16}\n", "gap [mm]", "radiation pressure", "felt, nominal",
              "low – high");
@@ -105,19 +111,25 @@ void compute_gap(const std::string& figure, std::vector<Row>& rows) {
                            1e3 * gap_where(gaps, acoustic, kNoticed)));
   rows.push_back(
       value_row("gap of two foci, felt", "mm", 1e3 * gap_where(gaps, felt[4], kNoticed)));
-  if (figure.empty()) return;
+  if (!figure.empty()) draw_gap(curves, figure);
+}
+
+void draw_gap(const GapCurves& curves, const std::string& path) {
   Chart chart{
       "Two foci, modulated at 200 Hz", "gap / mm", "middle over the higher peak", false, {}, false};
   const auto add = [&](const std::string& name, const std::vector<double>& dips) {
     ChartSeries series{name, {}, dips};
-    for (const double gap : gaps) series.x.push_back(1e3 * gap);
+    for (const double gap : curves.gaps) series.x.push_back(1e3 * gap);
     chart.series.push_back(series);
   };
-  add("pressure", acoustic);
-  add("felt, nominal", felt[4]);
-  add("felt, 5 m/s", felt[1]);
-  add("felt, 10 m/s", felt[7]);
-  draw_charts({chart}, figure);
+  add("pressure", curves.acoustic);
+  const std::size_t all = curves.felt.size(), nominal = all / 2;
+  add("felt, nominal", curves.felt[nominal]);
+  if (all > 1) {
+    add("felt, slower waves", curves.felt[nominal - all / 3]);
+    add("felt, faster waves", curves.felt[nominal + all / 3]);
+  }
+  draw_charts({chart}, path);
 }
 
 }  // namespace prostm::bench

@@ -35,10 +35,6 @@ std::vector<double> focus() {
   return pressure;
 }
 
-/// Reach of the waves: the rms distance along the line of ẇ², ahead of the focus and behind it [m].
-struct Reach {
-  double ahead = 0.0, behind = 0.0;
-};
 /// Evaluates the patch from `first_col` on. The patch reaches 80 mm ahead of the focus and 220 mm
 /// behind it.
 Reach reach_of(const std::vector<double>& velocity, int first_col = 0) {
@@ -55,29 +51,42 @@ Reach reach_of(const std::vector<double>& velocity, int first_col = 0) {
   return {std::sqrt(moment[0] / energy[0]), std::sqrt(moment[1] / energy[1])};
 }
 
+std::vector<SpeedReach> reaches_of(const std::vector<double>& pressure,
+                                   std::span<const double> speeds, Skins skins, const Step& step) {
+  const int even_col = 2 * kFocusCol - kPatch.cols + 1;
+  std::vector<SpeedReach> out;
+  for (const double speed : speeds) {
+    SpeedReach& at = out.emplace_back();
+    at.speed = speed;
+    for (std::size_t s = 0; s < skins.size(); ++s) {
+      const auto velocity = wake_velocity(SkinModel(skins[s]), kPatch, pressure, speed);
+      const Reach reach = reach_of(velocity);
+      at.ratios.push_back(reach.behind / reach.ahead);
+      if (s != skins.size() / 2) continue;
+      at.nominal = reach;
+      at.even = reach_of(velocity, even_col);
+    }
+    step();
+  }
+  return out;
+}
+
 void print_reaches(const std::vector<double>& pressure, std::vector<Row>& rows) {
   fmt::print("\nfocal point on a straight line: rms distance of the skin's moving energy [mm]\n");
   fmt::print("{:>6} {:>8} {:>8} {:>8} {:>8}   {}\n", "m/s", "ahead", "behind", "ratio", "80 mm",
              "ratio on the nine skins; 80 mm: the ratio within as much behind as ahead");
-  const int even_col = 2 * kFocusCol - kPatch.cols + 1;
-  for (int speed = 1; speed <= kFastest; ++speed) {
-    std::vector<double> ratios;
-    Reach nominal, even;
-    for (const SkinSettings& settings : skin_settings_interval()) {
-      const auto velocity = wake_velocity(SkinModel(settings), kPatch, pressure, speed);
-      const Reach reach = reach_of(velocity);
-      ratios.push_back(reach.behind / reach.ahead);
-      if (ratios.size() != 5) continue;
-      nominal = reach;
-      even = reach_of(velocity, even_col);
-    }
-    fmt::print("{:>6} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.1f}   {:.1f} – {:.1f}\n", speed,
-               1e3 * nominal.ahead, 1e3 * nominal.behind, ratios[4], even.behind / even.ahead,
-               *std::min_element(ratios.begin(), ratios.end()),
-               *std::max_element(ratios.begin(), ratios.end()));
-    if (speed % 4 != 0) continue;
+  std::vector<double> speeds;
+  for (int speed = 1; speed <= kFastest; ++speed) speeds.push_back(speed);
+  const auto skins = skin_settings_interval();
+  for (const SpeedReach& at : reaches_of(pressure, speeds, skins, [] {})) {
+    const double ratio = at.nominal.behind / at.nominal.ahead;
+    fmt::print("{:>6} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.1f}   {:.1f} – {:.1f}\n", at.speed,
+               1e3 * at.nominal.ahead, 1e3 * at.nominal.behind, ratio,
+               at.even.behind / at.even.ahead, *std::ranges::min_element(at.ratios),
+               *std::ranges::max_element(at.ratios));
+    if (std::fmod(at.speed, 4.0) != 0.0) continue;
     rows.push_back(
-        value_row(fmt::format("line at {} m/s, behind over ahead", speed), "1", ratios[4]));
+        value_row(fmt::format("line at {} m/s, behind over ahead", at.speed), "1", ratio));
   }
 }
 
@@ -120,11 +129,19 @@ void print_level(std::vector<Row>& rows) {
 
 }  // namespace
 
+std::vector<SpeedReach> line_reaches(std::span<const double> speeds, Skins skins,
+                                     const Step& step) {
+  return reaches_of(focus(), speeds, skins, step);
+}
+
 void compute_regimes(const std::string& figure, std::vector<Row>& rows) {
-  const std::vector<double> pressure = focus();
-  print_reaches(pressure, rows);
+  print_reaches(focus(), rows);
   print_level(rows);
-  if (figure.empty()) return;
+  if (!figure.empty()) draw_lines(figure);
+}
+
+void draw_lines(const std::string& path) {
+  const std::vector<double> pressure = focus();
   MapFigure picture{"Skin velocity (magnitude) under a focal point that moves to the right",
                     "of the largest",
                     3,
@@ -142,7 +159,7 @@ void compute_regimes(const std::string& figure, std::vector<Row>& rows) {
         fmt::format("{:.0f} mm ahead, {:.0f} mm behind", 1e3 * reach.ahead, 1e3 * reach.behind);
     picture.maps.push_back(map);
   }
-  draw_maps(picture, figure);
+  draw_maps(picture, path);
 }
 
 }  // namespace prostm::bench

@@ -13,18 +13,8 @@
 namespace prostm::bench {
 namespace {
 
-constexpr double kSides[] = {0.01, 0.03};  // [m]
-constexpr int kFastest = 12;               // [m/s]
+constexpr int kFastest = 12;  // [m/s]
 constexpr double kShown[] = {2, 4, 6, 8, 10, 12};
-
-/// Shape of a square's map of skin velocity.
-struct Look {
-  double outline = 0.0;      ///< mean along the square [m/s]
-  double inside = 0.0;       ///< largest in the inner half, over the largest of the map
-  double middle = 0.0;       ///< centre over the mean along the square
-  bool peak_inside = false;  ///< a local maximum lies in the inner half
-  double half_width = 0.0;   ///< side of a square with the area above half of the largest [m]
-};
 
 double value_at(const std::vector<double>& map, const Palm& palm, const Vec2& x) {
   // bilinear
@@ -138,48 +128,66 @@ void print_looks(double side, const std::vector<Look>& rms, const std::vector<Lo
   }
 }
 
-/// Computes one size on the nine skins; the nominal skin's maps go into the picture.
-void compute_square(double side, const StmField& field, const Palm& palm, MapFigure& picture,
-                    std::vector<Row>& rows) {
+/// Prints one size on the nine skins.
+void print_square(double side, std::vector<Row>& rows) {
   fmt::print(
       "\nsquare of {:.0f} cm: speeds [m/s] at which a peak lies in the inner half, rms and largest "
       "velocity\n",
       100.0 * side);
+  std::vector<double> speeds;
+  for (int speed = 1; speed <= kFastest; ++speed) speeds.push_back(speed);
   const auto skins = skin_settings_interval();
-  std::vector<Look> nominal_rms, nominal_largest;
+  const std::vector<SquareLooks> looks = square_looks(side, speeds, skins, [] {});
+  const auto inside = [](const Look& look) { return look.peak_inside; };
   for (std::size_t s = 0; s < skins.size(); ++s) {
-    SkinResponse response(SkinModel(skins[s]), palm.patch);
-    std::vector<Look> rms, largest;
-    for (int speed = 1; speed <= kFastest; ++speed) {
-      const VelocityMaps maps = velocity_maps(field, palm, response, side, speed);
-      rms.push_back(look_at(maps.rms, palm, side));
-      largest.push_back(look_at(maps.largest, palm, side));
-      if (s == 4 && std::find(std::begin(kShown), std::end(kShown), speed) != std::end(kShown)) {
-        picture.maps.push_back(map_of(maps.rms, palm, side, speed, rms.back()));
-      }
-    }
-    const auto inside = [](const Look& look) { return look.peak_inside; };
     fmt::print("  plateau {:>4.0f} m/s, loss {:.2f}: {:<30} {}\n", skins[s].fast_speed,
-               skins[s].loss, speeds_where(rms, inside), speeds_where(largest, inside));
-    if (s == 4) {
-      nominal_rms = rms;
-      nominal_largest = largest;
-    }
+               skins[s].loss, speeds_where(looks[s].rms, inside),
+               speeds_where(looks[s].largest, inside));
   }
-  print_looks(side, nominal_rms, nominal_largest);
+  const SquareLooks& nominal = looks[looks.size() / 2];
+  print_looks(side, nominal.rms, nominal.largest);
   rows.push_back(
       value_row(fmt::format("square {:.0f} cm, 8 m/s, middle over outline", 100.0 * side), "1",
-                nominal_rms[7].middle));
+                nominal.rms[7].middle));
 }
 
 }  // namespace
 
-void compute_squares(const std::string& figure, std::vector<Row>& rows) {
+std::vector<SquareLooks> square_looks(double side, std::span<const double> speeds, Skins skins,
+                                      const Step& step) {
   const Palm palm;
   const StmField field(usx_array(), palm);
+  std::vector<SquareLooks> out;
+  for (const SkinSettings& skin : skins) {
+    SkinResponse response(SkinModel(skin), palm.patch);
+    SquareLooks& looks = out.emplace_back();
+    for (const double speed : speeds) {
+      const VelocityMaps maps = velocity_maps(field, palm, response, side, speed);
+      looks.rms.push_back(look_at(maps.rms, palm, side));
+      looks.largest.push_back(look_at(maps.largest, palm, side));
+      step();
+    }
+  }
+  return out;
+}
+
+void draw_squares(const std::string& path) {
+  const Palm palm;
+  const StmField field(usx_array(), palm);
+  SkinResponse response(SkinModel(SkinSettings()), palm.patch);
   MapFigure picture{"Skin velocity (rms) under squares", "of the largest", 6, {}};
-  for (const double side : kSides) compute_square(side, field, palm, picture, rows);
-  if (!figure.empty()) draw_maps(picture, figure);
+  for (const double side : kSquareSides) {
+    for (const double speed : kShown) {
+      const std::vector<double> rms = velocity_maps(field, palm, response, side, speed).rms;
+      picture.maps.push_back(map_of(rms, palm, side, speed, look_at(rms, palm, side)));
+    }
+  }
+  draw_maps(picture, path);
+}
+
+void compute_squares(const std::string& figure, std::vector<Row>& rows) {
+  for (const double side : kSquareSides) print_square(side, rows);
+  if (!figure.empty()) draw_squares(figure);
 }
 
 }  // namespace prostm::bench

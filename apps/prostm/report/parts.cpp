@@ -16,10 +16,13 @@ constexpr ReportPart kParts[] = {
     {"figure-3", "Fig. 3: PRO-STM and AM", 1, 1, false, make_figure_three},
     {"figure-4", "Fig. 4: the study", 1, 1, true, make_figure_four},
     {"models", "Models that do the study", 60, 10, true, make_models},
+    {"methods", "AM and PRO-STM on the array and on the skin", 60, 8, false, make_methods},
     {"gallery", "Nine targets", 1, 1, false, make_gallery},
+    {"skin", "Experiments on skin", 150, 5, false, make_skin},
     {"fluid", "The smoke", 15, 3, false, make_fluid},
     {"solvers", "Focal points", 10, 2, false, make_solvers},
     {"latency", "Latency", 11, 4, false, make_latency},
+    {"deviations", "Where prostm departs from the paper", 0.1, 0.1, false, make_deviations},
     {"machine", "Machine, version, seeds", 1, 0.5, false, make_machine},
 };
 

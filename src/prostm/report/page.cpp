@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "prostm/report/detail/base64.hpp"
+#include "prostm/report/detail/inline_svg.hpp"
 #include "prostm/report/detail/style.hpp"
 
 namespace prostm::report {
@@ -128,11 +128,11 @@ class Section {
   }
 
   void add_figure(const Json& figure, const std::string& pointer) {
-    const std::string picture = read_picture_(figure["file"]);
+    const std::string file = figure["file"];
+    const std::string prefix = file.substr(0, file.find('.'));
     out_ += fmt::format(
-        "<figure><div class=\"card\"><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"></div>\n"
-        "<figcaption{}>{}</figcaption></figure>\n",
-        escaped(figure["alt"].get<std::string>()), detail::base64(picture),
+        "<figure><div class=\"card\">{}</div>\n<figcaption{}>{}</figcaption></figure>\n",
+        detail::inline_svg(read_picture_(file), prefix, figure["alt"].get<std::string>()),
         from(pointer + "/caption"), paragraph(figure["caption"]));
   }
 

@@ -29,13 +29,13 @@ td.n{text-align:right;white-space:nowrap}
 tr.marked td{background:var(--mark);font-style:italic}
 figure{margin:1.2rem 0}
 .card{background:#fff;border:1px solid var(--line);border-radius:6px;padding:.5rem;overflow-x:auto}
-.card img{display:block;max-width:100%;height:auto;margin:0 auto}
+.card svg{display:block;max-width:100%;height:auto;margin:0 auto}
 figcaption{color:var(--faint);font-size:.9rem;margin-top:.4rem;max-width:46rem}
-@media (max-width:40rem){.card img{max-width:none;width:46rem}body{font-size:15px}}
+@media (max-width:40rem){.card svg{max-width:none;min-width:42rem}body{font-size:15px}}
 @media print{:root{--paper:#fff;--ink:#000;--faint:#444;--line:#bbb;--mark:#f0f0f0;--link:#000}
 body{max-width:none;padding:0;font-size:10pt}nav{display:none}.scroll,.card{overflow:visible}
 table{font-size:8pt}th,td{padding:.15rem .35rem}figure,tr{break-inside:avoid}h2,h3{break-after:avoid}
-.card img{max-height:24cm}}
+.card svg{max-height:24cm}}
 )css";
 
 }  // namespace prostm::report::detail

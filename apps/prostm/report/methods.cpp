@@ -1,0 +1,121 @@
+#include "methods/comparison.hpp"
+#include "prostm/figure/figures.hpp"
+#include "report.hpp"
+
+namespace prostm::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using bench::kWays;
+using bench::Means;
+using bench::Way;
+using AllMeans = std::array<Means, kWays.size()>;
+
+Json mean(const Distribution& of) {
+  return of.count() > 0 ? Json(of.summary().mean) : Json(nullptr);
+}
+
+Json shape_rows(const AllMeans& means) {
+  Json rows = Json::array();
+  for (std::size_t w = 0; w < kWays.size(); ++w) {
+    const Means& m = means[w];
+    const bool model = kWays[w] != Way::Flat;  // which makes no paths
+    const auto of_model = [&](const Distribution& d) { return model ? mean(d) : Json(nullptr); };
+    rows.push_back({{"way", to_string(kWays[w])},
+                    {"rmse", of_model(m.rmse)},
+                    {"correlation", of_model(m.correlation)},
+                    {"model_overlap", of_model(m.model_overlap)},
+                    {"skill_8", mean(m.skill_8)},
+                    {"overlap", mean(m.overlap)},
+                    {"felt_skill_8", mean(m.felt_skill_8)},
+                    {"felt_correlation", mean(m.felt_correlation)},
+                    {"felt_overlap", mean(m.felt_overlap)},
+                    {"ghosts", mean(m.ghosts)}});
+  }
+  return rows;
+}
+
+Json level_rows(const AllMeans& means, bench::Equal equal) {
+  Json rows = Json::array();
+  for (std::size_t w = 0; w < kWays.size(); ++w) {
+    const Means::Level& level = means[w].level[static_cast<std::size_t>(equal)];
+    if (level.pressure.count() == 0) continue;
+    rows.push_back({{"way", to_string(kWays[w])},
+                    {"pressure", mean(level.pressure)},
+                    {"lobe", mean(level.lobe)},
+                    {"percept", mean(level.percept)},
+                    {"intensity", mean(level.intensity)},
+                    {"ghost", mean(level.ghost)}});
+  }
+  return rows;
+}
+
+void add_tables(const AllMeans& means, Json& blocks) {
+  blocks.push_back(report::table_block(
+      "Shapes, after the gain of least squares: by Eq. (1); of the envelope, the highest pressure "
+      "that the array puts on each cell; and of what the skin feels",
+      {{"way", "way"},
+       {"rmse", "Eq. (1): RMSE"},
+       {"correlation", "correlation"},
+       {"model_overlap", "overlap"},
+       {"skill_8", "array: S_8.5"},
+       {"overlap", "overlap"},
+       {"felt_skill_8", "skin: S_8.5"},
+       {"felt_correlation", "correlation"},
+       {"felt_overlap", "overlap"},
+       {"ghosts", "ghosts", "", 2}},
+      shape_rows(means)));
+  struct Equality {
+    bench::Equal equal;
+    const char* caption;
+  };
+  for (const Equality& of :
+       {Equality{bench::Equal::Drive, "Levels, when the largest drive is equal"},
+        Equality{bench::Equal::Power, "Levels, when the mean power is that of best"},
+        Equality{bench::Equal::Percept, "Levels, when the strongest percept is that of best"}}) {
+    blocks.push_back(report::table_block(of.caption,
+                                         {{"way", "way"},
+                                          {"pressure", "highest pressure", "Pa", 2},
+                                          {"lobe", "beside the paths", "Pa", 2},
+                                          {"percept", "strongest percept", "µm", 3},
+                                          {"intensity", "strength of all", "µm", 3},
+                                          {"ghost", "strongest ghost", "µm", 3}},
+                                         level_rows(means, of.equal)));
+  }
+}
+
+}  // namespace
+
+void make_methods(const ReportWork& work, Json& document) {
+  const int frames = work.full_or_quick(12, 1);
+  document["values"] = {{"fields", frames}};
+  auto& blocks = document["blocks"];
+  blocks.push_back(report::text_block(
+      "The array of 16 × 16 transducers plays what each way plans for {/values/fields} fields of "
+      "each scene, spread over its time; transducers follow their drives with their lag, and the "
+      "skin is the model of docs/design.md, section 10. Levels depend on what is held equal, so "
+      "there are three tables of them. \"Flat\" is no array's: the same pressure on all skin. "
+      "Ghosts are maxima of the percept, above half of its highest, where nothing is to be felt."));
+  const double all = 2.0 * frames;
+  for (std::size_t s = 0; s < kReportScenes.size(); ++s) {
+    const RecordingReader recording = recorded_fields(work, kReportScenes[s]);
+    AllMeans means;
+    for (int i = 0; i < frames; ++i) {
+      const int frame = (2 * i + 1) * recording.frames() / (2 * frames);
+      const TargetField target = recorded_field(recording, frame);
+      bench::Renderer renderer(usx_array(), target);
+      bench::add_ways(renderer, target, means);
+      work.progress((static_cast<double>(s) * frames + i + 1.0) / all);
+    }
+    blocks.push_back(report::heading_block(kReportScenes[s]));
+    add_tables(means, blocks);
+  }
+  bench::draw_ways(work.folder.path("methods.svg"));
+  blocks.push_back(report::figure_block(
+      "methods.svg",
+      "One wide plume and four thin ones, generated: the target, the pressure that the array puts "
+      "on the skin, and what is felt of it",
+      "Maps of targets, pressures and percepts for each way to render"));
+}
+
+}  // namespace prostm::app

@@ -1,0 +1,86 @@
+#include "prostm/report/detail/inline_svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+#include "prostm/report/page.hpp"
+
+namespace prostm::report::detail {
+namespace {
+
+std::string replaced(std::string_view text, std::string_view what, std::string_view with) {
+  std::string out;
+  for (;;) {
+    const std::size_t at = text.find(what);
+    out += text.substr(0, at);
+    if (at == text.npos) return out;
+    out += with;
+    text.remove_prefix(at + what.size());
+  }
+}
+
+/// Cuts numbers of an outline after the second digit behind their point.
+std::string shortened(std::string_view outline) {
+  std::string out;
+  int behind = -1;  // digits behind the point so far; below 0 before it
+  for (const char c : outline) {
+    const bool digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+    if (c == '.') {
+      behind = 0;
+    } else if (digit && behind >= 0) {
+      ++behind;
+    } else if (!digit) {
+      behind = -1;
+    }
+    if (behind <= 2) out += c;
+  }
+  return out;
+}
+
+/// The same for all outlines of a picture.
+std::string with_short_outlines(std::string_view picture) {
+  constexpr std::string_view kBegin = " d=\"";
+  std::string out;
+  for (;;) {
+    const std::size_t at = picture.find(kBegin);
+    if (at == picture.npos) return out.append(picture);
+    const std::size_t begin = at + kBegin.size();
+    const std::size_t end = std::min(picture.find('"', begin), picture.size());
+    out += picture.substr(0, begin);
+    out += shortened(picture.substr(begin, end - begin));
+    picture.remove_prefix(end);
+  }
+}
+
+/// The value of an attribute of a tag; empty where it has none.
+std::string_view attribute(std::string_view tag, std::string_view name) {
+  const std::string begin = fmt::format(" {}=\"", name);
+  const std::size_t at = tag.find(begin);
+  if (at == tag.npos) return {};
+  tag.remove_prefix(at + begin.size());
+  return tag.substr(0, tag.find('"'));
+}
+
+}  // namespace
+
+std::string inline_svg(std::string_view picture, std::string_view prefix, std::string_view alt) {
+  const std::size_t begin = picture.find("<svg");
+  const std::size_t end = begin == picture.npos ? begin : picture.find('>', begin);
+  if (end == picture.npos) throw std::invalid_argument("a picture is no SVG");
+  const std::string_view tag = picture.substr(begin, end - begin);
+  const std::string_view box = attribute(tag, "viewBox"), width = attribute(tag, "width");
+  if (box.empty() || width.empty())
+    throw std::invalid_argument("a picture has no width and no viewBox");
+  std::string inner = with_short_outlines(picture.substr(end + 1));
+  inner = replaced(inner, " id=\"", fmt::format(" id=\"{}-", prefix));
+  inner = replaced(inner, "url(#", fmt::format("url(#{}-", prefix));
+  inner = replaced(inner, "xlink:href=\"#", fmt::format("href=\"#{}-", prefix));
+  inner = replaced(inner, "xlink:href=", "href=");
+  return fmt::format("<svg role=\"img\" aria-label=\"{}\" viewBox=\"{}\" style=\"width:{}\">{}",
+                     escaped(alt), box, width, inner);
+}
+
+}  // namespace prostm::report::detail
