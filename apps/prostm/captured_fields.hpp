@@ -13,8 +13,9 @@ namespace prostm::app {
 double capture_limit(const PipelineSettings& settings, int frames);
 
 /// Records updates that have pressure until there are so many, or go_on, which is told how many
-/// there are, says false. @return how many there are. @throws what the pipeline or recorder throws.
+/// there are, says false. @param from run time of the first [s]. @return how many there are.
+/// @throws what the pipeline or recorder throws.
 int capture_fields(Pipeline& pipeline, const PipelineSettings& settings, Recorder& recorder,
-                   int frames, const std::function<bool(int taken)>& go_on);
+                   int frames, const std::function<bool(int taken)>& go_on, double from = 0.0);
 
 }  // namespace prostm::app

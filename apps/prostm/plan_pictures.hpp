@@ -1,5 +1,5 @@
 #pragma once
-/// What the pictures of a plan show.
+/// Pictures of a plan.
 
 #include <string>
 

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The folder of the paper's data; empty where there is none.
+/// The folder of the paper's data; empty where it is missing.
 std::string paper_folder(const ReportOptionsGiven& given) {
   if (given.paper_data) {
     if (fs::is_directory(*given.paper_data)) return *given.paper_data;
@@ -59,6 +59,7 @@ class ReportRun {
 
   /// @return the parts in the page's order. @throws ReportStopped
   std::vector<report::Part> all() {
+    check_paper_data(work_);
     std::vector<std::optional<report::Part>> found;
     for (const ReportPart& part : report_parts()) {
       found.push_back(given_.fresh ? std::nullopt : folder_.read(part.name, asked(part)));

@@ -11,8 +11,8 @@ from pages import ROOT
 PROSTM = Path(os.environ["PROSTM"])
 # statuses other than 0 that a command may end with here, where no tracker is and any machine will do
 STATUSES = {"leap://": {3}, "openxr": {3}, "prostm check": {0, 1}, "prostm soak": {0, 1}}
-# commands that are not typed here: other tests run them, or they need another machine
-ELSEWHERE = ("cmake ", "g++ ", "ssh ", "tools/", "PKG_CONFIG_PATH=")
+# commands that are not typed here: other tests run them, they take long, or they need another machine
+ELSEWHERE = ("cmake ", "g++ ", "ssh ", "tools/", "PKG_CONFIG_PATH=", "prostm report")
 SECONDS = 3  # of a run that keeps the clock's time: after 1.5 s it says that a tracker is missing
 FRAMES = 10  # of a recording of fields
 

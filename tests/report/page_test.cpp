@@ -58,7 +58,7 @@ TEST(Page, SaysOfEachNumberWhereItIs) {
       has(page, "<span data-from=\"a-part.json#/values/n\" data-digits=\"0\" class=\"n\">7<"));
   EXPECT_TRUE(has(page, "#/values/x\" data-digits=\"2\" class=\"n\">0.00<"));
   EXPECT_TRUE(has(page, "#/blocks/1/table/rows/0/a\" data-digits=\"1\" class=\"n\">1.3</td>"));
-  EXPECT_TRUE(has(page, "#/blocks/1/table/rows/1/a\">–</td>"));
+  EXPECT_TRUE(has(page, "#/blocks/1/table/rows/1/a\" class=\"n\">–</td>"));
 }
 
 TEST(Page, ARowMayHaveItsOwnDigitsAndStandApart) {

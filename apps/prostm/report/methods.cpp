@@ -110,6 +110,7 @@ void make_methods(const ReportWork& work, Json& document) {
     blocks.push_back(report::heading_block(kReportScenes[s]));
     add_tables(means, blocks);
   }
+  if (work.quick) return;
   bench::draw_ways(work.folder.path("methods.svg"));
   blocks.push_back(report::figure_block(
       "methods.svg",

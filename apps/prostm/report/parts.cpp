@@ -2,6 +2,9 @@
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/io/digitised_figure.hpp"
+#include "prostm/io/field_file.hpp"
+#include "prostm/study/scores.hpp"
 #include "report.hpp"
 
 namespace prostm::app {
@@ -36,6 +39,17 @@ std::optional<std::string> ReportWork::paper_file(const std::string& name) const
   const std::string file = paper_data + "/" + name;
   if (paper_data.empty() || !std::filesystem::exists(file)) return std::nullopt;
   return read_file(file);
+}
+
+void check_paper_data(const ReportWork& work) {
+  if (const auto scores = work.paper_file("fig4.json"))
+    answers_from_paper(*scores, work.paper_data + "/fig4.json");
+  const auto steps = work.paper_file("fig2.json");
+  if (!steps || !work.paper_file("fig2.field.json")) return;
+  const TargetField target = read_field(work.paper_data + "/fig2.field.json", {});
+  const PlanSettings paper;
+  digitised_figure_from_json(*steps, work.paper_data + "/fig2.json", target, paper.gain_law(),
+                             paper.speed);
 }
 
 PipelineSettings ReportWork::settings(const std::string& scene) const {

@@ -17,7 +17,7 @@ namespace prostm::app {
 /// Thrown by progress when a signal came.
 struct ReportStopped {};
 
-/// What the parts have in common.
+/// The options and places that the parts share.
 struct ReportWork {
   bool quick = false;
   int seed = 1;
@@ -46,6 +46,10 @@ inline constexpr std::array kReportScenes = {"one-plume", "four-plumes"};
 RecordingReader recorded_fields(const ReportWork& work, const std::string& scene);
 /// The first patch of a frame.
 TargetField recorded_field(const RecordingReader& recording, int frame);
+
+/// Reads all of the paper's data that is there, before any work. @throws InputError for what is
+/// wrong with it.
+void check_paper_data(const ReportWork& work);
 
 /// A subject of the page.
 struct ReportPart {

@@ -10,6 +10,8 @@
 namespace prostm::app {
 namespace {
 
+constexpr double kFrom = 3.0;  // when jets have reached the hand [s]
+
 /// Records a scene. @param begin of the share of the part that is done.
 void capture(const ReportWork& work, const std::string& scene, int frames, double begin) {
   const PipelineSettings settings = work.settings(scene);
@@ -17,10 +19,13 @@ void capture(const ReportWork& work, const std::string& scene, int frames, doubl
   Recorder recorder(work.folder.path(scene + ".h5"), settings_groups(settings));
   recorder.set_attribute("scene", scene);
   recorder.set_attribute("hand", "scripted");
-  const int taken = capture_fields(pipeline, settings, recorder, frames, [&](int so_far) {
-    work.progress(begin + 0.5 * so_far / frames);
-    return true;
-  });
+  const int taken = capture_fields(
+      pipeline, settings, recorder, frames,
+      [&](int so_far) {
+        work.progress(begin + 0.5 * so_far / frames);
+        return true;
+      },
+      kFrom);
   recorder.close();
   if (taken < frames) {
     throw InputError(fmt::format("only {} of {} fields of {} had pressure; try another --seed",

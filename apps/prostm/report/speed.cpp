@@ -86,7 +86,7 @@ std::vector<Vec3> random_foci(Random& random) {
   return foci;
 }
 
-/// What one focus solver made of all sets.
+/// The results of one focus solver over all sets.
 struct SolverOutcome {
   Distribution error, power, time;
 };

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a cell or a placeholder shows: plain, not HTML.
+/// The text of a cell or a placeholder: plain, not HTML.
 std::string shown(const Json& value, int digits, const std::string& from) {
   if (value.is_null()) return "–";
   if (value.is_string()) return value.get<std::string>();
@@ -83,14 +83,22 @@ class Section {
     return element("span", pointer, digits);
   }
 
+  /// Whether a column has numbers, and stands to the right.
+  static bool is_of_numbers(const Json& column, const Json& rows) {
+    const std::string key = column["key"];
+    return std::ranges::any_of(
+        rows, [&](const Json& row) { return row.contains(key) && row[key].is_number(); });
+  }
+
   /// An element that shows a value of the document.
   std::string element(const char* tag, const std::string& pointer, int digits) const {
     const Json::json_pointer place(pointer);
     if (!part_.document.contains(place))
       throw std::invalid_argument(part_.name + ".json has no " + pointer);
     const Json& value = part_.document.at(place);
-    const std::string number =
-        value.is_number() ? fmt::format(" data-digits=\"{}\" class=\"n\"", digits) : "";
+    std::string number;
+    if (value.is_number()) number = fmt::format(" data-digits=\"{}\" class=\"n\"", digits);
+    if (value.is_null()) number = " class=\"n\"";
     return fmt::format("<{0}{1}{2}>{3}</{0}>", tag, from(pointer), number,
                        escaped(shown(value, digits, part_.name + ".json#" + pointer)));
   }
@@ -102,8 +110,9 @@ class Section {
     const Json& columns = table["columns"];
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const std::string place = fmt::format("{}/columns/{}", pointer, c);
-      out_ += fmt::format("<th scope=\"col\"><span{}>{}</span>", from(place + "/name"),
-                          escaped(columns[c]["name"].get<std::string>()));
+      out_ += fmt::format("<th scope=\"col\"{}><span{}>{}</span>",
+                          is_of_numbers(columns[c], table["rows"]) ? " class=\"n\"" : "",
+                          from(place + "/name"), escaped(columns[c]["name"].get<std::string>()));
       const std::string unit = columns[c]["unit"];
       if (!unit.empty()) {
         out_ += fmt::format("<br><small{}>{}</small>", from(place + "/unit"), escaped(unit));

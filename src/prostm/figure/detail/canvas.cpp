@@ -64,9 +64,10 @@ std::uint32_t pixel_of(const Colour& colour) {
 }
 
 /// Pixels of a side of `cells` cells: cells of several pixels stay sharp when stretched, and a side
-/// has at most 2048.
+/// has at most 2048. The fewer the cells the smaller the picture, which is most of a vector file.
 int picture_side(int cells) {
-  return cells > 512 ? std::min(cells, 2048) : cells * (1024 / cells);
+  if (cells > 512) return std::min(cells, 2048);
+  return cells * ((cells > 128 ? 1024 : 512) / cells);
 }
 
 }  // namespace

@@ -25,13 +25,15 @@ caption{caption-side:top;text-align:left;color:var(--faint);padding-bottom:.4rem
 th,td{padding:.25rem .7rem;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}
 th{vertical-align:bottom;font-weight:600}
 th small{font-weight:400;color:var(--faint)}
-td.n{text-align:right;white-space:nowrap}
+th.n,td.n{text-align:right}
+td.n{white-space:nowrap}
+td:first-child:not(.n){min-width:8rem}
 tr.marked td{background:var(--mark);font-style:italic}
 figure{margin:1.2rem 0}
 .card{background:#fff;border:1px solid var(--line);border-radius:6px;padding:.5rem;overflow-x:auto}
 .card svg{display:block;max-width:100%;height:auto;margin:0 auto}
 figcaption{color:var(--faint);font-size:.9rem;margin-top:.4rem;max-width:46rem}
-@media (max-width:40rem){.card svg{max-width:none;min-width:42rem}body{font-size:15px}}
+@media (max-width:40rem){td:not(.n){min-width:8.5rem}.card svg{max-width:none;min-width:42rem}body{font-size:15px}}
 @media print{:root{--paper:#fff;--ink:#000;--faint:#444;--line:#bbb;--mark:#f0f0f0;--link:#000}
 body{max-width:none;padding:0;font-size:10pt}nav{display:none}.scroll,.card{overflow:visible}
 table{font-size:8pt}th,td{padding:.15rem .35rem}figure,tr{break-inside:avoid}h2,h3{break-after:avoid}
