@@ -103,12 +103,16 @@ void Means::add(const Rendering& r, const Rendering& reference) {
   }
 }
 
-void add_ways(Renderer& renderer, const TargetField& target,
+bool add_ways(Renderer& renderer, const TargetField& target,
               std::array<Means, kWays.size()>& means) {
-  const Rendering reference = renderer.render(Way::Best, target);
-  for (std::size_t w = 0; w < kWays.size(); ++w) {
-    means[w].add(kWays[w] == Way::Best ? reference : renderer.render(kWays[w], target), reference);
+  std::vector<Rendering> all;
+  for (const Way way : kWays) {
+    all.push_back(renderer.render(way, target));
+    if (!all.back().felt_at_all) return false;
   }
+  const auto best = static_cast<std::size_t>(std::ranges::find(kWays, Way::Best) - kWays.begin());
+  for (std::size_t w = 0; w < kWays.size(); ++w) means[w].add(all[w], all[best]);
+  return true;
 }
 
 double factor_for(Equal equal, const Rendering& rendering, const Rendering& reference) {
@@ -148,7 +152,10 @@ Targets recorded_targets(const std::string& path, int frames) {
 void compare_ways(const Targets& targets, std::vector<Row>& rows) {
   Renderer renderer(usx_array(), targets.at(0));
   std::array<Means, kWays.size()> means;
-  for (const TargetField& target : targets) add_ways(renderer, target, means);
+  for (const TargetField& target : targets) {
+    if (!add_ways(renderer, target, means))
+      throw InputError("a plan's loop is too long for its percept to be computed");
+  }
   print_model(means);
   print_shapes(means);
   print_levels(means);

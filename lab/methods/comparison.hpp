@@ -40,8 +40,9 @@ struct Means {
 
   void add(const Rendering& r, const Rendering& reference);
 };
-/// Renders a target in every way, and adds what comes to the means of each.
-void add_ways(Renderer& renderer, const TargetField& target,
+/// Renders a target in every way, and adds the results to the means of each. @return false where
+/// one of them is not felt at all; then nothing is added.
+bool add_ways(Renderer& renderer, const TargetField& target,
               std::array<Means, kWays.size()>& means);
 
 /// Renders targets in every way with the USX-like array, and prints means: first the quantities

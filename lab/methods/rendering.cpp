@@ -113,6 +113,8 @@ struct Renderer::Parts {
 /// Computes the field of the array on the skin, and the skin's response.
 void Renderer::Parts::play(const TargetField& target, Rendering& out) {
   const LoopSamples loop = loop_of(out.plan, target);
+  out.felt_at_all = is_felt(target, loop);
+  if (!out.felt_at_all) return;
   LoopDriveResult drives;
   loop_drives(
       array, medium, loop, {}, [](int, int) { return true; }, drives);
@@ -139,6 +141,7 @@ Rendering Renderer::render(Way way, const TargetField& target) {
     out.felt = parts_->skin.feel(target, 1.0 / kModulation, kParts, flat_loop(target, kParts));
   } else {
     parts_->play(target, out);
+    if (!out.felt_at_all) return out;
     const PlanSettings paper;
     out.of_model = score_plan(target, out.plan, 0, paper.sigma, paper.gain_law());
   }

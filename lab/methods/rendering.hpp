@@ -25,6 +25,8 @@ std::string to_string(Way way);
 /// pressures [Pa] and percepts [m] scale with the square of the drives.
 struct Rendering {
   Plan plan;
+  /// Whether its loop is short enough for the percept, is_felt(); if not, only the plan is there.
+  bool felt_at_all = true;
   double mean_power = 0.0;  ///< mean of Σ |q|² over the loop; 0 for Flat
   PhysicalField field;
   FeltField felt;

@@ -66,6 +66,12 @@ def without_times(document):
     return {key: value for key, value in document.items() if key != "timing"}
 
 
+def picture_of(report, name):
+    """A picture without the numbers of its identifiers, which count all pictures of a run."""
+    text = (report / "parts" / f"{name}.svg").read_text()
+    return re.sub(r'((?: id="|"#|url\(#)[a-z]+)[-\d]+', r"\1", text)
+
+
 @pytest.fixture(scope="module")
 def paper(tmp_path_factory):
     """A folder with scores as the paper's, and no other figure."""
@@ -164,8 +170,7 @@ def test_the_parts_that_are_there_are_kept_and_the_others_come_out_alike(program
         made = json.loads((out / "parts" / f"{name}.json").read_text())
         assert without_times(made) == without_times(documents[name]), name
     for name in ("figure-3", "figure-4", "gallery"):
-        picture = f"parts/{name}.svg"
-        assert (out / picture).read_bytes() == (report / picture).read_bytes()
+        assert picture_of(out, name) == picture_of(report, name)
 
 
 @pytest.mark.parametrize("how, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])

@@ -36,7 +36,7 @@ void make_machine(const ReportWork& work, nlohmann::ordered_json& document) {
   rows.push_back(row("cores that prostm may use", machine.cores));
   rows.push_back(row("vector instructions", machine.vectors));
   rows.push_back(row("kernel", std::string(system.sysname) + " " + system.release));
-  rows.push_back(row("compiler", __VERSION__));
+  rows.push_back(row("compiler", std::string("version ") + __VERSION__));
   rows.push_back(row("real-time priority", machine.realtime_priority));
   rows.push_back(row("programs ready to run, mean of the last minute", load(), 2));
   rows.push_back(row("a sleep of 1 ms ends late by, p50 [ms]", 1e3 * machine.sleep_late.p50, 3));

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include "methods/comparison.hpp"
+#include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
 #include "report.hpp"
 
@@ -88,26 +91,35 @@ void add_tables(const AllMeans& means, Json& blocks) {
 
 void make_methods(const ReportWork& work, Json& document) {
   const int frames = work.full_or_quick(12, 1);
-  document["values"] = {{"fields", frames}};
+  document["values"] = {{"tried", frames}};
   auto& blocks = document["blocks"];
   blocks.push_back(report::text_block(
-      "The array of 16 × 16 transducers plays what each way plans for {/values/fields} fields of "
+      "The array of 16 × 16 transducers plays what each way plans for {/values/tried} fields of "
       "each scene, spread over its time; transducers follow their drives with their lag, and the "
       "skin is the model of docs/design.md, section 10. Levels depend on what is held equal, so "
-      "there are three tables of them. \"Flat\" is no array's: the same pressure on all skin. "
+      "there are three tables of them. Fields are left out where the loop of a way takes too long "
+      "for its percept to be computed. \"Flat\" is no array's: the same pressure on all skin. "
       "Ghosts are maxima of the percept, above half of its highest, where nothing is to be felt."));
   const double all = 2.0 * frames;
   for (std::size_t s = 0; s < kReportScenes.size(); ++s) {
     const RecordingReader recording = recorded_fields(work, kReportScenes[s]);
     AllMeans means;
+    int felt = 0;
     for (int i = 0; i < frames; ++i) {
       const int frame = (2 * i + 1) * recording.frames() / (2 * frames);
       const TargetField target = recorded_field(recording, frame);
       bench::Renderer renderer(usx_array(), target);
-      bench::add_ways(renderer, target, means);
+      if (bench::add_ways(renderer, target, means)) ++felt;
       work.progress((static_cast<double>(s) * frames + i + 1.0) / all);
     }
-    blocks.push_back(report::heading_block(kReportScenes[s]));
+    if (felt == 0) {
+      throw InputError(
+          std::string("no field of ") + kReportScenes[s] +
+          " has plans whose loops are all short enough to be felt; try another --seed");
+    }
+    document["values"]["felt"].push_back(felt);
+    blocks.push_back(
+        report::heading_block(fmt::format("{}, {{/values/felt/{}}} fields", kReportScenes[s], s)));
     add_tables(means, blocks);
   }
   if (work.quick) return;
