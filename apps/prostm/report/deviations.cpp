@@ -68,7 +68,7 @@ void make_deviations(const ReportWork&, nlohmann::ordered_json& document) {
   document["blocks"].push_back(report::text_block(
       "Where the paper is silent, unclear or improved on. The last column is the place in "
       "docs/design.md."));
-  document["blocks"].push_back(report::table_block("",
+  document["blocks"].push_back(report::table_block("From the smoke to the study",
                                                    {{"what", "what"},
                                                     {"paper", "the paper"},
                                                     {"here", "prostm"},

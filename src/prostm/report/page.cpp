@@ -104,9 +104,10 @@ class Section {
   }
 
   void add_table(const Json& table, const std::string& pointer) {
-    out_ += "<div class=\"scroll\"><table>\n";
-    out_ += fmt::format("<caption{}>{}</caption>\n<thead><tr>", from(pointer + "/caption"),
+    // above the box that scrolls, so that it does not scroll with a wide table
+    out_ += fmt::format("<p class=\"caption\"{}>{}</p>\n", from(pointer + "/caption"),
                         paragraph(table["caption"]));
+    out_ += "<div class=\"scroll\"><table>\n<thead><tr>";
     const Json& columns = table["columns"];
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const std::string place = fmt::format("{}/columns/{}", pointer, c);

@@ -75,6 +75,9 @@ std::string inline_svg(std::string_view picture, std::string_view prefix, std::s
   if (box.empty() || width.empty())
     throw std::invalid_argument("a picture has no width and no viewBox");
   std::string inner = with_short_outlines(picture.substr(end + 1));
+  // what holds anyway
+  inner = replaced(inner, "stroke:none;fill-rule:nonzero;", "");
+  inner = replaced(inner, "fill-opacity:1;", "");
   inner = replaced(inner, " id=\"", fmt::format(" id=\"{}-", prefix));
   inner = replaced(inner, "url(#", fmt::format("url(#{}-", prefix));
   inner = replaced(inner, "xlink:href=\"#", fmt::format("href=\"#{}-", prefix));

@@ -19,9 +19,9 @@ h3{font-size:1.05rem;margin:1.6rem 0 .4rem}
 p{max-width:46rem;margin:.6rem 0}
 a{color:var(--link)}
 nav ul{display:flex;flex-wrap:wrap;gap:.3rem 1.1rem;list-style:none;margin:0;padding:0}
-.scroll{overflow-x:auto;margin:1rem 0;max-width:100%}
+.scroll{overflow-x:auto;margin:0 0 1rem;max-width:100%}
 table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums}
-caption{caption-side:top;text-align:left;color:var(--faint);padding-bottom:.4rem;max-width:46rem}
+.caption{color:var(--faint);font-size:.9rem;margin:1.2rem 0 .2rem}
 th,td{padding:.25rem .7rem;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}
 th{vertical-align:bottom;font-weight:600}
 th small{font-weight:400;color:var(--faint)}
@@ -33,7 +33,7 @@ figure{margin:1.2rem 0}
 .card{background:#fff;border:1px solid var(--line);border-radius:6px;padding:.5rem;overflow-x:auto}
 .card svg{display:block;max-width:100%;height:auto;margin:0 auto}
 figcaption{color:var(--faint);font-size:.9rem;margin-top:.4rem;max-width:46rem}
-@media (max-width:40rem){td:not(.n){min-width:8.5rem}.card svg{max-width:none;min-width:42rem}body{font-size:15px}}
+@media (max-width:40rem){td:not(.n){min-width:8.5rem}.card svg{max-width:none;width:46rem!important}body{font-size:15px}}
 @media print{:root{--paper:#fff;--ink:#000;--faint:#444;--line:#bbb;--mark:#f0f0f0;--link:#000}
 body{max-width:none;padding:0;font-size:10pt}nav{display:none}.scroll,.card{overflow:visible}
 table{font-size:8pt}th,td{padding:.15rem .35rem}figure,tr{break-inside:avoid}h2,h3{break-after:avoid}
