@@ -49,6 +49,7 @@ PipelineSettings base_settings(const RunOptionsGiven& given) {
 Protocol protocol_of(const StudyRunOptionsGiven& given, const PipelineSettings& base) {
   Protocol protocol = read_protocol(given.protocol, base);
   for (StudyMethod& method : protocol.methods) set_live_budget(method.settings);
+  if (protocol.standard) set_live_budget(protocol.standard->settings);
   return protocol;
 }
 
@@ -105,9 +106,14 @@ const StudyView& serve(const StudyRunOptionsGiven& given, Pipeline& pipeline, St
 
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
             const RunSummary& summary) {
-  const std::size_t all = session.trials().size();
-  fmt::print(out, "Participant {}: {} of {} answers in {}.\n", session.participant(),
-             session.trials_done(), all, file.path());
+  const Course& course = session.course();
+  if (course.is_open()) {
+    fmt::print(out, "Participant {}: {} answers in {}{}.\n", session.participant(), course.done(),
+               file.path(), course.is_done() ? ", which are all" : "");
+  } else {
+    fmt::print(out, "Participant {}: {} of {} answers in {}.\n", session.participant(),
+               course.done(), course.most(), file.path());
+  }
   const std::string strengths = session.strengths();
   if (!strengths.empty()) fmt::print(out, "{}\n", strengths);
   if (summary.skipped_world_steps > 0 || summary.device.missed_blocks > 0) {

@@ -9,6 +9,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
 #include "prostm/pipeline/scene.hpp"
+#include "prostm/study/detail/settle_level.hpp"
 
 namespace prostm {
 namespace {
@@ -45,10 +46,11 @@ void list_training(Settings& s, V& v) {
 
 template <class Settings, class V>
 void list_trials(Settings& s, V& v) {
+  v.field({.name = "task", .help = "of the participant in a trial"}, s.task);
   v.field({.name = "repeats",
            .least = 1,
            .most = 1000,
-           .help = "trials of each scene with each method"},
+           .help = "trials of each scene with each method; staircases end by themselves"},
           s.repeats);
   v.field({.name = "questions", .help = "drawn for each trial, or balanced over a scene's trials"},
           s.questions);
@@ -159,11 +161,13 @@ void StudyScene::visit(SettingsWriter& v) {
 Protocol protocol_from_toml(std::string_view text, const std::string& file,
                             const PipelineSettings& base) {
   Protocol protocol;
-  settings_from_toml(text, file,
-                     {group_of("study", protocol.study), group_of("training", protocol.training),
-                      group_of("trials", protocol.trials)},
-                     {}, {"method", "scene"});
-  for (const std::string& name : names_in(text, file, "scene", 2))
+  const auto given_above = settings_from_toml(
+      text, file,
+      {group_of("study", protocol.study), group_of("training", protocol.training),
+       group_of("trials", protocol.trials), group_of("level", protocol.level)},
+      {}, {"method", "scene"});
+  const bool identifies = protocol.trials.task == StudyTask::Identification;
+  for (const std::string& name : names_in(text, file, "scene", identifies ? 2 : 1))
     protocol.scenes.push_back(read_scene(text, file, name));
   for (const std::string& name : names_in(text, file, "method", 1)) {
     StudyMethod& method = protocol.methods.emplace_back(StudyMethod{name, base});
@@ -171,6 +175,7 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
         settings_from_toml(text, file, settings_groups(method.settings), {"method", name});
     refuse_settings_of_the_run(given, file, name);
   }
+  study::settle_level(given_above, file, protocol);
   return protocol;
 }
 
@@ -186,6 +191,10 @@ nlohmann::ordered_json protocol_json(const Protocol& protocol) {
     json["scene"][scene.name] = {{"question", scene.question}};
   for (const StudyMethod& method : protocol.methods)
     json["method"][method.name] = settings_to_json(settings_groups(method.settings));
+  if (protocol.trials.task == StudyTask::Identification) return json;
+  json["level"] = settings_to_json({group_of("level", protocol.level)})["level"];
+  if (const auto& standard = protocol.standard)
+    json["method"][standard->name] = settings_to_json(settings_groups(standard->settings));
   return json;
 }
 

@@ -45,6 +45,7 @@ class StudyView final : public ViewSource {
   void tick();
   StudySight sight();
   void present(const StudyWanted& wanted);
+  bool is_asked(const StudyWanted& wanted) const;
   std::string act(Room room, const StudyAct& act);
   nlohmann::ordered_json both(const char* room) const;
   nlohmann::ordered_json experimenter() const;
@@ -57,9 +58,9 @@ class StudyView final : public ViewSource {
   std::map<std::uint32_t, Room> pages_;
   ViewFrame frame_;  // the newest
   ViewNews news_;
-  int method_ = -1, scene_ = -1;  // that the run was asked for last
-  std::uint64_t version_ = 0;     // of the settings for it
-  std::string problem_;           // with them
+  StudyWanted asked_;                             // of the run, last
+  std::shared_ptr<const LiveSettings> settings_;  // for it; nothing before the first
+  std::string problem_;                           // with them
   std::string told_[std::size(kRooms)];
   std::atomic<bool> closed_{false};
 };
