@@ -19,7 +19,9 @@ std::string scene_name(const SceneResult& scene);
 /// The width of a column of names, its heading's at least.
 std::size_t width_of(std::string_view heading, const std::vector<std::string>& names);
 
-void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds);
+/// @param kind of the answers.
+void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds,
+                      AnswerKind kind);
 nlohmann::ordered_json thresholds_json(const std::vector<ThresholdResult>& thresholds);
 
 void print_adjusted(std::FILE* out, const std::vector<AdjustedResult>& results);

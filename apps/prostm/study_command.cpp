@@ -211,7 +211,7 @@ int analyse_command(const AnalyseOptionsGiven& options) {
   if (has_right_answers) print_methods(out, analysis);
   if (has_right_answers && !analysis.scenes.front().comparisons.empty())
     print_comparisons(out, analysis);
-  if (!analysis.thresholds.empty()) print_thresholds(out, analysis.thresholds);
+  if (!analysis.thresholds.empty()) print_thresholds(out, analysis.thresholds, analysis.kind);
   fmt::print(out, "\n{}", wrapped(words));
   if (!options.figure.empty()) draw_analysis(analysis, options.figure);
   say_written(out, options.figure);

@@ -55,7 +55,8 @@ void add_analyse(CLI::App& study, Work& work) {
   command->add_option("--seed", o->settings.seed, "of random splits of many participants")
       ->capture_default_str();
   command->add_option("--guess", o->settings.guess,
-                      "share of right answers at low levels; default: --chance");
+                      "share of right answers at low levels; default: --chance, or 0 where "
+                      "no answer is wrong");
   command->add_option("--lapse", o->settings.lapse,
                       "share of wrong answers at high levels; default: 0.02");
   add_json(*command, o->files, o->json);

@@ -273,8 +273,11 @@ Answer answer_of(const ResponseLine& line, const std::string& participant, Answe
   answer.method = line.at("method");
   answer.scene = line.at("scene");
   answer.trial = std::to_string(line.at("trial").get<int>());
-  answer.question = line.value("question", "");
-  if (line.contains("level")) answer.level = line.at("level").get<double>();
+  if (line.contains("level")) {
+    answer.level = line.at("level").get<double>();
+  } else {
+    answer.question = line.at("question");
+  }
   answer.kind = kind;
   return answer;
 }
@@ -291,7 +294,7 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
       throw InputError(where + " does not begin a participant's file of prostm study run");
     const std::string participant = lines.front().at("participant");
     const int trials = lines.front().at("trials");
-    const auto& protocol = lines.front().at("protocol");
+    const auto protocol = lines.front().value("protocol", ResponseLine::object());
     const AnswerKind of = kind_of(protocol);
     bool ended = false;
     for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -156,7 +156,7 @@ function expectNothingTold(traffic: Traffic, study: Study): void {
   const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
   for (const text of texts) {
     expect(Object.keys(JSON.parse(text) as Json)).toEqual(keys);
-    expect(text).not.toMatch(/level|reference|felt|correct|start|track|method|condition|stm|\bam\b/);
+    expect(text).not.toMatch(/level|reference|felt|correct|start|track|method|condition|\bstm\b|\bam\b/);
   }
   for (const trial of study.trials()) {
     const told = [trial.level, trial.start, ...((trial.changes ?? []) as number[][]).map((change) => change[1])];
