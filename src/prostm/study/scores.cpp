@@ -315,7 +315,7 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
       if (!answers.back().question.empty()) answers.back().yes = line.at("answer").get<int>() == 1;
     }
     if (lines.front().at("run").at("rehearsal"))
-      notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are random.");
+      notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are made up.");
     if (!ended && static_cast<int>(answers.size()) < trials) {
       notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", participant,
                                   answers.size(), trials, file));
