@@ -66,6 +66,11 @@ class UdpTarget final : public MarkerTarget {
   Udp::socket socket_;
 };
 
+std::string problem_of(const boost::system::error_code& wrong) {
+  if (wrong.value() == EACCES) return "you may not; in Debian, join the group dialout";
+  return wrong.value() == ENOTTY ? "it is no serial port" : wrong.message();
+}
+
 class SerialTarget final : public MarkerTarget {
  public:
   explicit SerialTarget(const std::string& address) : port_(context_) {
@@ -84,12 +89,7 @@ class SerialTarget final : public MarkerTarget {
       path.resize(colon);
     }
     boost::system::error_code wrong;
-    if (port_.open(path, wrong)) {
-      cannot_open(address, wrong == asio::error::no_permission || wrong.value() == EACCES
-                               ? "you may not; in Debian be in the group dialout"
-                               : wrong.message());
-    }
-    if (::isatty(port_.native_handle()) == 0) cannot_open(address, "it is no serial port");
+    if (port_.open(path, wrong)) cannot_open(address, problem_of(wrong));
     using Port = asio::serial_port_base;
     if (port_.set_option(Port::baud_rate(baud), wrong))
       cannot_open(address, fmt::format("{} Bd: {}", baud, wrong.message()));
