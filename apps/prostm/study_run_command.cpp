@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "common.hpp"
+#include "prostm/core/distribution.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/study/session.hpp"
@@ -132,6 +134,23 @@ int run_of(const ResponseFile& file) {
          }));
 }
 
+/// Says how long after their samples the markers of a run were sent.
+void tell_delays(std::FILE* out, const ResponseFile& file, int run) {
+  Distribution begins, ends;
+  for (const ResponseLine& line : file.lines()) {
+    if (line.value("kind", "") != "marker" || line["run"] != run || line["late_ms"].is_null())
+      continue;
+    const bool on = line["event"].get<std::string>().ends_with("-on");
+    (on ? begins : ends).add(line["late_ms"].get<double>());
+  }
+  const auto words = [](const Distribution& delays) {
+    const Summary s = delays.summary();
+    return fmt::format("{:.2f} ms (99 %: {:.2f}, most {:.2f})", s.p50, s.p99, s.max);
+  };
+  fmt::print(out, "Markers were sent {} after {} beginnings, {} after {} ends.\n", words(begins),
+             begins.count(), words(ends), ends.count());
+}
+
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
             const RunSummary& summary) {
   const std::size_t all = session.trials().size();
@@ -153,7 +172,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   const PipelineSettings base = base_settings(given.run);
   const Protocol protocol = protocol_of(given, base);
   const std::string path = file_of(given);
-  MarkerSender markers(given.markers, protocol);
+  std::vector<OpenTarget> targets = open_marker_targets(given.markers);
   PipelineSettings settings = protocol.methods.front().settings;
   settings.scene = "still-air";
   auto hands = make_hands(given.run.hand, settings);
@@ -172,7 +191,8 @@ int study_run_command(const StudyRunOptionsGiven& given) {
                                         {"hand", given.run.hand},
                                         {"rehearsal", given.rehearse.has_value()}};
   StudySession session(protocol, given.participant, file, facts, study_time());
-  markers.start({given.participant, run_of(file)}, pipeline.device(), pipeline.sound());
+  MarkerSender markers(std::move(targets), protocol, {given.participant, run_of(file)},
+                       pipeline.device(), pipeline.sound());
   const StudyView& study = serve(given, pipeline, session, markers, view, begins ? path : "");
   if (file.found_cut_off())
     fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);
@@ -188,6 +208,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   write_rest(markers, session);
   if (summary.failure) return tell(summary.failure);
   report(stdout, session, file, summary);
+  if (!given.markers.empty()) tell_delays(stdout, file, run_of(file));
   if (interrupt.requested()) return interrupt.status();
   return never_came(pipeline.world_stage().hands().tracker_status()) ? kNoFrame : 0;
 }

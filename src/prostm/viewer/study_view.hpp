@@ -27,7 +27,7 @@ class StudyView final : public ViewSource {
  public:
   /// @param session is used by the server's thread from now on. All must outlive this.
   /// @param rehearsal that stands in for people, if any does.
-  /// @param markers that were started and are written down with the session; null: none.
+  /// @param markers that are written down with the session; null: none.
   StudyView(LiveLink& link, ViewHello hello, StudySession& session,
             std::optional<Rehearsal> rehearsal = {}, MarkerSender* markers = nullptr);
 

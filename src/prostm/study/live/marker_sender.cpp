@@ -5,13 +5,11 @@
 #include <chrono>
 #include <utility>
 
-#include "prostm/core/input_error.hpp"
 #include "prostm/core/stage_timer.hpp"
 
 namespace prostm {
 namespace {
 
-constexpr std::size_t kMostTargets = 8;
 constexpr std::chrono::milliseconds kLook{1};  // less than the shortest queue of a device
 constexpr int kDelays = 10;                    // of a sample, while it is waited for
 
@@ -28,21 +26,11 @@ void sleep_until(double time) {
 
 }  // namespace
 
-MarkerSender::MarkerSender(const std::vector<std::string>& addresses, const Protocol& protocol)
-    : protocol_(protocol) {
-  if (addresses.size() > kMostTargets) {
-    throw InputError(fmt::format("--markers is given {} times; it may be given {} times",
-                                 addresses.size(), kMostTargets));
-  }
-  for (const std::string& address : addresses)
-    targets_.push_back({address, open_marker_target(address)});
-}
-
-void MarkerSender::start(const MarkerRun& run, const Device& device, SoundWatch& sound) {
-  run_ = run;
-  device_ = &device;
-  sound_ = &sound;
-  sound_->begin_reading();
+MarkerSender::MarkerSender(std::vector<OpenTarget> targets, const Protocol& protocol,
+                           const MarkerRun& run, const Device& device, SoundWatch& sound)
+    : protocol_(protocol), run_(run), device_(device), sound_(sound) {
+  for (OpenTarget& target : targets) targets_.push_back({std::move(target)});
+  sound_.begin_reading();
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
@@ -55,10 +43,10 @@ void MarkerSender::stop() {
 void MarkerSender::work(const std::stop_token& stop) {
   for (;;) {
     const bool last = stop.stop_requested();
-    while (const SoundChange* found = sound_->front()) {
+    while (const SoundChange* found = sound_.front()) {
       const SoundChange change = *found;
       Marker marker = marker_of(change);
-      sound_->pop();  // the device may stop from here on
+      sound_.pop();  // the device may stop from here on
       wait(change, marker);
       send(marker);
       markers_.push(marker);
@@ -80,15 +68,15 @@ Marker MarkerSender::marker_of(const SoundChange& change) {
   marker.sequence = ++sent_;
   marker.stream = change.stream;
   marker.sample = change.sample;
-  marker.sample_rate = device_->info().sample_rate;
+  marker.sample_rate = device_.info().sample_rate;
   return marker;
 }
 
 /// Nothing if the device has stopped since, or started anew.
 std::optional<double> MarkerSender::play_time(const SoundChange& change) const {
-  if (device_->status() != DeviceStatus::Running) return {};
-  const double time = device_->play_time(change.sample);
-  if (sound_->stream() != change.stream) return {};
+  if (device_.status() != DeviceStatus::Running) return {};
+  const double time = device_.play_time(change.sample);
+  if (sound_.stream() != change.stream) return {};
   return time;
 }
 
@@ -110,15 +98,15 @@ void MarkerSender::send(Marker& marker) {
   const std::string line = json.dump() + "\n";
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     Target& target = targets_[i];
-    const std::string problem = target.target->send(line, code_of(marker));
+    const std::string problem = target.to.target->send(line, code_of(marker));
     if (!problem.empty()) marker.failed |= 1U << i;
     if (problem.empty() == !target.failed) continue;
     target.failed = !problem.empty();
     news_.push(target.failed
                    ? fmt::format("Markers do not reach {}: {}. The study goes on; all markers are "
                                  "in the participant's file.",
-                                 target.address, problem)
-                   : fmt::format("Markers reach {} again.", target.address));
+                                 target.to.address, problem)
+                   : fmt::format("Markers reach {} again.", target.to.address));
   }
 }
 
@@ -128,7 +116,7 @@ ResponseLine MarkerSender::line(const Marker& marker) const {
   if (marker.failed == 0) return line;
   line["failed"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < targets_.size(); ++i)
-    if ((marker.failed >> i & 1U) != 0) line["failed"].push_back(targets_[i].address);
+    if ((marker.failed >> i & 1U) != 0) line["failed"].push_back(targets_[i].to.address);
   return line;
 }
 

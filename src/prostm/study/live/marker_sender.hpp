@@ -26,21 +26,19 @@ struct MarkerRun {
 /// markers are handed to the study, which writes them down.
 class MarkerSender {
  public:
-  /// Opens the targets, 8 at most. @param protocol must outlive this.
-  /// @throws InputError as open_marker_target() does, and for more.
-  MarkerSender(const std::vector<std::string>& addresses, const Protocol& protocol);
+  /// Starts the thread. All but `run` must outlive stop().
+  MarkerSender(std::vector<OpenTarget> targets, const Protocol& protocol, const MarkerRun& run,
+               const Device& device, SoundWatch& sound);
   ~MarkerSender() { stop(); }
   MarkerSender(const MarkerSender&) = delete;
   MarkerSender& operator=(const MarkerSender&) = delete;
 
-  /// Starts the thread. Both must outlive stop(). @pre not started.
-  void start(const MarkerRun& run, const Device& device, SoundWatch& sound);
   /// Sends what the device has played, and ends the thread.
   void stop();
 
   // ---- the study's thread ----
-  /// Names what sounds next. Call it before the mute is lifted. @pre started.
-  void present(const Presentation& now) { sound_->label(now.label()); }
+  /// Names what sounds next. Call it before the mute is lifted.
+  void present(const Presentation& now) { sound_.label(now.label()); }
   /// The oldest marker that was not handed over yet; false without one.
   bool next(Marker& out) { return markers_.pop(out); }
   /// Returns the line that the response file gets.
@@ -52,8 +50,7 @@ class MarkerSender {
 
  private:
   struct Target {
-    std::string address;
-    std::unique_ptr<MarkerTarget> target;
+    OpenTarget to;
     bool failed = false;  // the thread's
   };
 
@@ -64,12 +61,12 @@ class MarkerSender {
   void send(Marker& marker);
 
   const Protocol& protocol_;
-  MarkerRun run_;
-  std::vector<Target> targets_;
-  const Device* device_ = nullptr;
-  SoundWatch* sound_ = nullptr;
+  const MarkerRun run_;
+  const Device& device_;
+  SoundWatch& sound_;
 
   // the thread's
+  std::vector<Target> targets_;
   std::int64_t sent_ = 0;  // markers
   Presentation last_;
   int part_ = 0;

@@ -23,6 +23,7 @@ using Udp = asio::ip::udp;
 constexpr std::string_view kUdp = "udp://", kSerial = "serial://";
 constexpr std::uint16_t kUsualPort = 8480;
 constexpr unsigned kUsualBaud = 115200;
+constexpr std::size_t kMostTargets = 8;
 
 [[noreturn]] void cannot_open(const std::string& address, const std::string& why) {
   throw InputError(fmt::format("--markers {} cannot be opened: {}", address, why));
@@ -120,6 +121,17 @@ std::unique_ptr<MarkerTarget> open_marker_target(const std::string& address) {
       fmt::format("--markers {} must be udp://HOST:PORT or serial://PATH, for example "
                   "udp://127.0.0.1:{} or serial:///dev/ttyUSB0",
                   address, kUsualPort));
+}
+
+std::vector<OpenTarget> open_marker_targets(const std::vector<std::string>& addresses) {
+  if (addresses.size() > kMostTargets) {
+    throw InputError(fmt::format("--markers is given {} times; it may be given {} times",
+                                 addresses.size(), kMostTargets));
+  }
+  std::vector<OpenTarget> targets;
+  for (const std::string& address : addresses)
+    targets.push_back({address, open_marker_target(address)});
+  return targets;
 }
 
 }  // namespace prostm

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace prostm {
 
@@ -16,10 +17,18 @@ class MarkerTarget {
   virtual std::string send(std::string_view line, std::uint8_t code) = 0;
 };
 
+/// A target and what it was opened as.
+struct OpenTarget {
+  std::string address;
+  std::unique_ptr<MarkerTarget> target;
+};
+
 /// Opens udp://HOST:PORT, which gets a datagram with the line for each marker, or serial://PATH or
 /// serial://PATH:BAUD (115200 Bd, 8 bits, no parity, 1 stop bit), which gets a byte, the code.
 /// @throws InputError: neither; the host is not known; the port cannot be opened, or is no serial
 /// port.
 std::unique_ptr<MarkerTarget> open_marker_target(const std::string& address);
+/// Opens all, 8 at most. @throws InputError as for one, and for more.
+std::vector<OpenTarget> open_marker_targets(const std::vector<std::string>& addresses);
 
 }  // namespace prostm
