@@ -49,7 +49,8 @@ void MarkerSender::work(const std::stop_token& stop) {
       sound_.pop();  // the device may stop from here on
       wait(change, marker);
       send(marker);
-      markers_.push(marker);
+      if (!markers_.push(marker))
+        news_.push("A marker was sent that the participant's file lacks: the study stands still.");
     }
     if (last) return;
     std::this_thread::sleep_for(kLook);
