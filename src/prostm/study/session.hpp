@@ -90,6 +90,11 @@ class StudySession {
   /// is kept, and written before anything else happens.
   std::string take(const StudyAct& act, const StudySight& sight);
 
+  /// Writes down a marker that was sent. @return as take() does.
+  std::string note(ResponseLine marker, const StudySight& sight) {
+    return write(std::move(marker), sight);
+  }
+
   StudyPhase phase() const { return phase_; }
   const StudyWanted& wanted() const { return wanted_; }
   const Protocol& protocol() const { return protocol_; }
