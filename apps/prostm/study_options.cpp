@@ -23,6 +23,14 @@ void add_study_run(CLI::App& study, Work& work) {
   command->add_option("--rehearse", o->rehearse,
                       "answer so many trials at random, 0 all of them, without people; the file's "
                       "name begins with rehearsal");
+  command
+      ->add_option("--markers", o->markers,
+                   "send a marker when each stimulus begins and ends: udp://HOST:PORT or "
+                   "serial:///dev/ttyUSB0:BAUD (docs/study.md); may be given 8 times")
+      ->type_name("ADDRESS")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
   run.hand = "study";
   add_hand(*command, run.common, run.hand, run.hand_size);
   add_input(*command, run.common.files, "--settings", run.common.settings_file,

@@ -87,6 +87,12 @@ void list_trials(Settings& s, V& v) {
   v.field({.name = "gate", .help = "whether a trial waits for the stimulus gate"}, s.gate);
 }
 
+template <class Settings, class V>
+void list_markers(Settings& s, V& v) {
+  v.field({.name = "conditions", .help = "markers tell what is presented, also in a blind study"},
+          s.conditions);
+}
+
 /// The names in a table of the protocol. @throws InputError: fewer than `least`.
 std::vector<std::string> names_in(std::string_view text, const std::string& file,
                                   const std::string& table, std::size_t least) {
@@ -150,6 +156,12 @@ void TrialSettings::visit(SettingsReader& v) const {
 void TrialSettings::visit(SettingsWriter& v) {
   list_trials(*this, v);
 }
+void MarkerSettings::visit(SettingsReader& v) const {
+  list_markers(*this, v);
+}
+void MarkerSettings::visit(SettingsWriter& v) {
+  list_markers(*this, v);
+}
 
 void StudyScene::visit(SettingsReader& v) const {
   v.field({.name = "question", .help = "yes or no, as it is read and shown"}, question);
@@ -164,7 +176,8 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
   const auto given_above = settings_from_toml(
       text, file,
       {group_of("study", protocol.study), group_of("training", protocol.training),
-       group_of("trials", protocol.trials), group_of("level", protocol.level)},
+       group_of("trials", protocol.trials), group_of("markers", protocol.markers),
+       group_of("level", protocol.level)},
       {}, {"method", "scene"});
   const bool identifies = protocol.trials.task == StudyTask::Identification;
   for (const std::string& name : names_in(text, file, "scene", identifies ? 2 : 1))
@@ -176,6 +189,13 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
     refuse_settings_of_the_run(given, file, name);
   }
   study::settle_level(given_above, file, protocol);
+  const std::size_t conditions = protocol.methods.size() * protocol.scenes.size();
+  if (protocol.markers.conditions && conditions > kMostMarkedConditions) {
+    throw InputError(fmt::format(
+        "{}: markers.conditions is true for {} conditions, methods times scenes, and there are "
+        "codes for {}; leave it out, or take fewer",
+        file, conditions, kMostMarkedConditions));
+  }
   return protocol;
 }
 
@@ -184,9 +204,9 @@ Protocol read_protocol(const std::string& path, const PipelineSettings& base) {
 }
 
 nlohmann::ordered_json protocol_json(const Protocol& protocol) {
-  nlohmann::ordered_json json =
-      settings_to_json({group_of("study", protocol.study), group_of("training", protocol.training),
-                        group_of("trials", protocol.trials)});
+  nlohmann::ordered_json json = settings_to_json(
+      {group_of("study", protocol.study), group_of("training", protocol.training),
+       group_of("trials", protocol.trials), group_of("markers", protocol.markers)});
   for (const StudyScene& scene : protocol.scenes)
     json["scene"][scene.name] = {{"question", scene.question}};
   for (const StudyMethod& method : protocol.methods)

@@ -87,6 +87,16 @@ struct TrialSettings {
   void visit(SettingsWriter& v);
 };
 
+/// [markers], docs/study-files.md
+struct MarkerSettings {
+  bool conditions = false;  ///< markers tell method and scene, also in a blind study
+
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
+};
+/// Conditions that have codes of their own.
+inline constexpr std::size_t kMostMarkedConditions = 239;
+
 /// A stimulus that is presented, and asked for: a [scene.NAME] of the protocol.
 struct StudyScene {
   std::string name;      ///< of the pipeline's scenes
@@ -106,6 +116,7 @@ struct Protocol {
   StudySettings study;
   TrainingSettings training;
   TrialSettings trials;
+  MarkerSettings markers;
   LevelSettings level;               ///< of tasks but identification
   std::vector<StudyMethod> methods;  ///< as they stand in the file, as do scenes; `standard` aside
   std::vector<StudyScene> scenes;

@@ -180,7 +180,7 @@ void StudySession::settle(const StudySight& sight) {
   }
   if (wanted_.scene < 0) {
     wanted_.scene = trial().scene;
-    want(Presentation::begins_with_level(protocol_, trial()));
+    want(Intervals::begins_with_level(protocol_, trial()));
     return;
   }
   if (!sight.in_force) return;
@@ -190,7 +190,7 @@ void StudySession::settle(const StudySight& sight) {
   if (sight.time - in_force_at_ < protocol_.trials.settle || !open || !unwritten_.empty()) return;
   phase_ = StudyPhase::Presenting;
   since_ = sight.time;
-  presentation_.begin(protocol_, trial(), sight.time);
+  intervals_.begin(protocol_, trial(), sight.time);
   wanted_.sound = true;
   begun_with_ = trial().level;
   changes_ = nlohmann::ordered_json::array();
@@ -203,11 +203,11 @@ void StudySession::settle(const StudySight& sight) {
 
 void StudySession::present(const StudySight& sight) {
   const double time = sight.time - since_;
-  presentation_.look(sight.time, sight.in_force);
-  wanted_.sound = presentation_.sounds();
-  want(presentation_.shows_level());
-  if (presentation_.is_over()) return;
-  if (presentation_.sounds() && presentation_.shows_level()) {
+  intervals_.look(sight.time, sight.in_force);
+  wanted_.sound = intervals_.sounds();
+  want(intervals_.shows_level());
+  if (intervals_.is_over()) return;
+  if (intervals_.sounds() && intervals_.shows_level()) {
     strength_.target += sight.target_force;
     strength_.rendered += sight.rendered_force;
     ++strength_.looks;
@@ -260,7 +260,7 @@ ResponseLine StudySession::trial_line(std::optional<bool> chosen, const StudySig
   if (chosen) study::add_answer(line, protocol_, t, *chosen);
   if (!chosen) line["start"] = begun_with_ ? *begun_with_ : *t.level;
   if (!chosen) line["changes"] = changes_;
-  line["response_s"] = rounded(sight.time - presentation_.asked_at(), 3);
+  line["response_s"] = rounded(sight.time - intervals_.asked_at(), 3);
   line["stimulus"] = study::stimulus_hash(protocol_, t);
   line["gate"] = study::gate_json(gate_at_onset_);
   line["anyway"] = anyway_;
@@ -280,7 +280,7 @@ void StudySession::add_strength(const Trial& trial, double target, double render
 }
 
 std::string StudySession::answer(const StudyAct& act, const StudySight& sight) {
-  if (!presentation_.takes_answer()) return "both intervals are to be felt before an answer";
+  if (!intervals_.takes_answer()) return "both intervals are to be felt before an answer";
   const StudyTask task = protocol_.trials.task;
   if (task == StudyTask::Adjustment) return "an adjustment has no answer: tune it and accept it";
   const bool of_intervals = task == StudyTask::ForcedChoice;
@@ -295,7 +295,7 @@ std::string StudySession::answer(const StudyAct& act, const StudySight& sight) {
 }
 
 std::string StudySession::accept(const StudySight& sight) {
-  if (!presentation_.takes_answer()) return "both are to be felt before they are alike";
+  if (!intervals_.takes_answer()) return "both are to be felt before they are alike";
   end_trial(trial_line({}, sight), sight, [&] { course_.accept(*last_trial_->level); });
   return problem_;
 }
@@ -303,7 +303,7 @@ std::string StudySession::accept(const StudySight& sight) {
 std::string StudySession::tune(const StudyAct& act, const StudySight& sight) {
   course_.tune(act.steps, act.coarse);
   changes_.push_back({rounded(sight.time - since_, 3), *trial().level});
-  want(presentation_.shows_level());
+  want(intervals_.shows_level());
   return {};
 }
 

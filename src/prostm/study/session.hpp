@@ -15,7 +15,7 @@
 #include "prostm/core/names.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/study/course.hpp"
-#include "prostm/study/presentation.hpp"
+#include "prostm/study/intervals.hpp"
 #include "prostm/study/response_file.hpp"
 
 namespace prostm {
@@ -100,6 +100,11 @@ class StudySession {
   /// is kept, and written before anything else happens.
   std::string take(const StudyAct& act, const StudySight& sight);
 
+  /// Writes down a marker that was sent. @return as take() does.
+  std::string note(ResponseLine marker, const StudySight& sight) {
+    return write(std::move(marker), sight);
+  }
+
   StudyPhase phase() const { return phase_; }
   const StudyWanted& wanted() const { return wanted_; }
   const Protocol& protocol() const { return protocol_; }
@@ -110,10 +115,10 @@ class StudySession {
   /// The trial that is next or under way. @pre not all are done.
   const Trial& trial() const { return course_.trial(); }
   /// The interval of a trial that sounds, 1 or 2; 0 in silence, and where a trial has only one.
-  int interval() const { return phase_ == StudyPhase::Presenting ? presentation_.interval() : 0; }
+  int interval() const { return phase_ == StudyPhase::Presenting ? intervals_.interval() : 0; }
   /// Whether an answer is taken now.
   bool takes_answer() const {
-    return phase_ == StudyPhase::Presenting && presentation_.takes_answer();
+    return phase_ == StudyPhase::Presenting && intervals_.takes_answer();
   }
   double training_left() const { return training_left_; }  ///< [s]
   int explored() const { return explored_; }               ///< scene of Training
@@ -162,7 +167,7 @@ class StudySession {
   const int participant_;
   ResponseFile& file_;
   Course course_;  // with the answers that are on the disk
-  Presentation presentation_;
+  Intervals intervals_;
   std::optional<Trial> last_trial_;  // that was answered
   StudyPhase phase_ = StudyPhase::Ready;
   StudyWanted wanted_;

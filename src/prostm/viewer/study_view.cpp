@@ -75,11 +75,12 @@ StudySight study_time() {
 }
 
 StudyView::StudyView(LiveLink& link, ViewHello hello, StudySession& session,
-                     std::optional<Rehearsal> rehearsal)
+                     std::optional<Rehearsal> rehearsal, MarkerSender* markers)
     : link_(link),
       run_(link, std::move(hello)),
       session_(session),
-      rehearsal_(std::move(rehearsal)) {
+      rehearsal_(std::move(rehearsal)),
+      markers_(markers) {
   link_.snapshots.watch(true);  // the session looks, whether pages do or not
   link_.mute->set(MuteReason::Study, true);
 }
@@ -104,6 +105,8 @@ void StudyView::tick() {
   LiveRefusal refusal;
   while (link_.control.next_refusal(refusal)) problem_ = refusal.sentence;
   const StudySight now = sight();
+  Marker marker;
+  while (markers_ != nullptr && markers_->next(marker)) session_.note(markers_->line(marker), now);
   present(session_.look(now));
   if (!rehearsal_) return;
   const auto act = rehearsal_->act(session_, now.time);
@@ -117,9 +120,17 @@ bool StudyView::is_asked(const StudyWanted& wanted) const {
          wanted.level == asked_.level && wanted.standard == asked_.standard;
 }
 
+/// Lifts the study's mute, or sets it. What sounds is named before.
+void StudyView::let_sound(bool sound) {
+  if (sound && !sounds_ && markers_ != nullptr)
+    markers_->present(presentation_of(session_, ++presentations_));
+  sounds_ = sound;
+  link_.mute->set(MuteReason::Study, !sound);
+}
+
 /// Asks the run for what is wanted, where that has changed.
 void StudyView::present(const StudyWanted& wanted) {
-  link_.mute->set(MuteReason::Study, !wanted.sound);
+  let_sound(wanted.sound);
   if (session_.closed()) closed_.store(true, std::memory_order_relaxed);
   if (is_asked(wanted)) return;
   const Protocol& protocol = session_.protocol();

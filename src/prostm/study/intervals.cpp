@@ -1,13 +1,13 @@
-#include "prostm/study/presentation.hpp"
+#include "prostm/study/intervals.hpp"
 
 namespace prostm {
 
-bool Presentation::begins_with_level(const Protocol& protocol, const Trial& trial) {
+bool Intervals::begins_with_level(const Protocol& protocol, const Trial& trial) {
   if (protocol.trials.task == StudyTask::ForcedChoice) return trial.level_first;
   return protocol.trials.task != StudyTask::Adjustment;
 }
 
-void Presentation::begin(const Protocol& protocol, const Trial& trial, double time) {
+void Intervals::begin(const Protocol& protocol, const Trial& trial, double time) {
   task_ = protocol.trials.task;
   const bool identifies = task_ == StudyTask::Identification;
   several_ = task_ == StudyTask::ForcedChoice || task_ == StudyTask::Adjustment;
@@ -21,7 +21,7 @@ void Presentation::begin(const Protocol& protocol, const Trial& trial, double ti
   since_ = asked_at_ = time;
 }
 
-void Presentation::look(double time, bool in_force) {
+void Intervals::look(double time, bool in_force) {
   if (over_) return;
   if (sounds_) {
     if (!(length_ > 0.0) || time - since_ < length_) return;

@@ -7,7 +7,7 @@ namespace prostm {
 
 /// Identification and judgement have one interval; a forced choice has two with a gap; an
 /// adjustment has those of the standard and of the level in turn, until it is accepted.
-class Presentation {
+class Intervals {
  public:
   /// Whether the interval that a trial begins with is the level's (or the only one), not the
   /// standard's.
