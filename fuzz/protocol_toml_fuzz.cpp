@@ -1,10 +1,11 @@
-/// Protocols: any text is a protocol whose orders are whole, or gives an InputError.
+/// Protocols: any text is a protocol whose orders are whole and whose levels keep within bounds, or
+/// gives an InputError.
 #include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/study/order.hpp"
+#include "prostm/study/course.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;
@@ -15,6 +16,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static_cast<void>(protocol_json(protocol).size());
     constexpr int kFew = 50;  // more take too long for a fuzzer
     if (protocol.trials.repeats > kFew || protocol.methods.size() > 5) return 0;
+    if (protocol.level.tracks * static_cast<int>(protocol.scenes.size()) <= kFew) {
+      Course course(protocol, 3);
+      const auto& level = protocol.level;
+      for (int i = 0; i < kFew && !course.is_done(); ++i) {
+        const Trial& t = course.trial();
+        if (t.level && !(*t.level >= level.low - 0.5 && *t.level <= level.high + 0.5)) std::abort();
+        if (protocol.trials.task == StudyTask::Adjustment) {
+          course.tune(i % 3 - 1, i % 2 == 0);
+          course.accept(*course.trial().level);
+        } else {
+          course.answer(i % 3 == 0);
+        }
+      }
+    }
     const auto trials = trial_order(protocol, 3);
     const std::size_t methods =
         protocol.study.methods == MethodsOf::Between ? 1 : protocol.methods.size();

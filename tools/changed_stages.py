@@ -15,8 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 ALWAYS = {"pipeline", "viewer", "app"}
 # files that no sanitizer or fuzzer covers
-ELSEWHERE = ("docs", "web", "receivers", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md", "LICENSE",
-             ".ci", ".gitignore")
+ELSEWHERE = ("docs", "web", "receivers", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md",
+             "CITATION.cff", "LICENSE", ".ci", ".gitignore")
 
 
 def git(*arguments):

@@ -30,7 +30,7 @@ ROOMS = {
 
 # Only these may use threads, mutexes and clocks.
 MAY_USE_THREADS = tuple(STAGES + place for place in
-                        ("core/worker_pool.", "track/live/", "track/detail/", "device/", "pipeline/", "viewer/"))
+                        ("core/worker_pool.", "track/live/", "track/detail/", "device/", "pipeline/", "study/live/", "viewer/"))
 MAY_USE_CLOCKS = (STAGES + "core/stage_timer.",) + MAY_USE_THREADS[1:]
 THREAD_HEADERS = {"thread", "mutex", "condition_variable", "shared_mutex", "stop_token", "semaphore", "barrier",
                   "latch", "future"}
@@ -41,9 +41,9 @@ LANGUAGE_HEADERS = {"format", "expected", "source_location", "generator", "corou
 # Words that need no header of their own: (pattern, allowed places, problem).
 WORDS = [
     (re.compile(r"\bstd::(this_thread|j?thread|mutex|\w+_mutex|condition_variable\w*|async|call_once)\b"),
-     MAY_USE_THREADS, "threads and mutexes live in core/worker_pool, track/live, device, pipeline and viewer"),
+     MAY_USE_THREADS, "threads and mutexes live in core/worker_pool, track/live, device, pipeline, study/live and viewer"),
     (re.compile(r"\b(std::chrono|clock_gettime|gettimeofday|std::time|std::clock)\b"),
-     MAY_USE_CLOCKS, "clocks live in core/stage_timer, track/live, device, pipeline and viewer"),
+     MAY_USE_CLOCKS, "clocks live in core/stage_timer, track/live, device, pipeline, study/live and viewer"),
     (re.compile(r"\b(std::(cout|cerr|clog|printf|puts|print|println)|f?printf|puts|fmt::print(ln)?)\b"),
      (), "nothing in src/ prints: return it, or throw"),
     (re.compile(r"\bstd::(views|ranges::views)::|\|\s*views::"),

@@ -128,7 +128,8 @@ struct StudyRunOptionsGiven {
   int participant = 0;
   std::string folder = "answers";  ///< of the response files
   bool resume = false;
-  std::optional<int> rehearse;  ///< trials, 0: all; nothing: people answer
+  std::optional<int> rehearse;       ///< trials, 0: all; nothing: people answer
+  std::vector<std::string> markers;  ///< addresses that they go to
 };
 
 struct AnalyseOptionsGiven {

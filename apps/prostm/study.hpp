@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "prostm/study/adjusted.hpp"
 #include "prostm/study/analysis.hpp"
 
 namespace prostm::app {
@@ -18,8 +19,14 @@ std::string scene_name(const SceneResult& scene);
 /// The width of a column of names, its heading's at least.
 std::size_t width_of(std::string_view heading, const std::vector<std::string>& names);
 
-void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds);
+/// @param kind of the answers.
+void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds,
+                      AnswerKind kind);
 nlohmann::ordered_json thresholds_json(const std::vector<ThresholdResult>& thresholds);
+
+void print_adjusted(std::FILE* out, const std::vector<AdjustedResult>& results);
+nlohmann::ordered_json adjusted_json(const std::vector<AdjustedResult>& results, double level,
+                                     const std::string& words);
 
 /// Draws shares of right answers as the paper's Fig. 4, or psychometric functions where answers
 /// have levels. @throws InputError when the file cannot be written.

@@ -5,6 +5,8 @@
 #include "common.hpp"
 #include "options.hpp"
 #include "prostm/core/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/require.hpp"
 #include "study.hpp"
 
 namespace prostm::app {
@@ -131,6 +133,7 @@ nlohmann::ordered_json analysis_json(const Analysis& analysis, const std::string
   }
   nlohmann::ordered_json json = {
       {"format", "prostm-analysis/1"},
+      {"kind", name_of(analysis.kind)},
       {"groups", analysis.groups == Groups::Within ? "within" : "between"},
       {"participants", analysis.participants},
       {"chance", analysis.settings.chance},
@@ -161,26 +164,58 @@ std::string wrapped(const std::string& words) {
   return out + line + '\n';
 }
 
+void print_notes(std::FILE* out, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(out, "{}\n", note);
+  if (!notes.empty()) fmt::print(out, "\n");
+}
+
+void write_tidy(std::FILE* out, const std::string& path, const std::vector<Answer>& answers) {
+  if (!path.empty()) write_file(path, tidy_csv(answers));
+  say_written(out, path);
+}
+
+int analyse_adjusted(const AnalyseOptionsGiven& options, const std::vector<Answer>& answers,
+                     const std::vector<std::string>& notes) {
+  if (!options.figure.empty())
+    throw InputError("--figure draws shares of answers, and these are adjustments; leave it out");
+  if (options.settings.guess || options.settings.lapse)
+    throw InputError("--guess and --lapse belong to thresholds, and these are adjustments");
+  const double level = options.settings.level;
+  require_between("level", level, 0.5, 0.9999);
+  const std::vector<AdjustedResult> results = adjusted_levels(answers, level);
+  const std::string words = in_words(results, level);
+  std::FILE* out = prose(options.json);
+  print_notes(out, notes);
+  print_adjusted(out, results);
+  fmt::print(out, "\n{}", wrapped(words));
+  write_tidy(out, options.tidy, answers);
+  write_json(options.json, adjusted_json(results, level, words));
+  say_written(out, options.json);
+  return 0;
+}
+
 }  // namespace
 
 int analyse_command(const AnalyseOptionsGiven& options) {
   std::vector<std::string> notes;
   const std::vector<Answer> answers = read_answers(options.answers, notes);
+  if (answers.front().kind == AnswerKind::Adjusted)
+    return analyse_adjusted(options, answers, notes);
   const Analysis analysis = analyse(answers, options.settings);
   const std::string words = in_words(analysis);
   std::FILE* out = prose(options.json);
   fmt::print(out, "{} participants, {}\n\n", analysis.participants.size(),
              analysis.groups == Groups::Within ? "each with all methods" : "each with one method");
-  for (const std::string& note : notes) fmt::print(out, "{}\n", note);
-  if (!notes.empty()) fmt::print(out, "\n");
-  print_methods(out, analysis);
-  if (!analysis.scenes.front().comparisons.empty()) print_comparisons(out, analysis);
-  if (!analysis.thresholds.empty()) print_thresholds(out, analysis.thresholds);
+  print_notes(out, notes);
+  const bool has_right_answers = analysis.kind == AnswerKind::Right;
+  if (has_right_answers) print_methods(out, analysis);
+  if (has_right_answers && !analysis.scenes.front().comparisons.empty())
+    print_comparisons(out, analysis);
+  if (!analysis.thresholds.empty()) print_thresholds(out, analysis.thresholds, analysis.kind);
   fmt::print(out, "\n{}", wrapped(words));
   if (!options.figure.empty()) draw_analysis(analysis, options.figure);
   say_written(out, options.figure);
-  if (!options.tidy.empty()) write_file(options.tidy, tidy_csv(answers));
-  say_written(out, options.tidy);
+  write_tidy(out, options.tidy, answers);
   write_json(options.json, analysis_json(analysis, words));
   say_written(out, options.json);
   return 0;

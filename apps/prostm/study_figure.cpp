@@ -94,7 +94,8 @@ std::vector<Chart> threshold_charts(const Analysis& analysis) {
       chart.title = of.scene;
       chart.x_label = fmt::format("level (bars: thresholds with {:g} % intervals)",
                                   100.0 * analysis.settings.level);
-      chart.y_label = "right answers / %";
+      chart.y_label =
+          analysis.kind == AnswerKind::Felt ? "answers for the level / %" : "right answers / %";
       chart.logarithmic_x = chart.logarithmic_y = false;
     }
     ChartSeries& series = charts.back().series.emplace_back();

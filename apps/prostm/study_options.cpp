@@ -23,6 +23,14 @@ void add_study_run(CLI::App& study, Work& work) {
   command->add_option("--rehearse", o->rehearse,
                       "answer so many trials at random, 0 all of them, without people; the file's "
                       "name begins with rehearsal");
+  command
+      ->add_option("--markers", o->markers,
+                   "send a marker when each stimulus begins and ends: udp://HOST:PORT or "
+                   "serial:///dev/ttyUSB0:BAUD (docs/study.md); may be given 8 times")
+      ->type_name("ADDRESS")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
   run.hand = "study";
   add_hand(*command, run.common, run.hand, run.hand_size);
   add_input(*command, run.common.files, "--settings", run.common.settings_file,
@@ -55,7 +63,8 @@ void add_analyse(CLI::App& study, Work& work) {
   command->add_option("--seed", o->settings.seed, "of random splits of many participants")
       ->capture_default_str();
   command->add_option("--guess", o->settings.guess,
-                      "share of right answers at low levels; default: --chance");
+                      "share of right answers at low levels; default: --chance, or 0 where "
+                      "no answer is wrong");
   command->add_option("--lapse", o->settings.lapse,
                       "share of wrong answers at high levels; default: 0.02");
   add_json(*command, o->files, o->json);

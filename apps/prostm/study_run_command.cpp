@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "common.hpp"
+#include "prostm/core/distribution.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/study/session.hpp"
@@ -15,14 +18,25 @@ namespace {
 constexpr int kMostParticipants = 9999;
 constexpr double kADay = 86400.0;  // [s]
 
+/// Says where markers do not arrive, and where they do again.
+void tell_news(MarkerSender& markers) {
+  std::string sentence;
+  while (markers.next_news(sentence)) {
+    fmt::print("{}\n", sentence);
+    std::fflush(stdout);
+  }
+}
+
 /// Ends the run when the session is closed, on a signal, and when the pages' server fails.
 class Observer final : public RunObserver {
  public:
-  Observer(const View& view, const StudyView& study, const Interrupt& interrupt)
-      : view_(view), study_(study), interrupt_(interrupt) {}
+  Observer(const View& view, const StudyView& study, MarkerSender& markers,
+           const Interrupt& interrupt)
+      : view_(view), study_(study), markers_(markers), interrupt_(interrupt) {}
   bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
   bool on_progress(double) override {
     view_.check();
+    tell_news(markers_);
     return goes_on();
   }
 
@@ -31,6 +45,7 @@ class Observer final : public RunObserver {
 
   const View& view_;
   const StudyView& study_;
+  MarkerSender& markers_;
   const Interrupt& interrupt_;
 };
 
@@ -49,6 +64,7 @@ PipelineSettings base_settings(const RunOptionsGiven& given) {
 Protocol protocol_of(const StudyRunOptionsGiven& given, const PipelineSettings& base) {
   Protocol protocol = read_protocol(given.protocol, base);
   for (StudyMethod& method : protocol.methods) set_live_budget(method.settings);
+  if (protocol.standard) set_live_budget(protocol.standard->settings);
   return protocol;
 }
 
@@ -94,20 +110,58 @@ std::optional<Rehearsal> rehearsal_of(const StudyRunOptionsGiven& given) {
 /// Starts the pages. Where that fails nobody has begun. @param begun the file that has just been
 /// begun, if any.
 const StudyView& serve(const StudyRunOptionsGiven& given, Pipeline& pipeline, StudySession& session,
-                       View& view, const std::string& begun) {
+                       MarkerSender& markers, View& view, const std::string& begun) {
   try {
-    return view.serve(pipeline, session, rehearsal_of(given), stdout);
+    return view.serve(pipeline, session, rehearsal_of(given), markers, stdout);
   } catch (...) {
     if (!begun.empty()) std::filesystem::remove(begun);
     throw;
   }
 }
 
+/// Those that the study's thread has not written down before it ended.
+void write_rest(MarkerSender& markers, StudySession& session) {
+  markers.stop();
+  tell_news(markers);
+  Marker marker;
+  while (markers.next(marker)) session.note(markers.line(marker), study_time());
+}
+
+/// How often a participant's file was gone on with, and 1.
+int run_of(const ResponseFile& file) {
+  const auto& lines = file.lines();
+  return 1 + static_cast<int>(std::count_if(lines.begin(), lines.end(), [](const ResponseLine& l) {
+           return l.value("kind", "") == "resume";
+         }));
+}
+
+/// Says how long after their samples the markers of a run were sent.
+void tell_delays(std::FILE* out, const ResponseFile& file, int run) {
+  Distribution begins, ends;
+  for (const ResponseLine& line : file.lines()) {
+    if (line.value("kind", "") != "marker" || line["run"] != run || line["late_ms"].is_null())
+      continue;
+    const bool on = line["event"].get<std::string>().ends_with("-on");
+    (on ? begins : ends).add(line["late_ms"].get<double>());
+  }
+  const auto words = [](const Distribution& delays) {
+    const Summary s = delays.summary();
+    return fmt::format("{:.2f} ms (99 %: {:.2f}, most {:.2f})", s.p50, s.p99, s.max);
+  };
+  fmt::print(out, "Markers were sent {} after {} beginnings, {} after {} ends.\n", words(begins),
+             begins.count(), words(ends), ends.count());
+}
+
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
             const RunSummary& summary) {
-  const std::size_t all = session.trials().size();
-  fmt::print(out, "Participant {}: {} of {} answers in {}.\n", session.participant(),
-             session.trials_done(), all, file.path());
+  const Course& course = session.course();
+  if (course.is_open()) {
+    fmt::print(out, "Participant {}: {} answers in {}{}.\n", session.participant(), course.done(),
+               file.path(), course.is_done() ? ", which are all" : "");
+  } else {
+    fmt::print(out, "Participant {}: {} of {} answers in {}.\n", session.participant(),
+               course.done(), course.most(), file.path());
+  }
   const std::string strengths = session.strengths();
   if (!strengths.empty()) fmt::print(out, "{}\n", strengths);
   if (summary.skipped_world_steps > 0 || summary.device.missed_blocks > 0) {
@@ -124,6 +178,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   const PipelineSettings base = base_settings(given.run);
   const Protocol protocol = protocol_of(given, base);
   const std::string path = file_of(given);
+  std::vector<OpenTarget> targets = open_marker_targets(given.markers);
   PipelineSettings settings = protocol.methods.front().settings;
   settings.scene = "still-air";
   auto hands = make_hands(given.run.hand, settings);
@@ -142,20 +197,24 @@ int study_run_command(const StudyRunOptionsGiven& given) {
                                         {"hand", given.run.hand},
                                         {"rehearsal", given.rehearse.has_value()}};
   StudySession session(protocol, given.participant, file, facts, study_time());
-  const StudyView& study = serve(given, pipeline, session, view, begins ? path : "");
+  MarkerSender markers(std::move(targets), protocol, {given.participant, run_of(file)},
+                       pipeline.device(), pipeline.sound());
+  const StudyView& study = serve(given, pipeline, session, markers, view, begins ? path : "");
   if (file.found_cut_off())
     fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);
   if (!names_tracker(given.run.hand))
     fmt::print("The hand is not tracked (--hand {}): good for a rehearsal.\n", given.run.hand);
   std::fflush(stdout);
-  Observer observer(view, study, interrupt);
+  Observer observer(view, study, markers, interrupt);
   RunOptions options;
   options.seconds = kADay;
   options.live = &view.link();
   const RunSummary summary = run(pipeline, settings, options, observer);
   view.stop();
+  write_rest(markers, session);
   if (summary.failure) return tell(summary.failure);
   report(stdout, session, file, summary);
+  if (!given.markers.empty()) tell_delays(stdout, file, run_of(file));
   if (interrupt.requested()) return interrupt.status();
   return never_came(pipeline.world_stage().hands().tracker_status()) ? kNoFrame : 0;
 }

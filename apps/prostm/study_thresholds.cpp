@@ -38,7 +38,8 @@ nlohmann::ordered_json fit_json(const PsychometricFit& fit) {
 
 }  // namespace
 
-void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds) {
+void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds,
+                      AnswerKind kind) {
   std::vector<std::string> scenes, methods, participants;
   for (const ThresholdResult& of : thresholds) {
     scenes.push_back(of.scene);
@@ -48,8 +49,9 @@ void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresh
   const std::size_t scene = width_of("scene", scenes), method = width_of("method", methods),
                     participant = width_of("participant", participants);
   fmt::print(out, "\n  {:<{}}  {:<{}}  {:<{}} {:>6} {:>13} {:>10} {:>21} {:>10} {:>21}\n", "scene",
-             scene, "method", method, "participant", participant, "levels", "right", "threshold",
-             "interval", "slope", "interval");
+             scene, "method", method, "participant", participant, "levels",
+             kind == AnswerKind::Felt ? "for it" : "right", "threshold", "interval", "slope",
+             "interval");
   for (const ThresholdResult& of : thresholds) {
     const Proportion correct = correct_of(of);
     fmt::print(out, "  {:<{}}  {:<{}}  {:<{}} {:>6} {:>6}/{:<6}", of.scene, scene, of.method,

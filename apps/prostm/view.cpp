@@ -105,9 +105,10 @@ void View::serve(Pipeline& pipeline, std::FILE* out) {
 }
 
 StudyView& View::serve(Pipeline& pipeline, StudySession& session,
-                       std::optional<Rehearsal> rehearsal, std::FILE* out) {
+                       std::optional<Rehearsal> rehearsal, MarkerSender& markers, std::FILE* out) {
   link_.hands->set_tracker_pose(pipeline.world_stage().tracker_pose());
-  auto view = std::make_unique<StudyView>(link_, hello(pipeline), session, std::move(rehearsal));
+  auto view =
+      std::make_unique<StudyView>(link_, hello(pipeline), session, std::move(rehearsal), &markers);
   StudyView& study = *view;
   source_ = std::move(view);
   for (PageFile file : page_files()) {

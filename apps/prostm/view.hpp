@@ -31,7 +31,7 @@ class View {
   void serve(Pipeline& pipeline, std::FILE* out);
   /// Starts the server of a study's two pages, and prints where they are. @return its view.
   StudyView& serve(Pipeline& pipeline, StudySession& session, std::optional<Rehearsal> rehearsal,
-                   std::FILE* out);
+                   MarkerSender& markers, std::FILE* out);
   /// Ends the server; what it showed is free to be used.
   void stop() { server_.reset(); }
   /// @throws when the server has failed.

@@ -236,3 +236,72 @@ def test_a_session_that_is_killed_goes_on_and_one_that_was_edited_does_not(progr
     file.write_text(text)
     (tmp_path / "short.toml").write_text(SHORT.replace("rest = 0.1", "rest = 0.2"))
     refuses(*STUDY, "7", "--resume", words=["begun with another protocol"])
+
+
+EXAMPLES = {"gain-as-strong-as-am": "adjusted", "continuity": "felt", "number-of-paths": "felt", "just-stronger": "right"}
+QUICK = {"settle = 2\n": "", "seconds = 60": "seconds = 0", "interval = 1.5": "interval = 0.3", "interval = 1.0": "interval = 0.3",
+         "interval = 2\n": "interval = 0.3\n", "interval = 3\n": "interval = 0.3\n", "gap = 0.7": "gap = 0.1", "gap = 0.6": "gap = 0.1",
+         "[trials]\n": "[trials]\nrest = 0.1\nsettle = 0.5\ngate = \"off\"\n", "preset = \"paper\"": "preset = \"fast\""}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_each_example_with_levels_is_rehearsed_and_analysed(prostm, tmp_path, name):
+    text = (ROOT / "data" / "protocols" / f"{name}.toml").read_text()
+    for slow, quick in QUICK.items():
+        text = text.replace(slow, quick)
+    (tmp_path / "p.toml").write_text(text)
+    (tmp_path / "s.toml").write_text("[fluid]\ncells = 32\n")
+    for participant in "12":
+        said = prostm("study", "run", "p.toml", "--settings", "s.toml", "--view-port", "0", "--participant", participant, "--rehearse", "3").stdout
+        assert f"Participant {participant}: 3 " in said
+    files = [f"answers/rehearsal-{n}.jsonl" for n in "12"]
+    trials = [line for file in files for line in map(json.loads, open(tmp_path / file)) if line["kind"] == "trial"]
+    assert len(trials) == 6 and all("level" in line for line in trials)
+    first, *_ = map(json.loads, open(tmp_path / files[0]))
+    low, high = (first["protocol"]["level"][key] for key in ("low", "high"))
+    assert all(low <= line["level"] <= high for line in trials)
+    said = prostm("study", "analyse", *files, "--json", "a.json", "--tidy", "t.csv").stdout
+    assert said.count("is a rehearsal: nobody felt anything") == 2
+    analysis = json.loads((tmp_path / "a.json").read_text())
+    kind = EXAMPLES[name]
+    assert analysis["kind"] == kind
+    rows = list(csv.DictReader(open(tmp_path / "t.csv", newline="")))
+    assert [float(row["level"]) for row in rows] == [line["level"] for line in trials]
+    assert all(row.get("kind", "right") == kind for row in rows)
+    if kind == "adjusted":
+        of, = analysis["adjusted"]
+        means = [sum(line["level"] for line in trials[i:i + 3]) / 3 for i in (0, 3)]
+        assert [p["mean"] for p in of["participants"]] == pytest.approx(means)
+        assert of["mean"] == pytest.approx(sum(means) / 2)
+        half = 12.7062 * abs(means[0] - means[1]) / 2  # t of one degree of freedom, sd / sqrt(2)
+        assert of["interval"] == pytest.approx([of["mean"] - half, of["mean"] + half], rel=1e-3)
+        assert f"it felt alike at {of['mean']:.4g}, the mean of 2 participants" in " ".join(said.split())
+        assert all(line["changes"][-1][1] == line["level"] for line in trials if line["changes"])
+    else:
+        assert analysis["guess"] == (0.5 if kind == "right" else 0)
+        assert ("answers were right" in " ".join(said.split())) == (kind == "right")
+    prostm("study", "analyse", "t.csv", "--json", "b.json")
+    assert json.loads((tmp_path / "b.json").read_text()) == analysis, "the table says the same"
+
+
+def test_tables_of_adjustments_and_of_mixed_kinds(prostm, refuses, tmp_path):
+    header = "participant,method,scene,correct,level,kind\n"
+    (tmp_path / "a.csv").write_text(header + "1,stm,x,0,1.2,adjusted\n1,stm,x,0,1.6,adjusted\n2,stm,x,0,1.8,adjusted\n")
+    said = prostm("study", "analyse", "a.csv").stdout
+    assert re.search(r"x +stm +all +3 +1\.6 +0\.2828", said), said
+    refuses("study", "analyse", "a.csv", "--figure", "a.svg", words=["--figure", "these are adjustments"])
+    refuses("study", "analyse", "a.csv", "--guess", "0.1", words=["--guess", "these are adjustments"])
+    (tmp_path / "a.csv").write_text(header + "1,stm,x,0,1.2,adjusted\n1,stm,x,0,1.6,felt\n")
+    refuses("study", "analyse", "a.csv", words=["line 3: kind is \"felt\", and another one"])
+    (tmp_path / "a.csv").write_text(header + "1,stm,x,0,1.2,tuned\n")
+    refuses("study", "analyse", "a.csv", words=["line 2: kind", "right, felt or adjusted"])
+    (tmp_path / "a.csv").write_text("participant,method,scene,correct,kind\n1,stm,x,0,felt\n")
+    refuses("study", "analyse", "a.csv", words=["no column \"level\""])
+
+
+def test_a_protocol_with_levels_that_do_nothing_is_refused(refuses, tmp_path):
+    text = (ROOT / "data" / "protocols" / "just-stronger.toml").read_text()
+    (tmp_path / "p.toml").write_text(text.replace("full_scale_pressure = 0.31", "fade_time = 0.001"))
+    refuses("study", "run", "p.toml", "--participant", "1", words=["plan.gain", "would change nothing", "full_scale_pressure"])
+    (tmp_path / "p.toml").write_text(text.replace("high = 2.8", "high = 280"))
+    refuses("study", "run", "p.toml", "--participant", "1", words=["[level], with method pro-stm", "gain = 280"])

@@ -83,11 +83,11 @@ def test_python_prints_what_the_page_says(page, folder, typed):
 
 
 def test_files_are_read(page, folder):
-    for block in blocks_of(page):
+    for number, block in enumerate(blocks_of(page), 1):
         if block.language == "toml":
             (folder / "page.toml").write_text(block.text)
-            shell.type_command("prostm study run page.toml --participant 1 --answers protocol" if "[study]" in block.text
-                               else "prostm settings --settings page.toml", folder)
+            study = f"prostm study run page.toml --participant {number} --answers protocol"
+            shell.type_command(study if "[study]" in block.text else "prostm settings --settings page.toml", folder)
         elif block.language == "json":
             reader = READERS.get(json.loads(block.text).get("format"))
             if reader is not None:

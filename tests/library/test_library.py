@@ -208,6 +208,10 @@ def test_the_version_is_the_same_everywhere(prefix, pkg_config):
     assert ".".join(parts) == version
     assert pkg_config("--modversion") == [version]
     assert run(prefix / "bin/prostm", "--version").split()[-1] == version
+    released = re.search(r"^## \[(\d.*)\] - (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.M)
+    cited = (ROOT / "CITATION.cff").read_text()
+    assert released[1] == version
+    assert f"version: {released[1]}\ndate-released: {released[2]}\n" in cited
 
 
 def test_what_is_installed_knows_no_folder_of_the_checkout(prefix):

@@ -79,6 +79,89 @@ TEST(Protocol, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_THAT(refusal("[study\n"), HasSubstr("not valid TOML"));
 }
 
+// ---- levels ----
+
+std::string levels(const std::string& task, const std::string& level,
+                   const std::string& methods = "[method.a]\n") {
+  return "[trials]\ntask = \"" + task + "\"\n[level]\n" + level +
+         "[scene.one-plume]\nquestion = \"?\"\n" + methods;
+}
+const std::string kSpeed = "setting = \"plan.speed\"\nlow = 2\nhigh = 8\nstep = 0.5\n";
+
+TEST(Protocol, ExamplesOfEveryTaskAreRead) {
+  const auto read = [](const char* name) {
+    return read_protocol(test::source_file(std::string("data/protocols/") + name), {});
+  };
+  const Protocol gain = read("gain-as-strong-as-am.toml");
+  EXPECT_EQ(gain.trials.task, StudyTask::Adjustment);
+  ASSERT_TRUE(gain.standard);
+  EXPECT_EQ(gain.standard->name, "am");
+  EXPECT_EQ(gain.standard->settings.method, Method::Am);
+  ASSERT_EQ(gain.methods.size(), 1U);
+  EXPECT_EQ(gain.methods[0].name, "pro-stm");
+  EXPECT_EQ(gain.methods[0].settings.emit.full_scale_pressure,
+            gain.standard->settings.emit.full_scale_pressure);
+  const Protocol continuity = read("continuity.toml");
+  EXPECT_EQ(continuity.trials.task, StudyTask::Judgement);
+  EXPECT_EQ(continuity.level.setting, "plan.draw_rate");
+  EXPECT_EQ(continuity.level.start, 120.0) << "where it is easiest";
+  const Protocol paths = read("number-of-paths.toml");
+  EXPECT_EQ(paths.level.setting, "plan.paths");
+  EXPECT_EQ(paths.level.procedure, Staircase::Bayes);
+  const Protocol stronger = read("just-stronger.toml");
+  EXPECT_EQ(stronger.trials.task, StudyTask::ForcedChoice);
+  EXPECT_FALSE(stronger.standard);
+  EXPECT_EQ(stronger.level.start, 2.0);
+  for (const Protocol* p : {&gain, &continuity, &paths, &stronger}) {
+    const auto json = protocol_json(*p);
+    EXPECT_EQ(json["level"]["setting"], p->level.setting);
+    EXPECT_EQ(json["method"].size(), p->methods.size() + (p->standard ? 1U : 0U));
+  }
+}
+
+TEST(Protocol, LevelsThatAreWrongAreRefused) {
+  const std::string reference = "reference = 2\n";
+  EXPECT_THAT(refusal(kScenes + kMethods + "[level]\nlow = 1\n"), HasSubstr("another task"));
+  EXPECT_THAT(refusal(levels("guessing", kSpeed)), HasSubstr("line 2: trials.task"));
+  EXPECT_THAT(refusal(levels("judgement", "low = 1\n")), HasSubstr("needs setting in [level]"));
+  EXPECT_THAT(refusal(levels("judgement", "setting = \"plan.speed\"\nlow = 1\n")),
+              HasSubstr("needs high"));
+  EXPECT_THAT(refusal(levels("judgement", kSpeed + "hihg = 3\n")), HasSubstr("line 8: level has"));
+  const auto refused = [](const std::string& setting, const std::string& low_high,
+                          const std::string& more = "", const std::string& methods = "") {
+    return refusal(levels("judgement", "setting = \"" + setting + "\"\n" + low_high + more,
+                          methods.empty() ? "[method.a]\n" : methods));
+  };
+  const std::string fine = "low = 2\nhigh = 8\n", step = "step = 0.5\n";
+  EXPECT_THAT(refused("plan.speed", "low = 8\nhigh = 2\n"), HasSubstr("must be below level.high"));
+  EXPECT_THAT(refused("plan.speed", fine), HasSubstr("needs step"));
+  EXPECT_THAT(refused("plan.speed", "low = 0\nhigh = 2\n", "scale = \"log\"\n" + step),
+              HasSubstr("above 0, since scale is log"));
+  EXPECT_THAT(refused("plan.speed", "low = 2\nhigh = 800\n", step),
+              HasSubstr("speed = 800 m/s must be between 0.1 and 100 m/s"));
+  EXPECT_THAT(refused("plan.speed", fine, step + "start = 9\n"), HasSubstr("level.start = 9"));
+  EXPECT_THAT(refused("plan.speed", fine, "step = 50\n"), HasSubstr("step = 50"));
+  EXPECT_THAT(refused("plan.speed", fine, step + "coarse = 20\n"), HasSubstr("reversals = 12"));
+  for (const char* not_one : {"plan.preset", "plan.fog", "speed", "fluid.jet_speed", "emit.foci"})
+    EXPECT_THAT(refused(not_one, fine, step), HasSubstr("that can change during a trial"));
+  EXPECT_THAT(refused("am.foci", "low = 1\nhigh = 3\n", step), HasSubstr("changes nothing"));
+  EXPECT_THAT(refused("plan.paths", fine, step), HasSubstr("[method.a.emit] foci = 4"));
+  EXPECT_THAT(refused("plan.gain", fine, step), HasSubstr("full_scale_pressure"));
+  EXPECT_THAT(refused("plan.speed", fine, step + reference), HasSubstr("compares with nothing"));
+  EXPECT_THAT(refusal(levels("forced-choice", kSpeed)), HasSubstr("compares with a standard"));
+  EXPECT_THAT(refusal(levels("forced-choice", kSpeed + "reference = 3\n")),
+              HasSubstr("must not be above low"));
+  EXPECT_THAT(refusal(levels("adjustment", kSpeed + reference + "against = \"a\"\n")),
+              HasSubstr("not both"));
+  EXPECT_THAT(refusal(levels("adjustment", kSpeed + "against = \"b\"\n")),
+              HasSubstr("no such [method.NAME]"));
+  EXPECT_THAT(refusal(levels("adjustment", kSpeed + "against = \"a\"\n")),
+              HasSubstr("the only method"));
+  std::string told = levels("judgement", kSpeed);
+  told.insert(told.find("[level]"), "feedback = true\n");
+  EXPECT_THAT(refusal(told), HasSubstr("has no right answers"));
+}
+
 TEST(Protocol, AsJsonHasEverySettingOfEveryMethod) {
   const auto json = protocol_json(test::study_protocol());
   EXPECT_EQ(json["study"]["title"], "Plumes");

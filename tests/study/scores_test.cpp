@@ -189,6 +189,52 @@ TEST(Scores, OfParticipantsFilesAreReadTogether) {
               HasSubstr("participant 1 is in"));
 }
 
+TEST(Scores, OfTrialsWithLevelsHaveTheKindOfTheirTask) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const auto read = [&](const std::string& name, const nlohmann::ordered_json& protocol) {
+    const std::string path = folder.file(name);
+    {
+      ResponseFile file(path);
+      file.append({{"kind", "begin"},
+                   {"format", kResponseFormat},
+                   {"participant", name},
+                   {"protocol", protocol},
+                   {"trials", 60},
+                   {"run", {{"rehearsal", false}}}});
+      file.append({{"kind", "trial"},
+                   {"trial", 1},
+                   {"method", "stm"},
+                   {"scene", "one-plume"},
+                   {"level", 1.5},
+                   {"answer", 2},
+                   {"felt", 1},
+                   {"correct", 0}});
+      file.append({{"kind", "end"}});
+    }
+    const std::vector<std::string> files = {path};
+    return read_answers(files, notes).front();
+  };
+  const Answer right =
+      read("a.jsonl", {{"trials", {{"task", "forced-choice"}}}, {"level", {{"against", ""}}}});
+  EXPECT_EQ(right.kind, AnswerKind::Right);
+  EXPECT_FALSE(right.correct);
+  EXPECT_EQ(right.level, 1.5);
+  EXPECT_EQ(right.question, "");
+  const Answer felt =
+      read("b.jsonl", {{"trials", {{"task", "forced-choice"}}}, {"level", {{"against", "am"}}}});
+  EXPECT_EQ(felt.kind, AnswerKind::Felt);
+  EXPECT_TRUE(felt.correct);
+  EXPECT_EQ(read("c.jsonl", {{"trials", {{"task", "judgement"}}}}).kind, AnswerKind::Felt);
+  EXPECT_EQ(read("d.jsonl", {{"trials", {{"task", "adjustment"}}}}).kind, AnswerKind::Adjusted);
+  EXPECT_TRUE(notes.empty()) << "60 trials were the most; a staircase may end before";
+  const std::vector<std::string> mixed = {folder.file("a.jsonl"), folder.file("c.jsonl")};
+  EXPECT_THAT(test::input_error([&] { read_answers(mixed, notes); }), HasSubstr("other tasks"));
+  // as a table too
+  for (const Answer& a : {right, felt})
+    EXPECT_EQ(answers_from_csv(tidy_csv(std::span(&a, 1)), "t.csv").front(), a);
+}
+
 TEST(Scores, OfAParticipantsFileNeedItsFirstLineAndWholeTrials) {
   const test::TemporaryFolder folder;
   std::vector<std::string> notes;

@@ -80,6 +80,12 @@ TEST(PageMessage, Study) {
   const auto answer = read<StudyAct>(R"({"type":"study","do":"answer","yes":true})");
   EXPECT_EQ(answer.what, Do::Answer);
   EXPECT_TRUE(answer.yes);
+  EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"answer","interval":2})").interval, 2);
+  const auto tune = read<StudyAct>(R"({"type":"study","do":"tune","to":"less","coarse":true})");
+  EXPECT_EQ(tune.what, Do::Tune);
+  EXPECT_EQ(tune.steps, -1);
+  EXPECT_TRUE(tune.coarse);
+  EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"accept"})").what, Do::Accept);
   EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"explore","scene":3})").scene, 3);
   const auto about = read<StudyAct>(R"({"type":"study","do":"about","about":{"hand":"left"}})");
   EXPECT_EQ(about.about, (nlohmann::ordered_json{{"hand", "left"}}));
@@ -124,6 +130,10 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {R"({"type":"rate","hz":"fast"})", "between 1 and 60"},
       {R"({"type":"study","do":"peek"})", "next, anyway, answer, correct, pause"},
       {R"({"type":"study","do":"answer"})", "lacks \"yes\""},
+      {R"({"type":"study","do":"answer","interval":3})", "between 1 and 2"},
+      {R"({"type":"study","do":"answer","interval":1.5})", "must be 1 or 2"},
+      {R"({"type":"study","do":"tune","to":"up","coarse":false})", "less or more"},
+      {R"({"type":"study","do":"tune","to":"more"})", "lacks \"coarse\""},
       {R"({"type":"study","do":"explore","scene":-1})", "between 0 and 1000"},
       {R"({"type":"study","do":"about","about":[]})", "an object of 20 texts"},
       {R"({"type":"study","do":"about","about":{"age":30}})", "texts of 200 bytes"}};

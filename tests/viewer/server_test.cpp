@@ -328,12 +328,12 @@ TEST(ServerLimits, APageThatStopsReadingHoldsUpNobody) {
 // ---- listening address ----
 
 TEST(ServerPort, OneThatIsInUseIsRefusedInASentence) {
-  StandIn source;
+  StandIn source, other;
   const ViewServer first(anywhere(), source, some_files());
   ViewSettings settings;
   settings.port = first.port();
   try {
-    const ViewServer second(settings, source, some_files());
+    const ViewServer second(settings, other, some_files());
     FAIL() << "two servers on one port";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("in use"));
@@ -342,9 +342,9 @@ TEST(ServerPort, OneThatIsInUseIsRefusedInASentence) {
 }
 
 TEST(ServerPort, ADefaultThatIsInUseGivesTheNextOne) {
-  StandIn source;
+  StandIn source, other;
   const ViewServer first(ViewSettings{}, source, some_files());
-  const ViewServer second(ViewSettings{}, source, some_files());
+  const ViewServer second(ViewSettings{}, other, some_files());
   EXPECT_NE(first.port(), second.port());
   EXPECT_GE(first.port(), kViewPort);
   EXPECT_LT(second.port(), kViewPort + kViewPortTries);

@@ -10,6 +10,7 @@
 #include "prostm/device/device.hpp"
 #include "prostm/device/safety_limiter.hpp"
 #include "prostm/device/sample_stage.hpp"
+#include "prostm/device/sound_watch.hpp"
 
 namespace prostm {
 
@@ -68,9 +69,12 @@ class SampleChain final : public SampleSource {
   int foci() const override { return source_.foci(); }
   void fill(std::int64_t first, std::span<FocusSample> out) noexcept override {
     limiter_.fill(first, out);
+    if (watch_ != nullptr) watch_->look(first, out, foci());
   }
   /// Falls silent while this is on, whatever the source does. @pre nothing pulls.
   void obey(std::shared_ptr<const Mute> mute) noexcept { limiter_.obey(std::move(mute)); }
+  /// Lets somebody look at what leaves; it outlives this. @pre nothing pulls.
+  void show(SoundWatch& watch) noexcept { watch_ = &watch; }
   /// Work of the limiter. Any thread.
   SafetyStats safety() const { return limiter_.stats(); }
   /// Samples of a focal point that it changed because a stage erred. Any thread.
@@ -81,6 +85,7 @@ class SampleChain final : public SampleSource {
   SampleSource& source_;
   std::vector<std::unique_ptr<SampleStage>> stages_;
   SafetyLimiter limiter_;
+  SoundWatch* watch_ = nullptr;
 };
 
 /// Makes the chain that a device needs: decimated, and with one intensity if it has only one.

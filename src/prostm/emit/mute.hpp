@@ -16,21 +16,22 @@ enum class MuteReason : std::uint32_t {
   Study = 32U        ///< a study presents nothing now
 };
 
-/// Set by any thread, obeyed by an emitter at its next block. Nobody waits.
+/// Set by any thread, obeyed by an emitter at its next block. Nobody waits. Whoever finds it as
+/// set() left it also finds what was written before.
 class Mute {
  public:
   void set(MuteReason reason, bool on) noexcept {
     const auto bit = static_cast<std::uint32_t>(reason);
     if (on) {
-      reasons_.fetch_or(bit, std::memory_order_relaxed);
+      reasons_.fetch_or(bit, std::memory_order_release);
     } else {
-      reasons_.fetch_and(~bit, std::memory_order_relaxed);
+      reasons_.fetch_and(~bit, std::memory_order_release);
     }
   }
   /// Whether it is on for any reason.
-  bool on() const noexcept { return reasons_.load(std::memory_order_relaxed) != 0; }
+  bool on() const noexcept { return reasons_.load(std::memory_order_acquire) != 0; }
   bool on(MuteReason reason) const noexcept {
-    return (reasons_.load(std::memory_order_relaxed) & static_cast<std::uint32_t>(reason)) != 0;
+    return (reasons_.load(std::memory_order_acquire) & static_cast<std::uint32_t>(reason)) != 0;
   }
 
  private:

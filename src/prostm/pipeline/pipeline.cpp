@@ -233,11 +233,13 @@ Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource>
       levels_(levels_of(settings)),
       world_stage_(std::make_unique<WorldStage>(settings, std::move(hands), std::move(world))),
       device_(device_of(settings, std::move(device))),
+      sound_(mute_, device_->info().sample_rate),
       plans_(std::make_unique<PlanStage>(settings, world_stage_->max_cells(),
                                          world_stage_->world().full_scale_pressure(),
                                          device_->info(), levels_)) {
   if (device_->info().keeps_time) world_stage_->tell(mute_);
   plans_->obey(mute_);
+  plans_->show(sound_);
   if (device_->start(plans_->samples()) != DeviceStatus::Running)
     throw std::invalid_argument(device_->problem());
 }
@@ -260,6 +262,7 @@ void Pipeline::reconfigure(const PipelineSettings& settings) {
         settings, next.max_cells(), next.world().full_scale_pressure(), device_->info(), levels);
     plans->continue_from(*plans_);
     plans->obey(mute_);
+    plans->show(sound_);
     const std::string problem = restart(*plans);
     if (!problem.empty()) throw std::invalid_argument(problem);
   }
@@ -289,7 +292,13 @@ std::string Pipeline::restart(PlanStage& plans) {
 
 void Pipeline::silence() {
   fade_out();
+  // when the device has stopped, nobody can tell any more when a sample was played
+  constexpr double kLongest = 0.1;  // [s]
+  const double end = steady_now() + kLongest;
+  while (!sound_.is_read() && steady_now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   device_->stop();
+  sound_.end();
 }
 
 /// Until a block that follows the fade is played, however late the device's thread is.
@@ -298,8 +307,9 @@ void Pipeline::fade_out() {
   const DeviceInfo& device = device_->info();
   if (!device.keeps_time) return;
   plans_->emitter().lose();
-  const double fade = settings_.method == Method::Am ? 1.0 / settings_.emit.am_frequency
-                                                     : settings_.emit.stall_fade_time;
+  const double fade = std::max(settings_.method == Method::Am ? 1.0 / settings_.emit.am_frequency
+                                                              : settings_.emit.stall_fade_time,
+                               SoundWatch::kMuteTime);
   // the block that is being filled has not heard of it
   const std::int64_t silent =
       device_->stats().blocks + 2 +

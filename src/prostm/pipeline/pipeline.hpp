@@ -140,6 +140,8 @@ class PlanStage {
 
   /// Emitter and limiter fall silent while this is on. @pre nothing plays.
   void obey(const std::shared_ptr<Mute>& mute);
+  /// Lets somebody look at what leaves for the device. @pre nothing plays.
+  void show(SoundWatch& watch) { samples_->show(watch); }
 
   Emitter& emitter() { return *emitter_; }
   /// The emission as the device takes it.
@@ -196,12 +198,15 @@ class Pipeline {
 
   /// Begins to fade the output out, and lets no plan sound after it. Any thread.
   void mute_for_good() noexcept { mute_->set(MuteReason::Ended, true); }
-  /// Fades the output out and stops the device. @pre no other thread uses the pipeline.
+  /// Fades the output out and stops the device, once its end is read by who reads sound(). @pre no
+  /// other thread uses the pipeline.
   void silence();
 
   WorldStage& world_stage() { return *world_stage_; }
   PlanStage& plans() { return *plans_; }
   Device& device() { return *device_; }
+  /// When the device's output begins and ends.
+  SoundWatch& sound() { return sound_; }
   DeviceStats device_stats() const;  ///< over all starts of the device
   EmitStats emit_stats() const;      ///< of all emitters that there were
   SafetyStats safety_stats() const;  ///< of all limiters that there were
@@ -223,6 +228,7 @@ class Pipeline {
   std::shared_ptr<const SafetyLevels> levels_;
   std::unique_ptr<WorldStage> world_stage_;
   std::unique_ptr<Device> device_;
+  SoundWatch sound_;
   std::unique_ptr<PlanStage> plans_;
   DeviceStats device_before_;
   EmitStats emit_before_;

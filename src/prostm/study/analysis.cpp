@@ -141,7 +141,8 @@ std::vector<ThresholdResult> thresholds_of(std::span<const Answer> answers,
   }
   if (with_level != std::ssize(answers))
     throw InputError("some answers have a level and others not: all must have one, or none");
-  settings.guess = settings.guess.value_or(settings.chance);
+  const bool is_felt = answers.front().kind == AnswerKind::Felt;
+  settings.guess = settings.guess.value_or(is_felt ? 0.0 : settings.chance);
   settings.lapse = settings.lapse.value_or(kLapse);
   require_between("guess", *settings.guess, 0.0, 0.9);
   require_between("lapse", *settings.lapse, 0.0, 0.5);
@@ -160,6 +161,13 @@ Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settin
   if (answers.empty()) throw InputError("there is no answer");
   Analysis out;
   out.settings = settings;
+  out.kind = answers.front().kind;
+  if (std::any_of(answers.begin(), answers.end(),
+                  [&](const Answer& a) { return a.kind != out.kind; })) {
+    throw InputError(
+        "answers are of several kinds, from studies with other tasks; analyse those "
+        "of each study alone");
+  }
   out.groups = groups_of(answers, methods);
   out.participants = names_of(answers, [](const Answer& a) { return a.participant; });
   require_scenes(answers, methods, scenes);

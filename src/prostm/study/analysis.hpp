@@ -18,7 +18,8 @@ struct AnalysisSettings {
   double level = 0.95;     ///< of intervals, 0..1; a test is significant below 1 − level
   double power = 0.8;      ///< for which participants are planned, 0..1
   std::uint64_t seed = 1;  ///< of random splits, where there are too many to take all
-  /// γ and λ of psychometric functions, 0..0.9 and 0..0.5; default: chance and kLapse
+  /// γ and λ of psychometric functions, 0..0.9 and 0..0.5; default: chance, or 0 of answers of kind
+  /// Felt, and kLapse
   std::optional<double> guess = {}, lapse = {};
 };
 inline constexpr double kLapse = 0.02;
@@ -54,6 +55,7 @@ struct SceneResult {
 
 struct Analysis {
   AnalysisSettings settings;
+  AnswerKind kind = AnswerKind::Right;  ///< of kind Felt, "correct" is for the level
   Groups groups = Groups::Between;
   std::vector<std::string> participants;
   std::vector<SceneResult> scenes;          ///< all scenes together first
@@ -63,7 +65,9 @@ struct Analysis {
 /// Methods and scenes stand in the order in which the answers have them first. @throws InputError:
 /// fewer than two participants with a method, some participants with one method and others with
 /// several, a scene that a participant lacks, a level that some answers lack, guess or lapse
-/// without levels. @throws std::invalid_argument: a setting out of its bounds.
+/// without levels, answers of several kinds. @throws std::invalid_argument: a setting out of its
+/// bounds.
+/// @pre answers are not of kind Adjusted.
 Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings = {});
 
 /// A paragraph in plain words: what the data support, what they do not, and why.

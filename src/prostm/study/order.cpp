@@ -2,26 +2,24 @@
 
 #include <numeric>
 
-#include "prostm/core/random.hpp"
-
 namespace prostm {
-namespace {
 
-/// Numbers for one purpose: independent of those for others, whatever these draw.
-Random random_for(const Protocol& protocol, std::uint32_t purpose, std::uint32_t number) {
-  std::seed_seq mixed{static_cast<std::uint32_t>(protocol.study.seed), purpose, number};
+Random random_for(const Protocol& protocol, Purpose purpose, std::uint32_t number) {
+  std::seed_seq mixed{static_cast<std::uint32_t>(protocol.study.seed),
+                      static_cast<std::uint32_t>(purpose), number};
   std::uint32_t words[2];
   mixed.generate(words, words + 2);
   return Random(std::uint64_t{words[0]} << 32 | words[1]);
 }
-constexpr std::uint32_t kMethods = 1, kTrials = 2;
+
+namespace {
 
 /// The place of this participant among the rows of their block, drawn at random.
 std::size_t row_of(const Protocol& protocol, int participant, std::size_t rows) {
   const auto n = static_cast<std::size_t>(participant - 1);
   std::vector<std::size_t> order(rows);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  Random random = random_for(protocol, kMethods, static_cast<std::uint32_t>(n / rows));
+  Random random = random_for(protocol, Purpose::Methods, static_cast<std::uint32_t>(n / rows));
   random.shuffle(order);
   return order[n % rows];
 }
@@ -67,7 +65,7 @@ std::vector<int> method_order(const Protocol& protocol, int participant) {
 }
 
 std::vector<Trial> trial_order(const Protocol& protocol, int participant) {
-  Random random = random_for(protocol, kTrials, static_cast<std::uint32_t>(participant));
+  Random random = random_for(protocol, Purpose::Trials, static_cast<std::uint32_t>(participant));
   std::vector<Trial> trials;
   for (const int method : method_order(protocol, participant)) {
     std::vector<Trial> block;

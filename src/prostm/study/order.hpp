@@ -2,8 +2,10 @@
 /// The order of methods and trials: balanced over participants, and the same for the same seed.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "prostm/core/random.hpp"
 #include "prostm/study/protocol.hpp"
 
 namespace prostm {
@@ -12,6 +14,9 @@ namespace prostm {
 struct Trial {
   int method = 0, scene = 0;
   int question = 0;  ///< the scene that is asked for
+  int track = 0;     ///< from 1; 0: the trial has no level
+  std::optional<double> level = {};
+  bool level_first = false;  ///< of two intervals, the level's is the first
   bool operator==(const Trial&) const = default;
 };
 
@@ -24,8 +29,12 @@ struct Trial {
 /// @param participant from 1.
 std::vector<int> method_order(const Protocol& protocol, int participant);
 
-/// All trials of one participant, in order: for each of their methods the scenes, `repeats` times
-/// each, shuffled.
+/// Numbers for one purpose: independent of those for others, whatever these draw.
+enum class Purpose : std::uint32_t { Methods = 1, Trials, Tracks, Intervals };
+Random random_for(const Protocol& protocol, Purpose purpose, std::uint32_t number);
+
+/// All trials of one participant in an identification, in order: for each of their methods the
+/// scenes, `repeats` times each, shuffled.
 std::vector<Trial> trial_order(const Protocol& protocol, int participant);
 
 /// Rows of the square, or of both squares: n, or 2n for odd n > 1.

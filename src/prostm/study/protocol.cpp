@@ -9,6 +9,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
 #include "prostm/pipeline/scene.hpp"
+#include "prostm/study/detail/settle_level.hpp"
 
 namespace prostm {
 namespace {
@@ -45,10 +46,11 @@ void list_training(Settings& s, V& v) {
 
 template <class Settings, class V>
 void list_trials(Settings& s, V& v) {
+  v.field({.name = "task", .help = "of the participant in a trial"}, s.task);
   v.field({.name = "repeats",
            .least = 1,
            .most = 1000,
-           .help = "trials of each scene with each method"},
+           .help = "trials of each scene with each method; staircases end by themselves"},
           s.repeats);
   v.field({.name = "questions", .help = "drawn for each trial, or balanced over a scene's trials"},
           s.questions);
@@ -83,6 +85,12 @@ void list_trials(Settings& s, V& v) {
            .help = "relative difference in strength of conditions that is let pass"},
           s.strength);
   v.field({.name = "gate", .help = "whether a trial waits for the stimulus gate"}, s.gate);
+}
+
+template <class Settings, class V>
+void list_markers(Settings& s, V& v) {
+  v.field({.name = "conditions", .help = "markers tell what is presented, also in a blind study"},
+          s.conditions);
 }
 
 /// The names in a table of the protocol. @throws InputError: fewer than `least`.
@@ -148,6 +156,12 @@ void TrialSettings::visit(SettingsReader& v) const {
 void TrialSettings::visit(SettingsWriter& v) {
   list_trials(*this, v);
 }
+void MarkerSettings::visit(SettingsReader& v) const {
+  list_markers(*this, v);
+}
+void MarkerSettings::visit(SettingsWriter& v) {
+  list_markers(*this, v);
+}
 
 void StudyScene::visit(SettingsReader& v) const {
   v.field({.name = "question", .help = "yes or no, as it is read and shown"}, question);
@@ -159,17 +173,28 @@ void StudyScene::visit(SettingsWriter& v) {
 Protocol protocol_from_toml(std::string_view text, const std::string& file,
                             const PipelineSettings& base) {
   Protocol protocol;
-  settings_from_toml(text, file,
-                     {group_of("study", protocol.study), group_of("training", protocol.training),
-                      group_of("trials", protocol.trials)},
-                     {}, {"method", "scene"});
-  for (const std::string& name : names_in(text, file, "scene", 2))
+  const auto given_above = settings_from_toml(
+      text, file,
+      {group_of("study", protocol.study), group_of("training", protocol.training),
+       group_of("trials", protocol.trials), group_of("markers", protocol.markers),
+       group_of("level", protocol.level)},
+      {}, {"method", "scene"});
+  const bool identifies = protocol.trials.task == StudyTask::Identification;
+  for (const std::string& name : names_in(text, file, "scene", identifies ? 2 : 1))
     protocol.scenes.push_back(read_scene(text, file, name));
   for (const std::string& name : names_in(text, file, "method", 1)) {
     StudyMethod& method = protocol.methods.emplace_back(StudyMethod{name, base});
     const auto given =
         settings_from_toml(text, file, settings_groups(method.settings), {"method", name});
     refuse_settings_of_the_run(given, file, name);
+  }
+  study::settle_level(given_above, file, protocol);
+  const std::size_t conditions = protocol.methods.size() * protocol.scenes.size();
+  if (protocol.markers.conditions && conditions > kMostMarkedConditions) {
+    throw InputError(fmt::format(
+        "{}: markers.conditions is true for {} conditions, methods times scenes, and there are "
+        "codes for {}; leave it out, or take fewer",
+        file, conditions, kMostMarkedConditions));
   }
   return protocol;
 }
@@ -179,13 +204,17 @@ Protocol read_protocol(const std::string& path, const PipelineSettings& base) {
 }
 
 nlohmann::ordered_json protocol_json(const Protocol& protocol) {
-  nlohmann::ordered_json json =
-      settings_to_json({group_of("study", protocol.study), group_of("training", protocol.training),
-                        group_of("trials", protocol.trials)});
+  nlohmann::ordered_json json = settings_to_json(
+      {group_of("study", protocol.study), group_of("training", protocol.training),
+       group_of("trials", protocol.trials), group_of("markers", protocol.markers)});
   for (const StudyScene& scene : protocol.scenes)
     json["scene"][scene.name] = {{"question", scene.question}};
   for (const StudyMethod& method : protocol.methods)
     json["method"][method.name] = settings_to_json(settings_groups(method.settings));
+  if (protocol.trials.task == StudyTask::Identification) return json;
+  json["level"] = settings_to_json({group_of("level", protocol.level)})["level"];
+  if (const auto& standard = protocol.standard)
+    json["method"][standard->name] = settings_to_json(settings_groups(standard->settings));
   return json;
 }
 

@@ -4,12 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "prostm/core/settings.hpp"
 #include "prostm/pipeline/settings.hpp"
+#include "prostm/study/level.hpp"
 
 namespace prostm {
 
@@ -68,7 +70,8 @@ struct TrainingSettings {
 
 /// [trials]
 struct TrialSettings {
-  int repeats = 8;  ///< of each scene, with each method
+  StudyTask task = StudyTask::Identification;
+  int repeats = 8;  ///< of each scene, with each method; staircases end by themselves
   Questions questions = Questions::Random;
   AnswersFrom answers = AnswersFrom::Experimenter;
   bool noise = false;       ///< the participant's page plays noise, which masks the array's sound
@@ -83,6 +86,16 @@ struct TrialSettings {
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
 };
+
+/// [markers], docs/study-files.md
+struct MarkerSettings {
+  bool conditions = false;  ///< markers tell method and scene, also in a blind study
+
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
+};
+/// Conditions that have codes of their own.
+inline constexpr std::size_t kMostMarkedConditions = 239;
 
 /// A stimulus that is presented, and asked for: a [scene.NAME] of the protocol.
 struct StudyScene {
@@ -103,13 +116,17 @@ struct Protocol {
   StudySettings study;
   TrainingSettings training;
   TrialSettings trials;
-  std::vector<StudyMethod> methods;  ///< as they stand in the file, as do scenes
+  MarkerSettings markers;
+  LevelSettings level;               ///< of tasks but identification
+  std::vector<StudyMethod> methods;  ///< as they stand in the file, as do scenes; `standard` aside
   std::vector<StudyScene> scenes;
+  std::optional<StudyMethod> standard;  ///< that a level is compared with, where level.against is
 };
 
 /// Reads a protocol (docs/study.md). @param base the settings that methods begin with.
 /// @throws InputError with file and line: no TOML, a table or key that is unknown, a value that is
-/// out of bounds; no method, fewer than two scenes, a scene that does not exist, no question.
+/// out of bounds; no method, too few scenes, a scene that does not exist, no question; levels that
+/// are missing, are not for this task, or do not suit their setting.
 Protocol protocol_from_toml(std::string_view text, const std::string& file,
                             const PipelineSettings& base);
 Protocol read_protocol(const std::string& path, const PipelineSettings& base);

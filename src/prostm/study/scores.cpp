@@ -43,6 +43,7 @@ class AnswerTable {
     yes_ = find("answer");
     trial_ = find("trial");
     level_ = find("level");
+    kind_ = find("kind");
     if (question_.has_value() != yes_.has_value()) {
       csv_.fail(std::string("the column \"") + (question_ ? "answer" : "question") +
                 "\" is missing: question and answer belong together");
@@ -77,6 +78,7 @@ class AnswerTable {
       }
     }
     if (level_) out.level = number(row, *level_);
+    if (kind_) out.kind = kind(row, *kind_);
     return out;
   }
 
@@ -125,10 +127,22 @@ class AnswerTable {
     return value + 0.0;  // −0 becomes 0
   }
 
+  AnswerKind kind(const std::vector<std::string>& row, std::size_t column) {
+    const auto value = value_named<AnswerKind>(row[column]);
+    if (!value) csv_.fail("kind " + must_be(row[column], kNames<AnswerKind>));
+    if (*value != AnswerKind::Right && !level_)
+      csv_.fail("kind is \"" + row[column] + "\", and the header has no column \"level\"");
+    if (all_of_.value_or(*value) != *value)
+      csv_.fail("kind is \"" + row[column] + "\", and another one in the rows before");
+    all_of_ = value;
+    return *value;
+  }
+
   study::CsvReader& csv_;
   std::vector<std::string> header_;
+  std::optional<AnswerKind> all_of_;
   std::size_t participant_, method_, scene_, correct_;
-  std::optional<std::size_t> question_, yes_, trial_, level_;
+  std::optional<std::size_t> question_, yes_, trial_, level_, kind_;
   std::set<std::pair<std::string, std::string>> trials_;
 };
 
@@ -225,6 +239,8 @@ std::string tidy_csv(std::span<const Answer> answers) {
   columns.emplace_back("correct", [&](const Answer& a) { return bit(a.correct); });
   if (first.level)
     columns.emplace_back("level", [](const Answer& a) { return fmt::format("{}", *a.level); });
+  if (first.kind != AnswerKind::Right)
+    columns.emplace_back("kind", [](const Answer& a) { return std::string(name_of(a.kind)); });
 
   std::string out;
   const auto add_row = [&](const auto& value_of) {
@@ -239,6 +255,35 @@ std::string tidy_csv(std::span<const Answer> answers) {
   return out;
 }
 
+namespace {
+
+/// The kind of the answers to a protocol, as the first line of a participant's file has it.
+AnswerKind kind_of(const ResponseLine& protocol) {
+  const auto trials = protocol.value("trials", ResponseLine::object());
+  const auto level = protocol.value("level", ResponseLine::object());
+  const std::string task = trials.value("task", "identification");
+  if (task == "adjustment") return AnswerKind::Adjusted;
+  const bool is_felt = task == "judgement" || !level.value("against", "").empty();
+  return is_felt ? AnswerKind::Felt : AnswerKind::Right;
+}
+
+Answer answer_of(const ResponseLine& line, const std::string& participant, AnswerKind kind) {
+  Answer answer;
+  answer.participant = participant;
+  answer.method = line.at("method");
+  answer.scene = line.at("scene");
+  answer.trial = std::to_string(line.at("trial").get<int>());
+  if (line.contains("level")) {
+    answer.level = line.at("level").get<double>();
+  } else {
+    answer.question = line.at("question");
+  }
+  answer.kind = kind;
+  return answer;
+}
+
+}  // namespace
+
 std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
                                            std::vector<std::string>& notes) {
   std::vector<Answer> answers;
@@ -249,24 +294,29 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
       throw InputError(where + " does not begin a participant's file of prostm study run");
     const std::string participant = lines.front().at("participant");
     const int trials = lines.front().at("trials");
+    const auto protocol = lines.front().value("protocol", ResponseLine::object());
+    const AnswerKind of = kind_of(protocol);
+    bool ended = false;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const ResponseLine& line = lines[i];
       const std::string kind = line.value("kind", "");
+      ended = ended || kind == "end";
       if (kind != "trial" && kind != "correction") continue;
       where = fmt::format("{}, line {}", file, i + 1);
-      const std::string trial = std::to_string(line.at("trial").get<int>());
       if (kind == "trial") {
-        answers.push_back({participant, line.at("method"), line.at("scene"), false,
-                           line.at("question"), false, trial});
-      } else if (answers.empty() || answers.back().trial != trial) {
+        answers.push_back(answer_of(line, participant, of));
+      } else if (answers.empty() ||
+                 answers.back().trial != std::to_string(line.at("trial").get<int>())) {
         throw InputError(where + " corrects another trial than the last");
       }
-      answers.back().correct = line.at("correct").get<int>() == 1;
-      answers.back().yes = line.at("answer").get<int>() == 1;
+      if (of == AnswerKind::Adjusted) continue;
+      const char* counts = of == AnswerKind::Felt ? "felt" : "correct";
+      answers.back().correct = line.at(counts).get<int>() == 1;
+      if (!answers.back().question.empty()) answers.back().yes = line.at("answer").get<int>() == 1;
     }
     if (lines.front().at("run").at("rehearsal"))
-      notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are random.");
-    if (static_cast<int>(answers.size()) < trials) {
+      notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are made up.");
+    if (!ended && static_cast<int>(answers.size()) < trials) {
       notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", participant,
                                   answers.size(), trials, file));
     }
@@ -306,6 +356,12 @@ std::vector<Answer> read_answers(std::span<const std::string> paths,
     all.insert(all.end(), answers.begin(), answers.end());
   }
   if (all.empty()) throw InputError(paths.front() + ": has no answer");
+  for (const Answer& a : all) {
+    if (a.kind == all.front().kind) continue;
+    throw InputError(
+        fmt::format("participants {} and {} had other tasks; analyse those of each study alone",
+                    all.front().participant, a.participant));
+  }
   return all;
 }
 

@@ -1,6 +1,5 @@
 #include "prostm/study/session.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,80 +7,37 @@
 #include <limits>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/settings_file.hpp"
+#include "prostm/study/detail/session_lines.hpp"
 
 namespace prostm {
+
+using study::rounded;
+using study::stamped;
+
 namespace {
 
 constexpr double kTryAgain = 1.0;     // between tries to write what could not be written [s]
 constexpr double kClockJump = 1.0;    // of the day's clock that is written down [s]
 constexpr double kHandPeriod = 0.05;  // between poses in a trial's line [s]
 
-/// A number with so many decimals, so that files stay small.
-double rounded(double value, int decimals) {
-  const double scale = std::pow(10.0, decimals);
-  return std::round(scale * value) / scale;
-}
-
-/// [s, x, y, z in mm, quaternion x, y, z, w]
-nlohmann::ordered_json pose_json(double time, const Pose& X_DP) {
-  nlohmann::ordered_json json = {rounded(time, 3)};
-  for (int axis = 0; axis < 3; ++axis) json.push_back(rounded(1e3 * X_DP.translation()[axis], 1));
-  const Quat q(X_DP.rotation());
-  for (const double part : {q.x(), q.y(), q.z(), q.w()}) json.push_back(rounded(part, 4));
-  return json;
-}
-
-nlohmann::ordered_json gate_json(const std::optional<GateResult>& gate) {
-  if (!gate) return nullptr;
-  return {{"pass", gate->pass},
-          {"share", rounded(gate->share, 3)},
-          {"problem", name_of(gate->finding.problem)},
-          {"maxima", gate->shape.count()},
-          {"balance", rounded(gate->shape.balance, 3)},
-          {"saddle", rounded(gate->shape.saddle, 3)},
-          {"area_cm2", rounded(1e4 * gate->shape.area, 1)},
-          {"force_mn", rounded(1e3 * gate->shape.force, 3)}};
-}
-
-/// CRC-32 of all that makes a stimulus: version, settings and scene.
-std::string stimulus_hash(const nlohmann::ordered_json& settings, const std::string& scene) {
-  boost::crc_32_type sum;
-  const std::string text = settings.dump() + scene;
-  sum.process_bytes(text.data(), text.size());
-  return fmt::format("{:08x}", sum.checksum());
-}
-
-ResponseLine stamped(ResponseLine line, const StudySight& sight) {
-  line["utc"] = utc_text(sight.utc);
-  line["time_s"] = rounded(sight.time, 4);
-  return line;
-}
-
 }  // namespace
-
-std::string utc_text(double seconds) {
-  const auto whole = static_cast<std::time_t>(std::floor(seconds));
-  const int milliseconds = static_cast<int>(1e3 * (seconds - std::floor(seconds)));
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(whole), milliseconds);
-}
 
 StudySession::StudySession(const Protocol& protocol, int participant, ResponseFile& file,
                            const nlohmann::ordered_json& facts, const StudySight& now)
     : protocol_(protocol),
       participant_(participant),
       file_(file),
-      trials_(trial_order(protocol, participant)),
+      course_(protocol, participant),
       strengths_(protocol.methods.size() * protocol.scenes.size()) {
   utc_offset_ = now.utc - now.time;
   looked_ = now.time;
   training_left_ = protocol.training.seconds;
-  wanted_.method = trials_.front().method;
+  wanted_.method = trial().method;
   const ResponseLine first = {{"kind", "begin"},
                               {"format", kResponseFormat},
                               {"participant", std::to_string(participant)},
                               {"protocol", protocol_json(protocol)},
-                              {"trials", trials_.size()}};
+                              {"trials", course_.most()}};
   if (file.lines().empty()) {
     ResponseLine line = first;
     line["run"] = facts;
@@ -122,25 +78,46 @@ StudyPhase StudySession::replay() {
     told = told || kind == "about";
     withdrawn = withdrawn || kind == "withdrawn";
     if (kind == "training") trained = true;
-    if (kind == "trial" || kind == "correction") last_ = line.value("answer", 0) == 1;
+    if (kind == "correction") repeat_correction(line);
     if (kind != "trial") continue;
-    if (done_ == trials_.size()) throw InputError(file_.path() + " has more trials than there are");
-    add_strength(trial(), 1e-3 * line.value("target_mn", 0.0),
-                 1e-3 * line.value("rendered_mn", 0.0));
-    ++done_;
+    if (course_.is_done()) throw InputError(file_.path() + " has more trials than there are");
+    repeat_trial(line);
     if (starts_method()) trained = false;
   }
   if (withdrawn) return StudyPhase::Withdrawn;
-  if (done_ == trials_.size()) return StudyPhase::Done;
+  if (course_.is_done()) return StudyPhase::Done;
   if (!consented) return StudyPhase::Consent;
   if (!told) return StudyPhase::About;
   const bool trains = protocol_.training.seconds > 0.0 && starts_method() && !trained;
   return trains ? StudyPhase::Training : StudyPhase::Ready;
 }
 
+/// Does again what a trial's line did.
+void StudySession::repeat_trial(const ResponseLine& line) {
+  const Trial t = trial();
+  const double level = line.value("level", 0.0);
+  if (t.level && protocol_.trials.task != StudyTask::Adjustment &&
+      std::abs(level - *t.level) > 1e-5 * std::abs(*t.level)) {
+    throw InputError(fmt::format(
+        "{}: trial {} has level {:g}, and its staircase asks for {:g}; go on with the version of "
+        "prostm that it was begun with",
+        file_.path(), trials_done() + 1, level, *t.level));
+  }
+  add_strength(t, 1e-3 * line.value("target_mn", 0.0), 1e-3 * line.value("rendered_mn", 0.0));
+  last_trial_ = t;
+  if (protocol_.trials.task == StudyTask::Adjustment) return course_.accept(level);
+  last_ = study::chose(protocol_, line);
+  course_.answer(study::felt(protocol_, t, *last_));
+}
+
+void StudySession::repeat_correction(const ResponseLine& line) {
+  last_ = study::chose(protocol_, line);
+  if (!course_.correct()) throw InputError(file_.path() + " corrects what cannot be corrected");
+}
+
 /// Whether the next trial is the first with its method.
 bool StudySession::starts_method() const {
-  return done_ < trials_.size() && (done_ == 0 || trials_[done_ - 1].method != trial().method);
+  return !course_.is_done() && course_.starts_method();
 }
 
 void StudySession::enter(StudyPhase phase, double time) {
@@ -148,9 +125,11 @@ void StudySession::enter(StudyPhase phase, double time) {
   since_ = time;
   in_force_at_ = -1.0;
   waits_for_.clear();
-  anyway_ = ended_ = false;
+  anyway_ = false;
   wanted_.sound = wanted_.picture = false;
   wanted_.scene = -1;
+  wanted_.level.reset();
+  wanted_.standard = false;
   if (phase == StudyPhase::Training) {
     explored_ = 0;
     wanted_.scene = 0;
@@ -201,6 +180,7 @@ void StudySession::settle(const StudySight& sight) {
   }
   if (wanted_.scene < 0) {
     wanted_.scene = trial().scene;
+    want(Intervals::begins_with_level(protocol_, trial()));
     return;
   }
   if (!sight.in_force) return;
@@ -210,7 +190,10 @@ void StudySession::settle(const StudySight& sight) {
   if (sight.time - in_force_at_ < protocol_.trials.settle || !open || !unwritten_.empty()) return;
   phase_ = StudyPhase::Presenting;
   since_ = sight.time;
+  intervals_.begin(protocol_, trial(), sight.time);
   wanted_.sound = true;
+  begun_with_ = trial().level;
+  changes_ = nlohmann::ordered_json::array();
   gate_at_onset_ = gate_;
   strength_ = {};
   hand_ = nlohmann::ordered_json::array();
@@ -220,18 +203,26 @@ void StudySession::settle(const StudySight& sight) {
 
 void StudySession::present(const StudySight& sight) {
   const double time = sight.time - since_;
-  const double limit = protocol_.trials.time_limit;
-  if (limit > 0.0 && time >= limit && !ended_) {
-    ended_ = true;
-    wanted_.sound = false;
+  intervals_.look(sight.time, sight.in_force);
+  wanted_.sound = intervals_.sounds();
+  want(intervals_.shows_level());
+  if (intervals_.is_over()) return;
+  if (intervals_.sounds() && intervals_.shows_level()) {
+    strength_.target += sight.target_force;
+    strength_.rendered += sight.rendered_force;
+    ++strength_.looks;
   }
-  if (ended_) return;
-  strength_.target += sight.target_force;
-  strength_.rendered += sight.rendered_force;
-  ++strength_.looks;
   if (!sight.palm || sight.time < hand_at_) return;
-  hand_.push_back(pose_json(time, *sight.palm));
+  hand_.push_back(study::pose_json(time, *sight.palm));
   hand_at_ = std::max(hand_at_ + kHandPeriod, sight.time);
+}
+
+/// Wants the trial's level, or the standard.
+void StudySession::want(bool level) {
+  const Trial& t = trial();
+  wanted_.standard = !level && protocol_.standard;
+  wanted_.level.reset();
+  if (t.level && !wanted_.standard) wanted_.level = level ? *t.level : protocol_.level.reference;
 }
 
 void StudySession::watch_clock(const StudySight& sight) {
@@ -261,28 +252,23 @@ std::string StudySession::write_rest(double time) {
   return problem_;
 }
 
-ResponseLine StudySession::trial_line(bool yes, const StudySight& sight) const {
+ResponseLine StudySession::trial_line(std::optional<bool> chosen, const StudySight& sight) const {
   const Trial& t = trial();
-  const StudyMethod& method = protocol_.methods[static_cast<std::size_t>(t.method)];
-  const std::string& scene = protocol_.scenes[static_cast<std::size_t>(t.scene)].name;
-  const std::string& question = protocol_.scenes[static_cast<std::size_t>(t.question)].name;
   const double looks = std::max(1, strength_.looks);
-  const auto settings = settings_to_json(settings_groups(method.settings));
-  return {{"kind", "trial"},
-          {"trial", done_ + 1},
-          {"method", method.name},
-          {"scene", scene},
-          {"question", question},
-          {"answer", yes ? 1 : 0},
-          {"correct", yes == (t.scene == t.question) ? 1 : 0},
-          {"response_s", rounded(sight.time - since_, 3)},
-          {"stimulus", stimulus_hash(settings, scene)},
-          {"gate", gate_json(gate_at_onset_)},
-          {"anyway", anyway_},
-          {"target_mn", rounded(1e3 * strength_.target / looks, 4)},
-          {"rendered_mn", rounded(1e3 * strength_.rendered / looks, 4)},
-          {"hand_gone_s", rounded(hand_gone_, 3)},
-          {"hand", hand_}};
+  ResponseLine line = {{"kind", "trial"}, {"trial", trials_done() + 1}};
+  study::add_stimulus(line, protocol_, t);
+  if (chosen) study::add_answer(line, protocol_, t, *chosen);
+  if (!chosen) line["start"] = begun_with_ ? *begun_with_ : *t.level;
+  if (!chosen) line["changes"] = changes_;
+  line["response_s"] = rounded(sight.time - intervals_.asked_at(), 3);
+  line["stimulus"] = study::stimulus_hash(protocol_, t);
+  line["gate"] = study::gate_json(gate_at_onset_);
+  line["anyway"] = anyway_;
+  line["target_mn"] = rounded(1e3 * strength_.target / looks, 4);
+  line["rendered_mn"] = rounded(1e3 * strength_.rendered / looks, 4);
+  line["hand_gone_s"] = rounded(hand_gone_, 3);
+  line["hand"] = hand_;
+  return line;
 }
 
 void StudySession::add_strength(const Trial& trial, double target, double rendered) {
@@ -293,37 +279,64 @@ void StudySession::add_strength(const Trial& trial, double target, double render
   ++strengths_[place].looks;
 }
 
-std::string StudySession::answer(bool yes, const StudySight& sight) {
-  const ResponseLine line = trial_line(yes, sight);
+std::string StudySession::answer(const StudyAct& act, const StudySight& sight) {
+  if (!intervals_.takes_answer()) return "both intervals are to be felt before an answer";
+  const StudyTask task = protocol_.trials.task;
+  if (task == StudyTask::Adjustment) return "an adjustment has no answer: tune it and accept it";
+  const bool of_intervals = task == StudyTask::ForcedChoice;
+  if (of_intervals != (act.interval > 0))
+    return of_intervals ? "the answer is an interval, 1 or 2" : "the answer is yes or no";
+  const bool chosen = of_intervals ? act.interval == 2 : act.yes;
+  const ResponseLine line = trial_line(chosen, sight);
+  if (protocol_.trials.feedback) feedback_ = line["correct"] == 1;
+  last_ = chosen;
+  end_trial(line, sight, [&] { course_.answer(study::felt(protocol_, *last_trial_, chosen)); });
+  return problem_;
+}
+
+std::string StudySession::accept(const StudySight& sight) {
+  if (!intervals_.takes_answer()) return "both are to be felt before they are alike";
+  end_trial(trial_line({}, sight), sight, [&] { course_.accept(*last_trial_->level); });
+  return problem_;
+}
+
+std::string StudySession::tune(const StudyAct& act, const StudySight& sight) {
+  course_.tune(act.steps, act.coarse);
+  changes_.push_back({rounded(sight.time - since_, 3), *trial().level});
+  want(intervals_.shows_level());
+  return {};
+}
+
+/// Writes a trial's line, and goes on to what follows it. @param count counts its answer.
+void StudySession::end_trial(const ResponseLine& line, const StudySight& sight,
+                             const std::function<void()>& count) {
   const double looks = std::max(1, strength_.looks);
   add_strength(trial(), strength_.target / looks, strength_.rendered / looks);
-  if (protocol_.trials.feedback) feedback_ = line["correct"] == 1;
   write(line, sight);
-  last_ = yes;
-  ++done_;
-  if (done_ == trials_.size()) {
+  last_trial_ = trial();
+  count();
+  if (course_.is_done()) {
     enter(StudyPhase::Done, sight.time);
     write({{"kind", "end"}, {"strengths", strengths()}}, sight);
   } else if (starts_method()) {
     begin_method(sight.time);
   } else {
     const int every = protocol_.trials.break_every;
-    const bool rests = every > 0 && done_ % static_cast<std::size_t>(every) == 0;
+    const bool rests = every > 0 && trials_done() % static_cast<std::size_t>(every) == 0;
     enter(rests ? StudyPhase::Break : StudyPhase::Settling, sight.time);
   }
-  return problem_;
 }
 
 std::string StudySession::correct(const StudySight& sight) {
-  const Trial& t = trials_[done_ - 1];
+  if (!course_.correct())
+    return "the last answer ended the staircases, so it can no longer be changed";
   last_ = !*last_;
-  const bool right = *last_ == (t.scene == t.question);
-  if (protocol_.trials.feedback) feedback_ = right;
-  return write({{"kind", "correction"},
-                {"trial", done_},
-                {"answer", *last_ ? 1 : 0},
-                {"correct", right ? 1 : 0}},
-               sight);
+  ResponseLine line = {{"kind", "correction"}, {"trial", trials_done()}};
+  study::add_answer(line, protocol_, *last_trial_, *last_);
+  if (protocol_.trials.feedback) feedback_ = line["correct"] == 1;
+  // another level may follow from another answer
+  if (phase_ == StudyPhase::Settling) enter(StudyPhase::Settling, sight.time);
+  return write(line, sight);
 }
 
 std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
@@ -363,7 +376,12 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
       return {};
     case Do::Answer:
       if (phase_ != StudyPhase::Presenting) return refuse();
-      return answer(act.yes, sight);
+      return answer(act, sight);
+    case Do::Tune:
+    case Do::Accept:
+      if (phase_ != StudyPhase::Presenting || protocol_.trials.task != StudyTask::Adjustment)
+        return refuse();
+      return act.what == Do::Tune ? tune(act, sight) : accept(sight);
     case Do::Correct:
       if (phase_ == StudyPhase::Presenting || !last_ || phase_ == StudyPhase::Withdrawn)
         return refuse();
@@ -381,6 +399,7 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
 }
 
 std::string StudySession::strengths() const {
+  if (protocol_.trials.task != StudyTask::Identification) return {};  // levels are to differ
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const Strength& s : strengths_) {
     if (s.looks == 0) continue;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,7 +14,8 @@
 #include "prostm/core/geometry.hpp"
 #include "prostm/core/names.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
-#include "prostm/study/order.hpp"
+#include "prostm/study/course.hpp"
+#include "prostm/study/intervals.hpp"
 #include "prostm/study/response_file.hpp"
 
 namespace prostm {
@@ -40,21 +42,27 @@ struct StudyAct {
   enum class Do : std::uint8_t {
     Next,     ///< goes on from Ready, Break and Paused; ends Training; closes what is over
     Anyway,   ///< presents a trial that the gate does not let pass
-    Answer,   ///< to the question: `yes`
+    Answer,   ///< to the question: `yes`, or `interval` of a forced choice
     Correct,  ///< the last answer was the other one, before the next is asked for
     Pause,    ///< a trial under way is presented again
     Consent,  ///< the participant agrees
     About,    ///< `about`
     Explore,  ///< in Training: the scene `scene`
-    Withdraw
+    Withdraw,
+    Tune,   ///< an adjustment's level, by `steps`
+    Accept  ///< it feels like the standard
   } what = Do::Next;
   bool yes = false;
   int scene = 0;
   nlohmann::ordered_json about = nlohmann::ordered_json::object();  ///< texts by name
+  int interval = 0;                                                 ///< 1 or 2
+  int steps = 0;                                                    ///< up or, below 0, down
+  bool coarse = false;                                              ///< large ones
 };
 template <>
-inline constexpr std::array<std::string_view, 9> kNames<StudyAct::Do> = {
-    "next", "anyway", "answer", "correct", "pause", "consent", "about", "explore", "withdraw"};
+inline constexpr std::array<std::string_view, 11> kNames<StudyAct::Do> = {
+    "next",  "anyway",  "answer",   "correct", "pause", "consent",
+    "about", "explore", "withdraw", "tune",    "accept"};
 
 /// The run as it is now.
 struct StudySight {
@@ -71,7 +79,9 @@ struct StudySight {
 struct StudyWanted {
   int method = 0, scene = -1;  ///< places in the protocol; scene −1: still air
   bool sound = false;
-  bool picture = false;  ///< the participant sees the simulation
+  bool picture = false;              ///< the participant sees the simulation
+  std::optional<double> level = {};  ///< of the setting that is varied
+  bool standard = false;             ///< the protocol's standard, in place of the method
   bool operator==(const StudyWanted&) const = default;
 };
 
@@ -90,19 +100,30 @@ class StudySession {
   /// is kept, and written before anything else happens.
   std::string take(const StudyAct& act, const StudySight& sight);
 
+  /// Writes down a marker that was sent. @return as take() does.
+  std::string note(ResponseLine marker, const StudySight& sight) {
+    return write(std::move(marker), sight);
+  }
+
   StudyPhase phase() const { return phase_; }
   const StudyWanted& wanted() const { return wanted_; }
   const Protocol& protocol() const { return protocol_; }
   int participant() const { return participant_; }
   bool closed() const { return closed_; }  ///< the run may end
-  std::size_t trials_done() const { return done_; }
-  const std::vector<Trial>& trials() const { return trials_; }
+  std::size_t trials_done() const { return course_.done(); }
+  const Course& course() const { return course_; }
   /// The trial that is next or under way. @pre not all are done.
-  const Trial& trial() const { return trials_[done_]; }
+  const Trial& trial() const { return course_.trial(); }
+  /// The interval of a trial that sounds, 1 or 2; 0 in silence, and where a trial has only one.
+  int interval() const { return phase_ == StudyPhase::Presenting ? intervals_.interval() : 0; }
+  /// Whether an answer is taken now.
+  bool takes_answer() const {
+    return phase_ == StudyPhase::Presenting && intervals_.takes_answer();
+  }
   double training_left() const { return training_left_; }  ///< [s]
   int explored() const { return explored_; }               ///< scene of Training
   const std::optional<GateResult>& gate() const { return gate_; }
-  /// The last answer, yes or no; nothing before the first.
+  /// The last answer: yes, or the second interval; nothing before the first.
   std::optional<bool> last_answer() const { return last_; }
   /// Why the trial does not begin, as things are; empty where it does.
   const std::string& waits_for() const { return waits_for_; }
@@ -125,28 +146,36 @@ class StudySession {
   void begin_method(double time);
   void settle(const StudySight& sight);
   void present(const StudySight& sight);
-  std::string answer(bool yes, const StudySight& sight);
+  void repeat_trial(const ResponseLine& line);
+  void repeat_correction(const ResponseLine& line);
+  void want(bool level);
+  std::string answer(const StudyAct& act, const StudySight& sight);
+  std::string tune(const StudyAct& act, const StudySight& sight);
+  std::string accept(const StudySight& sight);
+  void end_trial(const ResponseLine& line, const StudySight& sight,
+                 const std::function<void()>& count);
   std::string correct(const StudySight& sight);
   std::string end_training(const StudySight& sight);
   std::string write(ResponseLine line, const StudySight& sight);
   std::string write_rest(double time);
   void add_strength(const Trial& trial, double target, double rendered);
   void watch_clock(const StudySight& sight);
-  ResponseLine trial_line(bool yes, const StudySight& sight) const;
+  ResponseLine trial_line(std::optional<bool> chosen, const StudySight& sight) const;
   bool starts_method() const;
 
   const Protocol& protocol_;
   const int participant_;
   ResponseFile& file_;
-  std::vector<Trial> trials_;
-  std::size_t done_ = 0;  // trials whose answers are on the disk
+  Course course_;  // with the answers that are on the disk
+  Intervals intervals_;
+  std::optional<Trial> last_trial_;  // that was answered
   StudyPhase phase_ = StudyPhase::Ready;
   StudyWanted wanted_;
   double since_ = 0.0;         // the phase began [s]
   double in_force_at_ = -1.0;  // since when what is wanted is, in Settling; −1: it is not
   double training_left_ = 0.0, looked_ = 0.0;  // [s]
   int explored_ = 0;
-  bool anyway_ = false, ended_ = false;  // the gate is passed over; the stimulus is over
+  bool anyway_ = false;  // the gate is passed over
   bool closed_ = false;
   std::optional<GateResult> gate_, gate_at_onset_;
   std::string waits_for_, problem_;
@@ -156,6 +185,8 @@ class StudySession {
   double utc_offset_ = 0.0;                 // of the two clocks [s]
   Strength strength_;                       // of the trial
   std::vector<Strength> strengths_;         // of each method and scene, over trials
+  std::optional<double> begun_with_;        // level of the trial
+  nlohmann::ordered_json changes_;          // of it: [s, level]
   nlohmann::ordered_json hand_;             // of the trial: [s, x, y, z in mm, quaternion]
   double hand_at_ = 0.0, hand_gone_ = 0.0;  // [s]
 };

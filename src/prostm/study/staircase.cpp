@@ -94,8 +94,7 @@ double BayesianStaircase::level() const {
   return inside(settings_.range, threshold());
 }
 
-void BayesianStaircase::answer(bool right) {
-  const double at = level();
+void BayesianStaircase::answer(bool right, double at) {
   Psychometric shape = settings_.shape;
   for (std::size_t i = 0; i < threshold_.size(); ++i) {
     shape.threshold = threshold_[i];
@@ -130,8 +129,8 @@ void Adjustment::tune(int steps, bool coarse) {
   level_ = inside(settings_.range, level_ + steps * (coarse ? settings_.coarse : settings_.fine));
 }
 
-void Adjustment::accept() {
-  accepted_.push_back(level_);
+void Adjustment::accept(double level) {
+  accepted_.push_back(level);
   if (!is_done()) begin();
 }
 

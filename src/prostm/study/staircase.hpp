@@ -67,7 +67,9 @@ class BayesianStaircase {
   explicit BayesianStaircase(const BayesianSettings& settings);
 
   double level() const;
-  void answer(bool right);
+  void answer(bool right) { answer(right, level()); }
+  /// @param at the level that was presented, where only some can be.
+  void answer(bool right, double at);
   bool is_done() const { return answers_ >= settings_.trials; }
   double threshold() const;  ///< the mean of what is probable
   double deviation() const;  ///< its standard deviation
@@ -97,7 +99,9 @@ class Adjustment {
   /// @param steps up or, below 0, down.
   void tune(int steps, bool coarse);
   /// Takes the level and begins the next repeat.
-  void accept();
+  void accept() { accept(level_); }
+  /// The same with another level: that which was presented, or that of a file.
+  void accept(double level);
   bool is_done() const { return accepted_.size() >= static_cast<std::size_t>(settings_.repeats); }
   const std::vector<double>& accepted() const { return accepted_; }
   double result() const;  ///< their mean; NaN before the first

@@ -20,6 +20,12 @@ class Words {
 
   std::string text() {
     const SceneResult& all = analysis_.scenes.front();
+    if (analysis_.kind == AnswerKind::Felt) {
+      say("Answers are for the level or not, and neither is wrong: yes, or the level's interval of "
+          "two");
+      say_thresholds();
+      return text_;
+    }
     for (const MethodResult& method : all.methods) say_method(method);
     for (const Comparison& of : all.comparisons) say_difference(of);
     for (std::size_t i = 1; i < analysis_.scenes.size(); ++i) say_scene(analysis_.scenes[i]);
@@ -129,8 +135,10 @@ class Words {
   }
 
   void say_thresholds() {
-    say("All of this is about shares of right answers, which compare methods only where all were "
-        "asked at the same levels; thresholds hold for other levels too");
+    if (analysis_.kind == AnswerKind::Right) {
+      say("All of this is about shares of right answers, which compare methods only where all were "
+          "asked at the same levels; thresholds hold for other levels too");
+    }
     const std::vector<ThresholdResult>& all = analysis_.thresholds;
     for (std::size_t i = 0; i < all.size();) {
       std::size_t end = i + 1;  // of its participants
@@ -139,9 +147,10 @@ class Words {
       i = end;
     }
     say(
-        fmt::format("A threshold is the level half-way between guessing ({:g} %) and the most "
+        fmt::format("A threshold is the level half-way between {} ({:g} %) and the most "
                     "({:g} %); intervals are as if answers were independent, and too narrow for "
                     "people in general where participants differ",
+                    analysis_.kind == AnswerKind::Right ? "guessing" : "the least",
                     100.0 * *analysis_.settings.guess, 100.0 * (1.0 - *analysis_.settings.lapse)));
   }
 

@@ -131,11 +131,22 @@ nlohmann::ordered_json read_about(const Json& json) {
 
 StudyAct read_study(const Json& json) {
   constexpr double kMostScenes = 1000;
+  enum class Way { Less, More };
   StudyAct act;
-  act.what = choice<StudyAct::Do>(
-      json, "do",
-      {"next", "anyway", "answer", "correct", "pause", "consent", "about", "explore", "withdraw"});
-  if (act.what == StudyAct::Do::Answer) act.yes = truth(json, "yes");
+  act.what = choice<StudyAct::Do>(json, "do",
+                                  {"next", "anyway", "answer", "correct", "pause", "consent",
+                                   "about", "explore", "withdraw", "tune", "accept"});
+  if (act.what == StudyAct::Do::Answer && json.contains("interval")) {
+    const double interval = number(json, "interval", 1.0, 2.0);
+    if (interval != std::floor(interval)) throw Wrong("\"interval\" must be 1 or 2");
+    act.interval = static_cast<int>(interval);
+  } else if (act.what == StudyAct::Do::Answer) {
+    act.yes = truth(json, "yes");
+  }
+  if (act.what == StudyAct::Do::Tune) {
+    act.steps = choice<Way>(json, "to", {"less", "more"}) == Way::More ? 1 : -1;
+    act.coarse = truth(json, "coarse");
+  }
   if (act.what == StudyAct::Do::Explore)
     act.scene = static_cast<int>(number(json, "scene", 0.0, kMostScenes));
   if (act.what == StudyAct::Do::About) act.about = read_about(json);

@@ -52,9 +52,16 @@ Pose pose_of(const ViewJoint& joint) {
 bool is_allowed(Room room, const StudyAct& act, AnswersFrom answers) {
   using Do = StudyAct::Do;
   if (room == Room::Main) return true;
-  if (act.what == Do::Answer) return answers == AnswersFrom::Participant;
+  if (act.what == Do::Answer || act.what == Do::Tune || act.what == Do::Accept)
+    return answers == AnswersFrom::Participant;
   return act.what == Do::Consent || act.what == Do::About || act.what == Do::Explore ||
          act.what == Do::Withdraw;
+}
+
+/// Whether a plan was made with these settings.
+bool is_planned_with(const PipelineSettings& plan, const PipelineSettings& settings) {
+  return plan.scene == settings.scene && plan.method == settings.method &&
+         plan.plan == settings.plan && plan.am == settings.am && plan.emit == settings.emit;
 }
 
 }  // namespace
@@ -68,11 +75,12 @@ StudySight study_time() {
 }
 
 StudyView::StudyView(LiveLink& link, ViewHello hello, StudySession& session,
-                     std::optional<Rehearsal> rehearsal)
+                     std::optional<Rehearsal> rehearsal, MarkerSender* markers)
     : link_(link),
       run_(link, std::move(hello)),
       session_(session),
-      rehearsal_(std::move(rehearsal)) {
+      rehearsal_(std::move(rehearsal)),
+      markers_(markers) {
   link_.snapshots.watch(true);  // the session looks, whether pages do or not
   link_.mute->set(MuteReason::Study, true);
 }
@@ -80,9 +88,9 @@ StudyView::StudyView(LiveLink& link, ViewHello hello, StudySession& session,
 StudySight StudyView::sight() {
   StudySight s = study_time();
   const PlanSnapshot& plan = link_.snapshots.plan();
-  const std::string& scene = link_.control.state().settings.pipeline.scene;
-  s.in_force = version_ > 0 && link_.control.state().settings.version == version_ &&
-               plan.settings && plan.settings->scene == scene;
+  s.in_force = is_asked(session_.wanted()) &&
+               link_.control.state().settings.version == settings_->version && plan.settings &&
+               is_planned_with(*plan.settings, settings_->pipeline);
   if (frame_.hand_count > 0) s.palm = pose_of(frame_.hands[0].joints[0]);
   s.gate = plan.gate;
   const double force = static_cast<double>(frame_.numbers[kForceMn]);
@@ -97,6 +105,8 @@ void StudyView::tick() {
   LiveRefusal refusal;
   while (link_.control.next_refusal(refusal)) problem_ = refusal.sentence;
   const StudySight now = sight();
+  Marker marker;
+  while (markers_ != nullptr && markers_->next(marker)) session_.note(markers_->line(marker), now);
   present(session_.look(now));
   if (!rehearsal_) return;
   const auto act = rehearsal_->act(session_, now.time);
@@ -105,25 +115,40 @@ void StudyView::tick() {
   if (rehearsal_->is_done()) closed_.store(true, std::memory_order_relaxed);
 }
 
+bool StudyView::is_asked(const StudyWanted& wanted) const {
+  return settings_ && wanted.method == asked_.method && wanted.scene == asked_.scene &&
+         wanted.level == asked_.level && wanted.standard == asked_.standard;
+}
+
+/// Lifts the study's mute, or sets it. What sounds is named before.
+void StudyView::let_sound(bool sound) {
+  if (sound && !sounds_ && markers_ != nullptr)
+    markers_->present(presentation_of(session_, ++presentations_));
+  sounds_ = sound;
+  link_.mute->set(MuteReason::Study, !sound);
+}
+
 /// Asks the run for what is wanted, where that has changed.
 void StudyView::present(const StudyWanted& wanted) {
-  link_.mute->set(MuteReason::Study, !wanted.sound);
+  let_sound(wanted.sound);
   if (session_.closed()) closed_.store(true, std::memory_order_relaxed);
-  if (version_ > 0 && wanted.method == method_ && wanted.scene == scene_) return;
+  if (is_asked(wanted)) return;
   const Protocol& protocol = session_.protocol();
   auto settings = std::make_shared<LiveSettings>(link_.settings);
-  settings->pipeline = protocol.methods[static_cast<std::size_t>(wanted.method)].settings;
+  settings->pipeline = wanted.standard
+                           ? protocol.standard->settings
+                           : protocol.methods[static_cast<std::size_t>(wanted.method)].settings;
+  if (wanted.level) set_level(settings->pipeline, protocol.level.setting, *wanted.level);
   settings->pipeline.plan.widths = link_.settings.pipeline.plan.widths;
   settings->pipeline.scene = wanted.scene < 0
                                  ? std::string("still-air")
                                  : protocol.scenes[static_cast<std::size_t>(wanted.scene)].name;
-  settings->version = version_ + 1;
+  settings->version = settings_ ? settings_->version + 1 : 1;
   LiveCommand command{LiveCommand::Kind::Configure};
   command.settings = settings;
   if (!link_.control.ask(command)) return;  // busy: at the next tick
-  ++version_;
-  method_ = wanted.method;
-  scene_ = wanted.scene;
+  settings_ = std::move(settings);
+  asked_ = wanted;
   problem_.clear();
 }
 
@@ -159,7 +184,8 @@ bool StudyView::refresh_state(Room room, std::string& state) {
   return true;
 }
 
-/// The part that both pages are told: it depends on nothing that is presented.
+/// The part that both pages are told: it depends on nothing that is presented. `interval` counts
+/// intervals, whichever is the level's.
 Json StudyView::both(const char* room) const {
   const Protocol& p = session_.protocol();
   Json json = {{"type", "study"},
@@ -167,7 +193,11 @@ Json StudyView::both(const char* room) const {
                {"title", p.study.title},
                {"phase", name_of(session_.phase())},
                {"done", session_.trials_done()},
-               {"trials", session_.trials().size()},
+               {"trials", session_.course().most()},
+               {"open", session_.course().is_open()},
+               {"task", name_of(p.trials.task)},
+               {"interval", session_.interval()},
+               {"takes_answer", session_.takes_answer()},
                {"training_left_s", std::ceil(session_.training_left())},
                {"explored", session_.explored()},
                {"scenes", Json::array()},
@@ -195,13 +225,14 @@ Json StudyView::experimenter() const {
   if (p.study.blind && gate && !gate->pass && !is_of_hand(gate->finding.problem) &&
       !session_.waits_for().empty())
     json["waits_for"] = "The pressure on the hand is not the stimulus yet.";
-  if (session_.trials_done() == session_.trials().size()) return json;
+  if (session_.course().is_done()) return json;
   const Trial& trial = session_.trial();
   if (phase == StudyPhase::Settling || phase == StudyPhase::Presenting)
     json["question"] = p.scenes[static_cast<std::size_t>(trial.question)].question;
   if (!p.study.blind) {
     json["condition"] = {{"method", p.methods[static_cast<std::size_t>(trial.method)].name},
                          {"scene", p.scenes[static_cast<std::size_t>(trial.scene)].name}};
+    if (trial.level) json["condition"]["level"] = *trial.level;
   }
   return json;
 }
@@ -221,7 +252,9 @@ Json StudyView::participant() const {
     json["waits_for"] = session_.waits_for();
   if (phase == StudyPhase::Presenting) {
     const StudyScene& asked = p.scenes[static_cast<std::size_t>(session_.trial().question)];
-    json["question"] = {{"text", asked.question}, {"jets_mm", jets_json(asked.name)}};
+    const bool pictured = p.trials.task == StudyTask::Identification;
+    json["question"] = {{"text", asked.question},
+                        {"jets_mm", pictured ? jets_json(asked.name) : Json::array()}};
   }
   return json;
 }

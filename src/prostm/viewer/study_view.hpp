@@ -9,6 +9,7 @@
 #include <string>
 
 #include "prostm/pipeline/live.hpp"
+#include "prostm/study/live/marker_sender.hpp"
 #include "prostm/study/rehearsal.hpp"
 #include "prostm/study/session.hpp"
 #include "prostm/viewer/pipeline_view.hpp"
@@ -26,8 +27,9 @@ class StudyView final : public ViewSource {
  public:
   /// @param session is used by the server's thread from now on. All must outlive this.
   /// @param rehearsal that stands in for people, if any does.
+  /// @param markers that are written down with the session; null: none.
   StudyView(LiveLink& link, ViewHello hello, StudySession& session,
-            std::optional<Rehearsal> rehearsal = {});
+            std::optional<Rehearsal> rehearsal = {}, MarkerSender* markers = nullptr);
 
   /// Somebody has closed a session that is over, or a rehearsal is done. Any thread.
   bool closed() const { return closed_.load(std::memory_order_relaxed); }
@@ -45,6 +47,8 @@ class StudyView final : public ViewSource {
   void tick();
   StudySight sight();
   void present(const StudyWanted& wanted);
+  bool is_asked(const StudyWanted& wanted) const;
+  void let_sound(bool sound);
   std::string act(Room room, const StudyAct& act);
   nlohmann::ordered_json both(const char* room) const;
   nlohmann::ordered_json experimenter() const;
@@ -54,12 +58,15 @@ class StudyView final : public ViewSource {
   PipelineView run_;
   StudySession& session_;
   std::optional<Rehearsal> rehearsal_;
+  MarkerSender* markers_;
+  bool sounds_ = false;  // not muted for the study
+  std::uint32_t presentations_ = 0;
   std::map<std::uint32_t, Room> pages_;
   ViewFrame frame_;  // the newest
   ViewNews news_;
-  int method_ = -1, scene_ = -1;  // that the run was asked for last
-  std::uint64_t version_ = 0;     // of the settings for it
-  std::string problem_;           // with them
+  StudyWanted asked_;                             // of the run, last
+  std::shared_ptr<const LiveSettings> settings_;  // for it; nothing before the first
+  std::string problem_;                           // with them
   std::string told_[std::size(kRooms)];
   std::atomic<bool> closed_{false};
 };

@@ -1,7 +1,7 @@
 /// The experimenter's page: where the session is, what to read aloud, and the keys for what comes next.
 
 import { find, setText } from "../dom";
-import { listen, minutes, showScenes, StudyPage } from "./page";
+import { answering, listen, minutes, showScenes, showTask, StudyPage } from "./page";
 import type { Experimenter, Phase } from "./messages";
 import "../styles/base.css";
 import "../styles/study.css";
@@ -22,6 +22,8 @@ const kNext: Partial<Record<Phase, string>> = {
   training: "End the training", ready: "Begin the trials", break: "Go on", paused: "Go on", done: "Close", withdrawn: "Close",
 };
 
+const kAnswers = [["yes", "no"], ["the second", "the first"]];
+
 const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   const { phase } = study;
   setText(find("participant"), `Participant ${study.participant}`);
@@ -30,7 +32,7 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   setText(find("question"), study.question ?? "");
   find("asked").hidden = study.question === null;
   const c = study.condition;
-  setText(find("condition"), c === null ? "" : `${c.scene} with ${c.method}`);
+  setText(find("condition"), c === null ? "" : `${c.scene} with ${c.method}${c.level === undefined ? "" : ` at ${c.level}`}`);
   setText(find("left"), phase === "training" ? `${minutes(study.training_left_s)} left` : "");
   setText(find("waits"), phase === "settling" ? study.waits_for || "The smoke develops." : !study.hand ? "No hand in sight." : "");
   setText(find("output"), study.output ? "The array sounds" : "The array is silent");
@@ -40,26 +42,24 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   const next = kNext[phase];
   find("next").hidden = next === undefined;
   setText(find("next-word"), next ?? "");
-  find("answers").hidden = phase !== "presenting";
-  setText(find("answers-by"), study.answers === "participant" ? "The participant answers; these are for when they cannot." : "");
+  showTask(study, phase === "presenting");
+  const forced = study.task === "forced-choice";
+  setText(find("first-key"), forced ? "1" : "Y");
+  setText(find("second-key"), forced ? "2" : "N");
+  setText(find("answers-by"), phase === "presenting" && study.answers === "participant" ? "The participant answers; these are for when they cannot." : "");
   find("anyway").hidden = phase !== "settling" || study.waits_for === "";
   find("pause").hidden = phase !== "settling" && phase !== "presenting";
   find("correct").hidden = study.last === null || phase === "presenting" || phase === "withdrawn";
-  setText(find("last"), study.last === null ? "" : `The last answer was ${study.last ? "yes" : "no"}: change it`);
+  setText(find("last"), study.last === null ? "" : `The last answer was ${kAnswers[forced ? 1 : 0]![study.last ? 0 : 1]}: change it`);
   find("withdraw").hidden = phase === "done" || phase === "withdrawn";
   find("scenes").hidden = phase !== "training";
   showScenes(find("scenes"), study, (scene) => page.act({ type: "study", do: "explore", scene }));
 });
 
-const answer = (yes: boolean) => {
-  if (page.study?.phase === "presenting") page.act({ type: "study", do: "answer", yes });
-};
 const next = () => {
   if (page.study !== null && kNext[page.study.phase] !== undefined) page.act({ type: "study", do: "next" });
 };
 const pause = () => page.act({ type: "study", do: "pause" });
-find("yes").addEventListener("click", () => answer(true));
-find("no").addEventListener("click", () => answer(false));
 find("next").addEventListener("click", next);
 find("anyway").addEventListener("click", () => page.act({ type: "study", do: "anyway" }));
 find("pause").addEventListener("click", pause);
@@ -74,4 +74,4 @@ find("go").addEventListener("click", () => {
   leave.close();
   page.act({ type: "study", do: "withdraw" });
 });
-listen(answer, { Enter: next, " ": next, p: pause, P: pause });
+listen(page, answering(page, () => true), { Enter: next, " ": next, p: pause, P: pause });

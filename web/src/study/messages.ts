@@ -4,13 +4,19 @@ export const kPhases = [
   "consent", "about", "training", "ready", "settling", "presenting", "break", "paused", "done", "withdrawn",
 ] as const;
 export type Phase = (typeof kPhases)[number];
+export const kTasks = ["identification", "forced-choice", "judgement", "adjustment"] as const;
+export type Task = (typeof kTasks)[number];
 
 interface StudyBase {
   type: "study";
   title: string;
   phase: Phase;
   done: number; // answers
-  trials: number;
+  trials: number; // in all, or at most
+  open: boolean; // whether they may become fewer
+  task: Task;
+  interval: number; // that sounds, 1 or 2; 0 in silence, and of a trial with only one
+  takes_answer: boolean;
   training_left_s: number;
   explored: number; // the scene of training, by its place
   scenes: string[];
@@ -24,8 +30,8 @@ export interface Experimenter extends StudyBase {
   blind: boolean;
   output: boolean;
   question: string | null;
-  condition: { method: string; scene: string } | null;
-  last: boolean | null; // the last answer: yes or no
+  condition: { method: string; scene: string; level?: number } | null;
+  last: boolean | null; // the last answer: yes or no, or the second interval or the first
   strengths: string;
   problem: string;
 }
@@ -39,8 +45,10 @@ export interface Participant extends StudyBase {
 export type Study = Experimenter | Participant;
 
 export type StudyAct =
-  | { type: "study"; do: "next" | "anyway" | "correct" | "pause" | "consent" | "withdraw" }
+  | { type: "study"; do: "next" | "anyway" | "correct" | "pause" | "consent" | "withdraw" | "accept" }
   | { type: "study"; do: "answer"; yes: boolean }
+  | { type: "study"; do: "answer"; interval: 1 | 2 }
+  | { type: "study"; do: "tune"; to: "less" | "more"; coarse: boolean }
   | { type: "study"; do: "explore"; scene: number }
   | { type: "study"; do: "about"; about: Record<string, string> };
 
@@ -48,8 +56,9 @@ const isText = (x: unknown): x is string => typeof x === "string";
 const isList = (x: unknown, of: (v: unknown) => boolean): boolean => Array.isArray(x) && x.every(of);
 
 export function isStudy(x: Record<string, unknown>): boolean {
-  const numbers = [x.done, x.trials, x.training_left_s, x.explored];
-  const base = [x.title, x.waits_for].every(isText) && kPhases.includes(x.phase as Phase) &&
+  const numbers = [x.done, x.trials, x.training_left_s, x.explored, x.interval];
+  const base = [x.title, x.waits_for].every(isText) && kPhases.includes(x.phase as Phase) && kTasks.includes(x.task as Task) &&
+    typeof x.takes_answer === "boolean" && typeof x.open === "boolean" &&
     numbers.every((v) => Number.isFinite(v)) && isList(x.scenes, isText);
   if (!base) return false;
   if (x.room === "experimenter")

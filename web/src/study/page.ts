@@ -3,12 +3,13 @@
 import { Connection } from "../connection";
 import { find, setText } from "../dom";
 import { Picture } from "./picture";
-import type { Study, StudyAct } from "./messages";
+import type { Study, StudyAct, Task } from "./messages";
 
 /// How far the session is, in words.
 export function progress(study: Study): string {
   const next = Math.min(study.done + 1, study.trials);
-  return study.phase === "done" ? `All ${study.trials} trials done` : `Trial ${next} of ${study.trials}`;
+  if (study.phase === "done") return `All ${study.open ? study.done : study.trials} trials done`;
+  return study.open ? `Trial ${next}` : `Trial ${next} of ${study.trials}`;
 }
 
 export function minutes(seconds: number): string {
@@ -53,7 +54,7 @@ export class StudyPage<S extends Study> {
     document.title = study.title || "A study";
     setText(find("title"), study.title || "A study");
     const bar = find<HTMLProgressElement>("progress");
-    [bar.max, bar.value] = [study.trials, study.done];
+    [bar.max, bar.value] = [study.trials, study.open && study.phase === "done" ? study.trials : study.done];
     setText(find("count"), progress(study));
     this.show(this.study);
   }
@@ -73,21 +74,91 @@ export function showScenes(root: HTMLElement, study: Study, explore: (scene: num
   [...root.children].forEach((button, i) => button.setAttribute("aria-pressed", String(i === study.explored)));
 }
 
-/// Keys of answers: letters, arrows, and those that foot switches and remote controls send.
-const kYes = ["y", "Y", "ArrowRight", "PageDown"], kNo = ["n", "N", "ArrowLeft", "PageUp"];
+/// The task's buttons, and what its intervals are called. The same on both pages.
+export function showTask(study: Study, answers: boolean): void {
+  const { task } = study;
+  find("answers").hidden = !answers || task === "adjustment";
+  find("tuning").hidden = !answers || task !== "adjustment";
+  const [first, second] = task === "forced-choice" ? ["The first", "The second"] : ["Yes", "No"];
+  setText(find("first-word"), first!);
+  setText(find("second-word"), second!);
+  for (const id of ["first", "second", "accept"]) find<HTMLButtonElement>(id).disabled = !study.takes_answer;
+  const silent = task === "adjustment" || !study.takes_answer ? "…" : "";
+  setText(find("interval"), study.phase !== "presenting" ? "" : study.interval > 0 ? `${study.interval}` : task === "forced-choice" || task === "adjustment" ? silent : "");
+}
 
-/// Listens for keys that answer or go on. A key that is held down counts once, and what is typed into a field not at all.
-export function listen(answer: (yes: boolean) => void, others: Record<string, () => void> = {}): void {
+type Acting = Pick<StudyPage<Study>, "study" | "act">;
+
+/// How a participant answers: the left of two buttons, or the right one; and how they tune.
+export interface Answering {
+  answer(first: boolean): void;
+  tune(to: "less" | "more", coarse: boolean): void;
+  accept(): void;
+}
+
+/// @param may whether whoever is at this page may answer now.
+export function answering(page: Acting, may: () => boolean): Answering {
+  const study = () => (page.study?.phase === "presenting" && may() ? page.study : null);
+  const ways: Answering = {
+    answer: (first) => {
+      const now = study();
+      if (now === null || !now.takes_answer || now.task === "adjustment") return;
+      if (now.task === "forced-choice") page.act({ type: "study", do: "answer", interval: first ? 1 : 2 });
+      else page.act({ type: "study", do: "answer", yes: first });
+    },
+    tune: (to, coarse) => {
+      if (study()?.task === "adjustment") page.act({ type: "study", do: "tune", to, coarse });
+    },
+    accept: () => {
+      const now = study();
+      if (now?.task === "adjustment" && now.takes_answer) page.act({ type: "study", do: "accept" });
+    },
+  };
+  find("first").addEventListener("click", () => ways.answer(true));
+  find("second").addEventListener("click", () => ways.answer(false));
+  find("accept").addEventListener("click", () => {
+    ways.accept();
+    find("accept").blur();
+  });
+  for (const [id, to, coarse] of [["much-less", "less", true], ["less", "less", false], ["more", "more", false], ["much-more", "more", true]] as const)
+    find(id).addEventListener("click", () => ways.tune(to, coarse));
+  return ways;
+}
+
+/// Keys of answers and of tuning: letters, digits, arrows, and those that foot switches and remote controls send.
+const kYes = ["y", "Y", "ArrowRight", "PageDown"], kNo = ["n", "N", "ArrowLeft", "PageUp"];
+const kFirst = ["1", "ArrowLeft", "PageUp"], kSecond = ["2", "ArrowRight", "PageDown"];
+const kMore = ["+", "ArrowUp", "ArrowRight", "PageDown"], kLess = ["-", "ArrowDown", "ArrowLeft", "PageUp"];
+
+/// @return whether the key is the task's.
+function press({ key, shiftKey, repeat }: KeyboardEvent, task: Task, ways: Answering): boolean {
+  if (task === "adjustment") {
+    const to = kMore.includes(key) ? "more" : kLess.includes(key) ? "less" : null;
+    if (to !== null) ways.tune(to, shiftKey && key !== "+");
+    else if (key === "Enter" && !repeat) ways.accept();
+    return to !== null || key === "Enter";
+  }
+  const [first, second] = task === "forced-choice" ? [kFirst, kSecond] : [kYes, kNo];
+  if (!first.includes(key) && !second.includes(key)) return false;
+  if (!repeat) ways.answer(first.includes(key));
+  return true;
+}
+
+/// Listens for keys that answer, tune or go on. A key that is held down counts once, but for tuning, and what is typed
+/// into a field not at all.
+export function listen(page: Acting, ways: Answering, others: Record<string, () => void> = {}): void {
   document.addEventListener("keydown", (event) => {
     const element = event.target as HTMLElement;
-    if (event.repeat || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (element.closest("input, select, textarea, dialog")) return;
     const onButton = element.closest("button") !== null && (event.key === "Enter" || event.key === " ");
     if (onButton) return;
+    const study = page.study;
     const other = others[event.key];
-    if (kYes.includes(event.key) || kNo.includes(event.key)) answer(kYes.includes(event.key));
-    else if (other) other();
-    else return;
-    event.preventDefault();
+    if (study?.phase === "presenting" && press(event, study.task, ways)) event.preventDefault();
+    else if (other && !event.repeat) {
+      other();
+      event.preventDefault();
+    }
   });
 }

@@ -3,8 +3,8 @@
 import { find, setText } from "../dom";
 import { drawHand } from "./hand_drawing";
 import { Noise } from "./noise";
-import { listen, minutes, showScenes, StudyPage } from "./page";
-import type { Participant, Phase } from "./messages";
+import { answering, listen, minutes, showScenes, showTask, StudyPage } from "./page";
+import type { Participant, Phase, Task } from "./messages";
 import "../styles/base.css";
 import "../styles/study.css";
 
@@ -15,6 +15,11 @@ const kWords: Record<Phase, string> = {
   settling: "Hold your hand flat above the device, palm down, and wait.",
   presenting: "", break: "A break. Rest your hand.", paused: "A pause. Rest your hand.",
   done: "That was all. Thank you!", withdrawn: "You have left the study. Thank you for your time.",
+};
+
+const kSpoken: Record<Task, string> = {
+  identification: "Say yes or no.", judgement: "Say yes or no.", "forced-choice": "Say one or two.",
+  adjustment: "Say more or less, and when they are alike.",
 };
 
 const noise = new Noise();
@@ -33,20 +38,15 @@ const page = new StudyPage<Participant>("/guest/live", "participant", (study) =>
     setText(find("question"), question.text);
     drawHand(find("drawing"), question.jets_mm);
   }
-  find("answers").hidden = phase !== "presenting" || study.answers !== "participant";
-  setText(find("spoken"), phase === "presenting" && study.answers === "experimenter" ? "Say yes or no." : "");
+  find("drawing").hidden = question === null || question.jets_mm.length === 0;
+  showTask(study, phase === "presenting" && study.answers === "participant");
+  setText(find("spoken"), phase === "presenting" && study.answers === "experimenter" ? kSpoken[study.task] : "");
   const told = study.feedback === null || phase === "presenting" ? "" : study.feedback ? "That was right." : "That was wrong.";
   setText(find("feedback"), told);
   noise.play(study.noise && (phase === "training" || phase === "settling" || phase === "presenting"));
   find("noise").hidden = !study.noise || noise.ready;
 });
 
-const answer = (yes: boolean) => {
-  const { study } = page;
-  if (study?.phase === "presenting" && study.answers === "participant") page.act({ type: "study", do: "answer", yes });
-};
-find("yes").addEventListener("click", () => answer(true));
-find("no").addEventListener("click", () => answer(false));
 find("agree").addEventListener("click", () => page.act({ type: "study", do: "consent" }));
 find("refuse").addEventListener("click", () => page.act({ type: "study", do: "withdraw" }));
 find("noise").addEventListener("click", async () => {
@@ -60,4 +60,4 @@ find<HTMLFormElement>("about-form").addEventListener("submit", (event) => {
   for (const [name, value] of fields) if (typeof value === "string" && value !== "") about[name] = value;
   page.act({ type: "study", do: "about", about });
 });
-listen(answer);
+listen(page, answering(page, () => page.study?.answers === "participant"));

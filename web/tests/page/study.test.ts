@@ -1,3 +1,4 @@
+import { writeFileSync } from "node:fs";
 import type { Browser, Page, WebSocket } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { clean, openBrowser, Watch, type Json } from "./program";
@@ -56,7 +57,7 @@ describe("a session of a study", () => {
       expect(await participant.locator("#answers").isVisible()).toBe(false);
       await participant.keyboard.press("y"); // not theirs to give
       if (i % 2 === 0) await experimenter.keyboard.press(i === 0 ? "y" : "PageUp");
-      else await experimenter.locator(i === 1 ? "#yes" : "#no").click();
+      else await experimenter.locator(i === 1 ? "#first" : "#second").click();
       await experimenter.waitForFunction((done) => document.querySelector("progress")!.value === done, i + 1);
     }
     await comes(participant, "done");
@@ -73,7 +74,7 @@ describe("a session of a study", () => {
       expect(text).not.toMatch(/"(method|scene|condition|correct|gate|stimulus)"|pro-stm|\bam\b/);
       const message = JSON.parse(text) as Json;
       if (message.type !== "study") continue;
-      const keys = ["type", "room", "title", "phase", "done", "trials", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
+      const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
       expect(Object.keys(message)).toEqual(keys);
       expect(message.feedback).toBe(null);
       // the jets are those of the question
@@ -113,11 +114,123 @@ describe("participants who answer themselves", () => {
       await comes(participant, "presenting");
       expect(await experimenter.locator("#condition").textContent()).toMatch(/^(one|four)-plumes? with (am|pro-stm)$/);
       if (i === 0) await participant.keyboard.press("ArrowRight");
-      else await participant.locator("#no").click();
+      else await participant.locator("#second").click();
       for (const page of [participant, experimenter]) await comes(page, i === 0 ? "break" : "done");
       expect(await participant.locator("#feedback").textContent()).toBe(study.trials()[i]!.correct === 1 ? "That was right." : "That was wrong.");
     }
     expect(study.lines().find((line) => line.kind === "about")?.answers).toEqual({ age: "25 to 34" });
+    await study.kill("SIGINT");
+    await experimenter.close();
+    await participant.close();
+  });
+});
+
+/// A study with levels: one scene, and a hand that is not tracked.
+function levels(trials: string, level: string, methods: string): string {
+  const file = protocol("");
+  writeFileSync(file, `[training]
+seconds = 0
+[trials]
+answers = "participant"
+settle = 0.5
+gate = "off"
+${trials}
+[level]
+interval = 0.4
+gap = 0.2
+${level}
+[scene.one-plume]
+question = "How about it?"
+[method.stm.fluid]
+cells = 32
+[method.stm.plan]
+preset = "fast"
+${methods}`);
+  return file;
+}
+
+/// Nothing that a participant is sent may tell a level, or which interval has it.
+function expectNothingTold(traffic: Traffic, study: Study): void {
+  const texts = traffic.texts.filter((text) => text.includes('"type":"study"'));
+  expect(texts.length).toBeGreaterThan(5);
+  const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
+  for (const text of texts) {
+    expect(Object.keys(JSON.parse(text) as Json)).toEqual(keys);
+    expect(text).not.toMatch(/level|reference|felt|correct|start|track|method|condition|\bstm\b|\bam\b/);
+  }
+  for (const trial of study.trials()) {
+    const told = [trial.level, trial.start, ...((trial.changes ?? []) as number[][]).map((change) => change[1])];
+    for (const level of told) if (level !== undefined) for (const text of texts) expect(text).not.toContain(`${level as number}`);
+  }
+}
+
+describe("studies with levels", () => {
+  it("ask which of two intervals it was, by keys, a foot switch's keys and touch", async () => {
+    const study = new Study(levels('task = "forced-choice"', 'setting = "plan.speed"\nlow = 2.137\nhigh = 8.153\nreference = 2.137\nprocedure = "bayes"\ntrials = 3', ""), 11);
+    await study.start();
+    const [experimenter, participant] = [await browser.newPage(), await browser.newPage({ hasTouch: true })];
+    const traffic = new Traffic(participant);
+    const watch = [new Watch(experimenter), new Watch(participant)];
+    await experimenter.goto(study.url);
+    await participant.goto(`${study.url}participant`);
+    await comes(experimenter, "ready");
+    await experimenter.keyboard.press("Enter");
+    for (let i = 0; i < 3; ++i) {
+      await comes(participant, "presenting");
+      await participant.waitForFunction(() => document.getElementById("interval")!.textContent === "1");
+      await participant.keyboard.press("1"); // too early, and not taken
+      expect(await participant.locator("#first").isDisabled()).toBe(true);
+      await participant.waitForFunction(() => document.getElementById("interval")!.textContent === "2");
+      expect(await experimenter.locator("#condition").textContent()).toBe("");
+      if (i === 0) await participant.keyboard.press("2");
+      else if (i === 1) await participant.keyboard.press("PageUp");
+      else await participant.getByRole("button", { name: "The second" }).tap();
+      await experimenter.waitForFunction((done) => document.querySelector("progress")!.value === done, i + 1);
+    }
+    await comes(participant, "done");
+    expect(study.trials().map((t) => t.answer)).toEqual([2, 1, 2]);
+    for (const t of study.trials()) expect(t.correct).toBe(t.answer === t.interval ? 1 : 0);
+    await experimenter.getByRole("button", { name: "The last answer was the second: change it" }).click();
+    await experimenter.getByRole("button", { name: "The last answer was the first: change it" }).waitFor();
+    expectNothingTold(traffic, study);
+    await experimenter.keyboard.press("Enter");
+    expect(await study.ended()).toBe(0);
+    for (const { complaints } of watch) expect(complaints.filter((c) => !/ERR_CONNECTION_REFUSED|closed/.test(c))).toEqual([]);
+    await experimenter.close();
+    await participant.close();
+  });
+
+  it("let a participant tune one stimulus until it feels like another", async () => {
+    const study = new Study(levels('task = "adjustment"\nrepeats = 2', 'setting = "plan.speed"\nlow = 2.137\nhigh = 8.153\nstep = 0.1\nagainst = "am"', '[method.am.pipeline]\nmethod = "am"\n[method.am.fluid]\ncells = 32\n'), 12);
+    await study.start();
+    const [experimenter, participant] = [await browser.newPage(), await browser.newPage()];
+    const traffic = new Traffic(participant);
+    await experimenter.goto(study.url);
+    await participant.goto(`${study.url}participant`);
+    await comes(experimenter, "ready");
+    await experimenter.keyboard.press("Enter");
+    for (let i = 0; i < 2; ++i) {
+      await comes(participant, "presenting");
+      expect(await participant.locator("#answers").isVisible()).toBe(false);
+      await participant.waitForFunction(() => document.getElementById("interval")!.textContent === "2");
+      if (i === 0) {
+        await participant.keyboard.press("ArrowRight");
+        await participant.keyboard.press("Shift+ArrowRight");
+        await participant.waitForFunction(() => document.getElementById("interval")!.textContent === "1");
+        await participant.keyboard.press("Enter");
+      } else {
+        await participant.getByRole("button", { name: "Less", exact: true }).click();
+        await participant.getByRole("button", { name: "They are alike" }).click();
+      }
+      await experimenter.waitForFunction((done) => document.querySelector("progress")!.value === done, i + 1);
+    }
+    await comes(experimenter, "done");
+    const [up, down] = study.trials() as [Json, Json];
+    expect((up.changes as number[][]).length).toBe(2);
+    expect(up.level as number).toBeCloseTo((up.start as number) + 0.5, 3);
+    expect(down.level as number).toBeCloseTo((down.start as number) - 0.1, 3);
+    expect(up.reference).toBe("am");
+    expectNothingTold(traffic, study);
     await study.kill("SIGINT");
     await experimenter.close();
     await participant.close();
