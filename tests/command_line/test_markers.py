@@ -95,6 +95,7 @@ def check_against_file(received, file):
     return written
 
 
+@pytest.mark.realtime
 def test_markers_over_udp_are_those_of_the_file(prostm, rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG.replace("seconds = 0", "seconds = 1"))
     receivers = []
@@ -118,6 +119,7 @@ def test_markers_over_udp_are_those_of_the_file(prostm, rehearse, tmp_path):
     assert {line["run"] for line in again.stop()} <= {2}
 
 
+@pytest.mark.realtime
 def test_conditions_are_told_where_the_protocol_lets_them(rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG + "[markers]\nconditions = true\n")
     receivers = []
@@ -135,6 +137,7 @@ def test_conditions_are_told_where_the_protocol_lets_them(rehearse, tmp_path):
         assert line["code"] == (16 + place if line["event"] == "stimulus-on" else 2)
 
 
+@pytest.mark.realtime
 def test_a_serial_port_gets_a_code_for_each_marker(rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG)
     ours, theirs = pty.openpty()
@@ -148,6 +151,7 @@ def test_a_serial_port_gets_a_code_for_each_marker(rehearse, tmp_path):
     os.close(theirs)
 
 
+@pytest.mark.realtime
 def test_without_targets_the_file_has_the_markers(rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG)
     file, said = rehearse(1)
@@ -155,6 +159,7 @@ def test_without_targets_the_file_has_the_markers(rehearse, tmp_path):
     assert "Markers were sent" not in said
 
 
+@pytest.mark.realtime
 def test_a_study_goes_on_where_nobody_receives(rehearse, tmp_path):
     (tmp_path / "short.toml").write_text(LONG)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as gone:

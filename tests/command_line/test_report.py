@@ -96,6 +96,7 @@ def documents(report):
     return {name: json.loads((report / "parts" / f"{name}.json").read_text()) for name in PARTS}
 
 
+@pytest.mark.long
 def test_every_number_of_the_page_is_in_a_file(report, documents):
     page = Page((report / "index.html").read_text())
     numbers = 0
@@ -116,6 +117,7 @@ def test_every_number_of_the_page_is_in_a_file(report, documents):
     assert [text.strip() for text in page.stray if text.strip()] == ["prostm report, quick"] * 2 + titles
 
 
+@pytest.mark.long
 def test_no_number_stands_in_the_page_by_itself(documents):
     for name, document in documents.items():
         for block in document["blocks"] + document["timing"]:
@@ -124,6 +126,7 @@ def test_no_number_stands_in_the_page_by_itself(documents):
                     assert not isinstance(row[key], str) or not re.fullmatch(r"-?[\d.]+ ?%?", row[key]), (name, row)
 
 
+@pytest.mark.long
 def test_nothing_is_loaded(report):
     text = (report / "index.html").read_text()
     page = Page(text)
@@ -135,12 +138,14 @@ def test_nothing_is_loaded(report):
     assert len(identifiers) == len(set(identifiers))
 
 
+@pytest.mark.long
 def test_all_parts_are_in_one_file(report, documents):
     whole = json.loads((report / "report.json").read_text())
     assert whole["format"] == "prostm-report/1"
     assert whole["parts"] == documents
 
 
+@pytest.mark.long
 def test_models_are_never_people(documents):
     text = documents["models"]["blocks"][0]["text"]
     assert text.startswith("These are models, never people.")
@@ -148,12 +153,14 @@ def test_models_are_never_people(documents):
     assert {row["observer"] for row in rows} == {"model: skin", "model: field", "model: strength", "model: guess", "people"}
 
 
+@pytest.mark.long
 def test_the_page_says_what_is_missing(documents):
     assert any("fig2.json" in block.get("text", "") for block in documents["about"]["blocks"])
     assert any("missing" in block.get("text", "") for block in documents["figure-2"]["blocks"])
     assert any("figure" in block for block in documents["figure-4"]["blocks"])
 
 
+@pytest.mark.long
 def test_the_parts_that_are_there_are_kept_and_the_others_come_out_alike(program, paper, report, documents, tmp_path):
     out = tmp_path / "again"
     shutil.copytree(report, out)
@@ -173,6 +180,7 @@ def test_the_parts_that_are_there_are_kept_and_the_others_come_out_alike(program
         assert picture_of(out, name) == picture_of(report, name)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("how, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
 def test_a_report_that_is_cut_short_goes_on(program, paper, report, tmp_path, how, status):
     out = tmp_path / "cut"
@@ -208,6 +216,7 @@ def test_scores_that_are_broken_are_a_sentence(refuses, tmp_path):
     refuses("report", "--quick", "--out", "r", "--paper-data", "scores", words=["fig4.json"])
 
 
+@pytest.mark.long
 def test_a_browser_prints_the_page(program, paper, report, tmp_path):
     """A stand-in for Chromium, whose arguments say what it would print."""
     out, tools = tmp_path / "printed", tmp_path / "tools"

@@ -244,6 +244,7 @@ QUICK = {"settle = 2\n": "", "seconds = 60": "seconds = 0", "interval = 1.5": "i
          "[trials]\n": "[trials]\nrest = 0.1\nsettle = 0.5\ngate = \"off\"\n", "preset = \"paper\"": "preset = \"fast\""}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_each_example_with_levels_is_rehearsed_and_analysed(prostm, tmp_path, name):
     text = (ROOT / "data" / "protocols" / f"{name}.toml").read_text()
