@@ -21,6 +21,7 @@ class FirstPlan final : public RunObserver {
  public:
   FirstPlan(const ReportWork& work, double from) : work_(work), from_(from) {}
   bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
+    if (plan_.status == PlanStatus::Planned) return false;  // made before the run had ended
     if (contact.target.time < from_ || plan.status != PlanStatus::Planned) return true;
     contact_ = contact;
     plan_ = plan;
