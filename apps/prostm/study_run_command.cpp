@@ -49,6 +49,16 @@ class Observer final : public RunObserver {
   const Interrupt& interrupt_;
 };
 
+/// Closes the pages before what they show goes, however a run ends.
+class PagesEnd {
+ public:
+  explicit PagesEnd(View& view) : view_(view) {}
+  ~PagesEnd() { view_.stop(); }
+
+ private:
+  View& view_;
+};
+
 /// The settings that all methods begin with.
 PipelineSettings base_settings(const RunOptionsGiven& given) {
   if (given.hand == "page")
@@ -199,6 +209,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   StudySession session(protocol, given.participant, file, facts, study_time());
   MarkerSender markers(std::move(targets), protocol, {given.participant, run_of(file)},
                        pipeline.device(), pipeline.sound());
+  const PagesEnd pages_end(view);
   const StudyView& study = serve(given, pipeline, session, markers, view, begins ? path : "");
   if (file.found_cut_off())
     fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);

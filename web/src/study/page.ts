@@ -116,13 +116,29 @@ export function answering(page: Acting, may: () => boolean): Answering {
   };
   find("first").addEventListener("click", () => ways.answer(true));
   find("second").addEventListener("click", () => ways.answer(false));
-  find("accept").addEventListener("click", () => {
-    ways.accept();
-    find("accept").blur();
-  });
-  for (const [id, to, coarse] of [["much-less", "less", true], ["less", "less", false], ["more", "more", false], ["much-more", "more", true]] as const)
-    find(id).addEventListener("click", () => ways.tune(to, coarse));
+  addTuning(find("tuning"), ways);
   return ways;
+}
+
+/// Fills in the buttons of an adjustment.
+function addTuning(root: HTMLElement, ways: Answering): void {
+  const add = (id: string, words: string, keys: string, act: () => void) => {
+    const button = document.createElement("button");
+    [button.id, button.type, button.textContent] = [id, "button", words];
+    button.setAttribute("aria-keyshortcuts", keys);
+    button.addEventListener("click", act);
+    root.append(button);
+    return button;
+  };
+  add("much-less", "Much less", "Shift+ArrowLeft", () => ways.tune("less", true));
+  add("less", "Less", "ArrowLeft", () => ways.tune("less", false));
+  add("more", "More", "ArrowRight", () => ways.tune("more", false));
+  add("much-more", "Much more", "Shift+ArrowRight", () => ways.tune("more", true));
+  const accept = add("accept", "They are alike", "Enter", () => {
+    ways.accept();
+    accept.blur();
+  });
+  accept.className = "strong";
 }
 
 /// Keys of answers and of tuning: letters, digits, arrows, and those that foot switches and remote controls send.
