@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "emit/foci.hpp"
 #include "emit/paths.hpp"
 #include "prostm/emit/detail/envelope.hpp"
 #include "support/heap_guard.hpp"
@@ -14,49 +15,12 @@
 namespace prostm {
 namespace {
 
+using test::focus_at;
 using test::settings_for;
-using test::Watch;
+using Player = test::FociPlayer;
 
 constexpr double kRate = 40e3;
 constexpr std::size_t kPeriod = 200;
-
-/// Pulls an emitter of foci in blocks and keeps every sample.
-struct Player {
-  explicit Player(const EmitSettings& settings, double rate = kRate)
-      : emitter(settings, rate),
-        foci(static_cast<std::size_t>(settings.foci)),
-        watch(settings.foci, rate, settings.power_limit) {}
-
-  void play(std::size_t samples) {
-    const std::size_t begin = kept.size();
-    kept.resize(begin + samples * foci);
-    const std::span<FocusSample> block(kept.data() + begin, samples * foci);
-    emitter.fill(static_cast<std::int64_t>(begin / foci), block);
-    watch.look(block);
-  }
-  void submit(std::initializer_list<LiftedFocus> wanted, std::int64_t id = 1) {
-    LiftedPlan& plan = emitter.draft();
-    plan.paths.clear();
-    plan.foci.assign(wanted.begin(), wanted.end());
-    plan.id = id;
-    emitter.submit();
-  }
-  const FocusSample& at(std::size_t sample, std::size_t focus) const {
-    return kept[sample * foci + focus];
-  }
-  double intensity(std::size_t sample, std::size_t focus = 0) const {
-    return static_cast<double>(at(sample, focus).intensity);
-  }
-
-  FocusEmitter emitter;
-  std::size_t foci;
-  Watch watch;
-  std::vector<FocusSample> kept;
-};
-
-LiftedFocus focus_at(double x, double y, double pressure) {
-  return {Vec3(x, y, 0.2), pressure};
-}
 
 EmitSettings with_waveform(const char* name, int foci = 1) {
   EmitSettings settings = settings_for(foci);

@@ -116,6 +116,47 @@ TEST(LoopSamples, RefusesWhatIsNoLoop) {
   EXPECT_THROW(loop_samples(rings({0.1}), EmitSettings(), kRate), std::invalid_argument);
 }
 
+TEST(LoopSamples, APlanInStepHasItsOwnLoop) {
+  LiftedPlan plan = rings({0.140, 0.050, 0.030});
+  plan.loop = 20e-3;
+  const std::vector<int> laps = {1, 2, 3};  // 800 samples are no whole number of three laps
+  for (std::size_t f = 0; f < 3; ++f) {
+    plan.paths[f].speed = plan.paths[f].length * laps[f] / plan.loop;
+  }
+  const LoopSamples loop = loop_samples(plan, settings(), kRate);
+  ASSERT_EQ(loop.samples, 800);
+  EXPECT_EQ(loop.laps, laps);
+  EXPECT_EQ(loop.largest_stretch(), 0.0);
+  EXPECT_NEAR(longest_lap(plan), 20e-3, 1e-12);
+  // sample by sample what the emitter gives in the second loop
+  EmitSettings emit = settings();
+  emit.foci = 3;
+  PathEmitter emitter(emit, kRate);
+  emitter.draft() = plan;
+  emitter.submit();
+  std::vector<FocusSample> block(3 * 1600);
+  emitter.fill(0, block);
+  for (std::size_t i = 0; i < loop.sample.size(); ++i) {
+    const FocusSample& theirs = block[3 * 800 + i];
+    ASSERT_LT((loop.sample[i].p_D - theirs.p_D).norm(), 1e-7F) << i;
+    ASSERT_NEAR(loop.sample[i].intensity, theirs.intensity, 1e-6F) << i;
+  }
+  // a loop that is no multiple of the unit is stretched for all alike
+  plan.loop = 801.0 / kRate;
+  const LoopSamples rounded = loop_samples(plan, settings(), kRate);
+  EXPECT_EQ(rounded.samples, 800);
+  for (const double stretch : rounded.stretch) EXPECT_NEAR(stretch, -1.0 / 801.0, 1e-12);
+  // a path too long for one loop takes two, and the others go round twice as often
+  plan.loop = 10e-3;
+  plan.paths[1].speed = 5.0;
+  plan.paths.pop_back();
+  const LoopSamples twice = loop_samples(plan, settings(), kRate);
+  EXPECT_EQ(twice.samples, 800);
+  EXPECT_EQ(twice.laps, (std::vector<int>{1, 2}));
+  plan.loop = 2.0;
+  EXPECT_THROW(loop_samples(plan, settings(), kRate), std::invalid_argument);
+}
+
 TEST(LoopSamples, OfFociAreWholePeriodsOfTheirModulation) {
   LiftedPlan plan;
   plan.foci.push_back({Vec3(0.01, 0.0, 0.2), 1.0});

@@ -145,6 +145,36 @@ TEST(PlayedPressures, AreWhatThePowerLimitLeaves) {
   EXPECT_NEAR(ours, all, 0.01);
 }
 
+TEST(PlayedPressures, InStepAreThoseOfTheEmittersSecondLoop) {
+  const TargetFrame frame = flat_frame();
+  Plan plan;
+  plan.loop = 20e-3;
+  const int laps[] = {3, 2};  // 800 samples are no whole number of three laps
+  for (int k = 0; k < 2; ++k) {
+    plan.paths.push_back(spiky(Vec2(0.06 * k, 0.0), 0.045, 0.3));
+    FocalPath& path = plan.paths.back();
+    path.speed = path.length * laps[k] / plan.loop;
+    path.period = plan.loop / laps[k];
+  }
+  for (const double power_limit : {4.0, 0.9}) {
+    EmitSettings s = settings();
+    s.power_limit = power_limit;
+    const SegmentPressures played = played_pressures(plan, frame, s, kRate);
+    const std::vector<double> theirs = emitted(plan, frame, s, 800, 1);
+    double worst = 0.0;
+    std::vector<double> at_place(800);
+    for (std::size_t k = 0; k < 800; ++k) at_place[3 * (k + 1) % 800] = theirs[k];
+    for (std::size_t i = 0; i < 800; ++i) {
+      // the power limit makes laps differ: the mean of the three that pass there
+      const double mean = (at_place[(i + 799) % 800] + at_place[i] + at_place[(i + 1) % 800]) / 3.0;
+      worst = std::max(worst, std::abs(played_at(played, plan, i, 800) - mean));
+    }
+    EXPECT_LT(worst, 0.03) << power_limit;
+  }
+  plan.loop = -1.0;
+  EXPECT_THROW(played_pressures(plan, frame, settings(), kRate), std::invalid_argument);
+}
+
 TEST(PlayedPressures, MissOfTiltedSkinWhatIsBeyondFullScale) {
   TargetFrame frame = flat_frame();
   TargetField& field = frame.patches[0];

@@ -147,6 +147,52 @@ TEST(PlanFile, RoundTripsFoci) {
   }
 }
 
+TEST(PlanFile, APhaseIsWrittenWhereThereIsOne) {
+  EXPECT_EQ(foci_example().find("phase"), std::string::npos);
+  auto json = nlohmann::json::parse(foci_example());
+  json["foci"][1]["phase"] = 0.375;
+  const Plan plan = plan_from_json(json.dump(), "am.json").plan;
+  EXPECT_EQ(plan.foci[0].phase, 0.0);
+  EXPECT_EQ(plan.foci[1].phase, 0.375);
+  PlanFileExtras extras;
+  extras.method = Method::Am;
+  TargetField field;
+  field.resize(1, 1);
+  field.cell = 0.005;
+  field.skin[0] = 1;
+  const auto again = nlohmann::json::parse(plan_to_json(plan, field, extras, {}));
+  EXPECT_FALSE(again["foci"][0].contains("phase"));
+  EXPECT_EQ(again["foci"][1]["phase"], 0.375);
+  json["foci"][1]["phase"] = 1.5;
+  EXPECT_THAT(input_error([&] { plan_from_json(json.dump(), "am.json"); }),
+              HasSubstr("\"foci\"[1].phase is 1.5; it must be from 0 to 1"));
+  json["foci"][1].erase("phase");
+  json["loop_ms"] = 20;
+  EXPECT_THAT(input_error([&] { plan_from_json(json.dump(), "am.json"); }),
+              HasSubstr("has foci and loop_ms; only paths have a loop"));
+}
+
+TEST(PlanFile, ALoopIsWrittenWhereThereIsOne) {
+  EXPECT_EQ(example().find("loop_ms"), std::string::npos);
+  auto json = nlohmann::json::parse(example());
+  EXPECT_EQ(plan_from_json(json.dump(), "p.json").plan.loop, 0.0);
+  json["loop_ms"] = 0;
+  EXPECT_EQ(plan_from_json(json.dump(), "p.json").plan.loop, 0.0);
+  json["loop_ms"] = 20.1;
+  const PlanFile file = plan_from_json(json.dump(), "p.json");
+  EXPECT_EQ(file.plan.loop, 20.1 / 1000.0);
+  const auto again = nlohmann::json::parse(plan_to_json(file.plan, file.raster, {}, {}));
+  EXPECT_EQ(again["loop_ms"], 20.1);
+  const auto refused = [&](const nlohmann::json& loop) {
+    json["loop_ms"] = loop;
+    return input_error([&] { plan_from_json(json.dump(), "p.json"); });
+  };
+  EXPECT_THAT(refused(0.5), HasSubstr("\"loop_ms\" is 0.5; it must be 0 or from 1 to 1000"));
+  EXPECT_THAT(refused(1001), HasSubstr("\"loop_ms\" is 1001; it must be from 0 to 1000"));
+  EXPECT_THAT(refused(-20), HasSubstr("\"loop_ms\" is -20; it must be from 0 to 1000"));
+  EXPECT_THAT(refused("20"), HasSubstr("\"loop_ms\" is \"20\"; it must be a number"));
+}
+
 TEST(PlanFile, SaysWhatIsWrongWithFoci) {
   test::expect_refused(foci_example(), "p.json",
                        {{"\"foci\"", "\"paths\": [], \"foci\"", "has both foci and paths"},

@@ -58,6 +58,7 @@ void expect_same(const TargetFrame& a, const TargetFrame& b) {
 RecordedPlan some_plan() {
   RecordedPlan made;
   made.plan = test::triangle_plan();
+  made.plan.loop = 20e-3;
   made.stats.total = 3e-3;
   made.stats.leaves = 5;
   made.stats.cost = 0.25;
@@ -125,6 +126,7 @@ TEST(Recording, ReadsThePlanOfAFrame) {
   EXPECT_EQ(path.length, expected.length);
   EXPECT_EQ(path.speed, expected.speed);
   EXPECT_EQ(path.period, expected.period);
+  EXPECT_EQ(read->plan.loop, 20e-3);
   for (const Quantity<PlanStats>& number : quantities<PlanStats>())
     EXPECT_EQ(value_of(number, read->stats), value_of(number, made.stats)) << number.name;
   EXPECT_EQ(read->full_scale_pressure, 0.7);
@@ -160,7 +162,7 @@ TEST(Recording, ReadsThePlanOfFoci) {
   frame.patches.assign(2, test::random_field(random));
   RecordedPlan made = some_plan();
   made.plan.clear();
-  made.plan.foci.push_back({1, Vec2(0.01, -0.02), 3.5});
+  made.plan.foci.push_back({1, Vec2(0.01, -0.02), 3.5, 0.625});
   const std::string path = folder.file("r.h5");
   Recorder recorder(path, {});
   recorder.append(frame, hand_at(0.0), &made);
@@ -171,10 +173,12 @@ TEST(Recording, ReadsThePlanOfFoci) {
   const std::optional<RecordedPlan> read = reader.plan(0);
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->plan.paths.empty());
+  EXPECT_EQ(read->plan.loop, 0.0);
   ASSERT_EQ(read->plan.foci.size(), 1u);
   EXPECT_EQ(read->plan.foci[0].patch, 1);
   EXPECT_EQ(read->plan.foci[0].position, Vec2(0.01, -0.02));
   EXPECT_EQ(read->plan.foci[0].pressure, 3.5);
+  EXPECT_EQ(read->plan.foci[0].phase, 0.625);
   EXPECT_EQ(read->sigma, made.sigma);
   EXPECT_THAT(input_error([&] { static_cast<void>(reader.plan(1)); }), HasSubstr("is broken"));
 }

@@ -57,7 +57,7 @@ ViewField some_field(std::uint32_t rows, std::uint32_t cols) {
 }
 
 ViewPath some_path(std::uint32_t patch, int points) {
-  ViewPath path{0, patch, 0.12F, 7.0F, 0.0175F, {}};
+  ViewPath path{0, patch, 0.12F, 7.0F, 0.0175F, 0.0F, 0.0F, {}};
   for (int i = 0; i < points; ++i) {
     const float x = 0.01F * std::cos(0.5F * static_cast<float>(i));
     const float y = 0.01F * std::sin(0.5F * static_cast<float>(i));
@@ -108,6 +108,7 @@ std::vector<Fixture> fixtures() {
   two.frame.fields = {some_field(2, 2), some_field(4, 3)};
   two.frame.path_count = 2;
   two.frame.paths = {some_path(0, 9), some_path(1, 10)};
+  for (ViewPath& path : two.frame.paths) path.loop = 0.035F;
   two.with_smoke = false;
   all.push_back(two);
 
@@ -117,7 +118,9 @@ std::vector<Fixture> fixtures() {
   foci.frame.path_count = 3;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const float x = 0.01F * static_cast<float>(i);
-    foci.frame.paths.push_back({1, 0, 0.0F, 0.0F, 0.005F, {{x, -x, 0.3F, x, -x, 0.2F}}});
+    const float phase = 0.25F * static_cast<float>(i);
+    foci.frame.paths.push_back(
+        {1, 0, 0.0F, 0.0F, 0.005F, 0.0F, phase, {{x, -x, 0.3F, x, -x, 0.2F}}});
   }
   foci.with_smoke = foci.with_fields = false;
   all.push_back(foci);
@@ -182,6 +185,8 @@ Json to_json(const Fixture& fixture) {
                             {"length", p.length},
                             {"speed", p.speed},
                             {"period", p.period},
+                            {"loop", p.loop},
+                            {"phase", p.phase},
                             {"points", p.points}});
   }
   json["gate"] = nullptr;
@@ -233,7 +238,7 @@ TEST(Wire, SectionsAreWhereTheDocumentSaysTheyAre) {
       return static_cast<std::size_t>(u16(at)) + (static_cast<std::size_t>(u16(at + 2)) << 16);
     };
     EXPECT_EQ(bytes.substr(0, 4), "PSTM");
-    EXPECT_EQ(u16(4), 1U);
+    EXPECT_EQ(u16(4), 2U);
     EXPECT_EQ(u32(8), fixture.frame.sequence);
     EXPECT_EQ(u32(12), bytes.size());
     std::vector<unsigned> ids;

@@ -1,6 +1,6 @@
 /// The decoder of the binary frames, docs/wire.md. It trusts nothing: every length is checked before it is read.
 
-export const kVersion = 1;
+export const kVersion = 2;
 export const kJoints = 26;
 
 /// The order of section 2, which only ever grows at its end.
@@ -67,6 +67,8 @@ export interface Path {
   length: number; // in the plane [m]
   speed: number; // [m/s]
   period: number; // [s]
+  loop: number; // in which all paths come round together [s]; 0: each on its own
+  phase: number; // delay of a focus' modulation, as a share of its period
   count: number;
   /// count × 6: x, y in P [m], rendered pressure [Pa], position on the skin in D [m]
   points: Float32Array;
@@ -227,7 +229,9 @@ function readPath(reader: Reader): Path {
   const length = reader.f32();
   const speed = reader.f32();
   const period = reader.f32();
-  return { kind, patch, count, length, speed, period, points: reader.finiteFloats(6 * count) };
+  const loop = reader.finite();
+  const phase = reader.finite();
+  return { kind, patch, count, length, speed, period, loop, phase, points: reader.finiteFloats(6 * count) };
 }
 
 function readGate(reader: Reader): Gate {

@@ -30,11 +30,11 @@ bool usable(const LiftedPath& path) {
 
 bool usable(const LiftedPlan& plan, Method method) {
   const bool is_of_method = method == Method::Am ? plan.paths.empty() : plan.foci.empty();
-  return is_of_method &&
+  return is_of_method && is_loop(plan.loop) &&
          std::all_of(plan.paths.begin(), plan.paths.end(),
                      [](const LiftedPath& path) { return usable(path); }) &&
          std::all_of(plan.foci.begin(), plan.foci.end(), [](const LiftedFocus& focus) {
-           return usable(focus.p_D) && usable(focus.pressure);
+           return usable(focus.p_D) && usable(focus.pressure) && is_phase(focus.phase);
          });
 }
 

@@ -105,8 +105,8 @@ class Emitter : public SampleSource {
   LiftedPlan& draft();
   /// Hands the draft over; it replaces a plan that the device has not fetched yet. Arc lengths are
   /// computed anew. A plan is counted as refused and treated as lose() if it is of the other method
-  /// or has a number that is not finite, a coordinate beyond 10 m, or pressures that do not match
-  /// its points. Planner's thread.
+  /// or has a number that is not finite, a coordinate beyond 10 m, a loop or phase out of bounds,
+  /// or pressures that do not match its points. Planner's thread.
   void submit() noexcept;
   /// Fades out within 50 ms, until the next plan: the hand is gone, or a number was not finite.
   /// Planner's thread.

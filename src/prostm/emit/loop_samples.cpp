@@ -8,6 +8,7 @@
 #include <string>
 
 #include "prostm/emit/detail/focus_emitter.hpp"
+#include "prostm/emit/detail/in_step.hpp"
 #include "prostm/emit/drive.hpp"
 
 namespace prostm {
@@ -16,12 +17,14 @@ namespace {
 constexpr double kSmallStretch = 0.01;
 constexpr int kLongestLaps = 8;      // of the longest lap, that a loop may have
 constexpr double kLongestLap = 1.0;  // [s]
-constexpr double kSlowest = 1e-6;    // below this speed a focal point is at rest [m/s]
 
 /// As the plan says [s]; 0 for a focal point at rest.
-double lap_of(const LiftedPath& path) {
+/// @param loop of the plan [s].
+double lap_of(const LiftedPath& path, double loop) {
   if (path.p_D.empty() || path.length <= 0.0 || path.speed <= kSlowest) return 0.0;
-  return path.length / std::min(path.speed, kMaxFocusSpeed);
+  const double lap = path.length / std::min(path.speed, kMaxFocusSpeed);
+  if (loop <= 0.0) return lap;
+  return std::max(loop / std::max(1.0, std::round(loop / lap)), path.length / kMaxFocusSpeed);
 }
 
 int laps_in(int samples, double lap) {
@@ -52,6 +55,7 @@ int loop_length(const std::vector<double>& laps) {
 
 void check(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
   validate(settings, sample_rate);
+  require_loop(plan.loop);
   const std::size_t count = plan.paths.size() + plan.foci.size();
   if (count < 1 || count > static_cast<std::size_t>(settings.foci)) {
     throw std::invalid_argument("a plan has " + std::to_string(count) +
@@ -78,8 +82,37 @@ LoopSamples loop_of_foci(const LiftedPlan& plan, EmitSettings settings, double s
   loop.sample.resize(plan.foci.size() * static_cast<std::size_t>(loop.samples));
   loop.laps.assign(plan.foci.size(), 0);
   loop.stretch.assign(plan.foci.size(), 0.0);
-  emitter.fill(0, loop.sample);
+  // after a period all sound, whatever their phases
+  const std::int64_t period = emitter.period();
+  std::vector<FocusSample> begin(plan.foci.size() * static_cast<std::size_t>(period));
+  emitter.fill(0, begin);
+  emitter.fill(period, loop.sample);
   return loop;
+}
+
+/// Sets the length of the loop, and the laps in it, of a plan whose paths go round on their own.
+void set_laps(const LiftedPlan& plan, LoopSamples& loop) {
+  std::vector<double> laps;
+  for (const LiftedPath& path : plan.paths) laps.push_back(lap_of(path, 0.0) * loop.sample_rate);
+  loop.samples = loop_length(laps);
+  for (const double lap : laps) {
+    loop.laps.push_back(laps_in(loop.samples, lap));
+    loop.stretch.push_back(stretch_in(loop.samples, lap));
+  }
+}
+
+/// The same for a plan in step.
+void set_laps_in_step(const LiftedPlan& plan, LoopSamples& loop) {
+  const double max_step = kStepMargin * kMaxFocusSpeed / loop.sample_rate;
+  const InStep shared = shared_loop(plan, loop.sample_rate, max_step);
+  const double samples = static_cast<double>(shared.samples);
+  loop.samples = kLoopUnit * std::max(1, static_cast<int>(std::lround(samples / kLoopUnit)));
+  for (const LiftedPath& path : plan.paths) {
+    const bool empty = path.p_D.empty();
+    const std::int64_t laps = empty ? 0 : with_laps(shared, path, loop.sample_rate, max_step).laps;
+    loop.laps.push_back(static_cast<int>(laps));
+    loop.stretch.push_back(laps > 0 ? loop.samples / samples - 1.0 : 0.0);
+  }
 }
 
 /// One sample of every focal point: where it is, and what its path wants.
@@ -108,29 +141,27 @@ double LoopSamples::largest_stretch() const {
 
 double longest_lap(const LiftedPlan& plan) {
   double longest = 0.0;
-  for (const LiftedPath& path : plan.paths) longest = std::max(longest, lap_of(path));
+  for (const LiftedPath& path : plan.paths) longest = std::max(longest, lap_of(path, plan.loop));
   return longest;
 }
 
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
   check(plan, settings, sample_rate);
   if (!plan.foci.empty()) return loop_of_foci(plan, settings, sample_rate);
-  std::vector<double> laps;
-  for (const LiftedPath& path : plan.paths) laps.push_back(lap_of(path) * sample_rate);
   LoopSamples loop;
-  loop.foci = static_cast<int>(laps.size());
-  loop.samples = loop_length(laps);
+  loop.foci = static_cast<int>(plan.paths.size());
   loop.sample_rate = sample_rate;
-  loop.sample.resize(laps.size() * static_cast<std::size_t>(loop.samples));
-  for (const double lap : laps) {
-    loop.laps.push_back(laps_in(loop.samples, lap));
-    loop.stretch.push_back(stretch_in(loop.samples, lap));
+  if (plan.loop > 0.0) {
+    set_laps_in_step(plan, loop);
+  } else {
+    set_laps(plan, loop);
   }
+  loop.sample.resize(plan.paths.size() * static_cast<std::size_t>(loop.samples));
 
   // twice round, so that the second time starts with the intensities that it ends with
   const double slew = largest_slew(settings.fade_time, sample_rate);
   std::array<Drive, kMaxPaths> drive{};
-  const std::span<Drive> drives(drive.data(), laps.size());
+  const std::span<Drive> drives(drive.data(), plan.paths.size());
   for (Drive& d : drives) d.max_fall = slew;
   for (int k = 0; k < 2 * loop.samples; ++k) {
     const int sample = k % loop.samples;

@@ -26,12 +26,14 @@ struct LoopSamples {
 /// point. Periods are adjusted so that all paths play whole laps in one loop, (E7). Its length is a
 /// multiple of kLoopUnit samples, from one to eight of the longest laps: the shortest in which no
 /// lap changes by more than 1 %, or else the one with the least change.
-/// A plan of foci is played as FocusEmitter does, for the fewest whole periods of the modulation,
-/// (B4), that are a multiple of kLoopUnit samples.
+/// A plan in step has its own loop, (E10), rounded to a multiple of kLoopUnit samples.
+/// A plan of foci is played as FocusEmitter does once all sound, for the fewest whole periods of
+/// the modulation, (B4), that are a multiple of kLoopUnit samples.
 /// @param plan its paths are measured, with finite numbers. A path without length or speed is a
 /// focal point at rest, a path without points is silent.
 /// @throws as validate(settings, sample_rate) does, and std::invalid_argument for a plan without
-/// paths or foci, with more than settings.foci, or with a lap that takes more than a second.
+/// paths or foci, with more than settings.foci, with a loop out of bounds, or with a lap that takes
+/// more than a second.
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate);
 
 /// Returns the time of the longest lap of a plan [s]; 0 if every focal point is at rest.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "prostm/emit/compensation.hpp"
 #include "prostm/emit/detail/focus_motion.hpp"
+#include "prostm/emit/detail/in_step.hpp"
 #include "prostm/emit/drive.hpp"
 #include "prostm/emit/loop_samples.hpp"
 
@@ -16,20 +18,45 @@ namespace {
 constexpr double kLongestLap = 1.0;  // [s]
 constexpr int kLimitedLaps = 8;      // longest laps averaged under the power limit
 
-/// A lap of one focal point.
+/// The places of a path at which one focal point sounds, all at equal arcs.
 struct Lap {
-  std::vector<double> wanted;  // intensity at each sample, sample 0 at the path's first point
+  std::vector<double> wanted;  // intensity at each place, place 0 at the path's first point
   std::vector<double> power;   // Σ intensity² emitted there …
   std::vector<int> times;      // … over this many laps
+  // places from sample to sample; where a lap in step is no whole number of samples, the laps of a
+  // loop go by different places, and this is above 1
+  std::size_t stride = 1;
 };
 
+/// Sets how many places a lap has, and the stride.
+void set_places(const LiftedPath& path, const InStep& loop, double sample_rate, Lap& lap) {
+  std::int64_t places = 1;
+  if (loop.samples > 0) {
+    const InStep part =
+        with_laps(loop, path, sample_rate, kStepMargin * kMaxFocusSpeed / sample_rate);
+    const std::int64_t common = std::gcd(part.laps, part.samples);
+    if (part.laps > 0) {
+      places = part.samples / common;
+      lap.stride = static_cast<std::size_t>(part.laps / common);
+    }
+  } else {
+    FocusMotion motion;
+    motion.configure(sample_rate, kMaxFocusSpeed / sample_rate);
+    const auto most = static_cast<std::int64_t>(std::ceil(kLongestLap * sample_rate));
+    places = std::min(motion.lap_samples(path), most);
+  }
+  const auto count = static_cast<std::size_t>(places);
+  lap.wanted.resize(count);
+  lap.power.resize(count);
+  lap.times.resize(count);
+}
+
 /// Returns the lap with the intensities that the path wants.
-Lap lap_of(const LiftedPath& path, const EmitSettings& settings, double sample_rate) {
-  FocusMotion motion;
-  motion.configure(sample_rate, kMaxFocusSpeed / sample_rate);
-  const auto most = static_cast<std::int64_t>(std::ceil(kLongestLap * sample_rate));
-  const auto samples = static_cast<std::size_t>(std::min(motion.lap_samples(path), most));
-  Lap lap{std::vector<double>(samples), std::vector<double>(samples), std::vector<int>(samples)};
+Lap lap_of(const LiftedPath& path, const InStep& loop, const EmitSettings& settings,
+           double sample_rate) {
+  Lap lap;
+  set_places(path, loop, sample_rate, lap);
+  const std::size_t samples = lap.wanted.size();
   for (std::size_t k = 0; k < samples; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(samples);
     bool saturated = false;
@@ -39,9 +66,11 @@ Lap lap_of(const LiftedPath& path, const EmitSettings& settings, double sample_r
   return lap;
 }
 
-/// Goes round all paths at once and sums the power emitted after the first longest lap.
-void play(const EmitSettings& settings, double sample_rate, std::span<Lap> laps) {
-  std::size_t longest = 0;
+/// Goes round all paths at once and sums the power emitted after the first longest lap, or loop.
+/// @param loop samples of the loop of a plan in step, else 0.
+void play(const EmitSettings& settings, double sample_rate, std::int64_t loop,
+          std::span<Lap> laps) {
+  auto longest = static_cast<std::size_t>(loop);
   double power = 0.0;  // upper bound, as if all peaked at once
   for (const Lap& lap : laps) {
     longest = std::max(longest, lap.wanted.size());
@@ -56,7 +85,8 @@ void play(const EmitSettings& settings, double sample_rate, std::span<Lap> laps)
   std::array<std::size_t, kMaxPaths> at{};
   for (std::size_t k = 0; k < end; ++k) {
     for (std::size_t f = 0; f < laps.size(); ++f) {
-      at[f] = at[f] + 1 < laps[f].wanted.size() ? at[f] + 1 : 0;
+      at[f] += laps[f].stride;
+      if (at[f] >= laps[f].wanted.size()) at[f] -= laps[f].wanted.size();
       drives[f].wanted = laps[f].wanted[at[f]];
     }
     limit_drives(drives, slew, settings.power_limit);
@@ -66,6 +96,24 @@ void play(const EmitSettings& settings, double sample_rate, std::span<Lap> laps)
       ++laps[f].times[at[f]];
     }
   }
+}
+
+/// Where the laps of a loop go by different places, each place gets the mean of the laps that pass
+/// around it.
+void average_laps(Lap& lap) {
+  if (lap.stride == 1) return;
+  const std::size_t n = lap.power.size(), half = lap.stride / 2;
+  const double end_weight = lap.stride % 2 == 0 ? 0.5 : 1.0;
+  std::vector<double> mean(n);
+  for (std::size_t place = 0; place < n; ++place) {
+    for (std::size_t i = 0; i <= 2 * half; ++i) {
+      const std::size_t from = (place + n + i - half) % n;
+      const double weight = i == 0 || i == 2 * half ? end_weight : 1.0;
+      mean[place] += weight * lap.power[from] / lap.times[from] / static_cast<double>(lap.stride);
+    }
+  }
+  lap.power = std::move(mean);
+  lap.times.assign(n, 1);
 }
 
 /// Returns the plan with the factor of (E8) in place of each pressure.
@@ -134,13 +182,18 @@ double own_full_scale(double gain, double largest) {
 SegmentPressures played_pressures(const Plan& plan, const TargetFrame& frame, EmitSettings settings,
                                   double sample_rate) {
   validate(settings, sample_rate);
+  require_loop(plan.loop);
   LiftedPlan lifted;
   lift(plan, frame, lifted);
   const LiftedPlan factors = tilt_factors(lifted, frame, settings.tilt_bound);
   compensate_tilt(lifted, frame, settings.tilt_bound);
   std::vector<Lap> laps;
-  for (const LiftedPath& path : lifted.paths) laps.push_back(lap_of(path, settings, sample_rate));
-  if (!laps.empty()) play(settings, sample_rate, laps);
+  const InStep loop = shared_loop(lifted, sample_rate, kStepMargin * kMaxFocusSpeed / sample_rate);
+  for (const LiftedPath& path : lifted.paths) {
+    laps.push_back(lap_of(path, loop, settings, sample_rate));
+  }
+  if (!laps.empty()) play(settings, sample_rate, loop.samples, laps);
+  for (Lap& lap : laps) average_laps(lap);
 
   SegmentPressures out;
   std::size_t k = 0;  // index of the lifted path; paths without points are left out

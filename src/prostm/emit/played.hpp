@@ -17,10 +17,10 @@ double own_full_scale(double gain, double largest);
 /// begun at its first point, or the mean of laps if the power limit makes them differ. The factor
 /// of (E8) is divided out again, so that only its demand beyond full scale is missing. For a plan
 /// of foci, the peak of each, (B4).
-/// A lap of more than a second counts as a second.
+/// A lap of more than a second counts as a second. A plan in step is played loop by loop.
 /// @param frame frame that the plan was made for. @param settings all paths or foci of the plan are
-/// played, whatever `foci` says. @throws as validate(settings, sample_rate) does. @pre every patch
-/// of the plan is in the frame.
+/// played, whatever `foci` says. @throws as validate(settings, sample_rate) and require_loop() do.
+/// @pre every patch of the plan is in the frame.
 SegmentPressures played_pressures(const Plan& plan, const TargetFrame& frame, EmitSettings settings,
                                   double sample_rate);
 /// The same for a plan for one field.

@@ -59,13 +59,29 @@ std::vector<double> in_micrometres(std::vector<double> values) {
   return values;
 }
 
+Json spectrum_json(const std::vector<FeltHarmonic>& spectrum) {
+  if (spectrum.empty()) return nullptr;
+  Json list = Json::array();
+  for (const FeltHarmonic& h : spectrum) {
+    list.push_back({{"frequency_hz", h.frequency},
+                    {"share_at_strongest", h.share_at_strongest},
+                    {"share_of_intensity", h.share_of_intensity},
+                    {"strongest_um", 1e6 * h.displacement_strongest},
+                    {"strongest_mm_s", 1e3 * h.velocity_strongest},
+                    {"skin_um", 1e6 * h.displacement_skin},
+                    {"skin_mm_s", 1e3 * h.velocity_skin}});
+  }
+  return list;
+}
+
 Json felt_json(const PhysicalReport& report) {
   if (report.felt == nullptr) return nullptr;
   Json felt = {{"largest_um", 1e6 * report.felt->largest},
                {"intensity_um", 1e6 * report.felt->intensity},
                {"metrics", metrics_or_null(report.felt_metrics)},
                {"ghosts", nullptr},
-               {"strongest_ghost", nullptr}};
+               {"strongest_ghost", nullptr},
+               {"spectrum", spectrum_json(report.spectrum)}};
   if (report.ghosts != nullptr) {
     felt["ghosts"] = report.ghosts->count;
     felt["strongest_ghost"] = report.ghosts->largest;

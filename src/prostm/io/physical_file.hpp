@@ -24,7 +24,8 @@ struct PhysicalReport {
   const FeltField* felt = nullptr;        ///< null for loops that are not felt
   const Metrics* felt_metrics = nullptr;  ///< null without a target, too
   const Ghosts* ghosts = nullptr;         ///< the same
-  std::vector<SettingsGroup> settings;    ///< of every stage
+  std::vector<FeltHarmonic> spectrum;   ///< empty unless asked for, and for loops that are not felt
+  std::vector<SettingsGroup> settings;  ///< of every stage
 };
 std::string physical_to_json(const PhysicalReport& report);
 

@@ -28,9 +28,11 @@ Json path_json(const FocalPath& path) {
 }
 
 Json focus_json(const FocalPoint& focus) {
-  return {{"patch", focus.patch},
-          {"position_mm", milli_json(focus.position)},
-          {"pressure", focus.pressure}};
+  Json json = {{"patch", focus.patch},
+               {"position_mm", milli_json(focus.position)},
+               {"pressure", focus.pressure}};
+  if (focus.phase != 0.0) json["phase"] = focus.phase;
+  return json;
 }
 
 void write_quality(const PlanQuality& quality, Json& document) {
@@ -98,7 +100,19 @@ FocalPoint read_focus(const JsonNode& node) {
       node.at("position_mm", "a point [x, y]").vec2(-kMaxCoordinateMm, kMaxCoordinateMm);
   focus.position = Vec2(from_milli(mm.x()), from_milli(mm.y()));
   focus.pressure = node.at("pressure", "a number").number(0.0, kMaxFilePressure);
+  if (node.has("phase")) focus.phase = node.at("phase", "").number(0.0, 1.0);
   return focus;
+}
+
+double read_loop(const JsonNode& root) {
+  if (!root.has("loop_ms")) return 0.0;
+  const JsonNode loop_ms = root.at("loop_ms", "");
+  const double loop = from_milli(loop_ms.number(0.0, to_milli(kLongestLoop)));
+  if (!is_loop(loop)) {
+    loop_ms.fail(fmt::format("is {}; it must be 0 or from {} to {}", to_milli(loop),
+                             to_milli(kShortestLoop), to_milli(kLongestLoop)));
+  }
+  return loop;
 }
 
 template <class Read, class List>
@@ -116,6 +130,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
                          const std::vector<SettingsGroup>& settings) {
   Json document = {{"format", "prostm-plan/1"}, {"method", name_of(extras.method)}};
   if (extras.preset) document["preset"] = name_of(*extras.preset);
+  if (plan.loop > 0.0) document["loop_ms"] = to_milli(plan.loop);
   Json& list = document[extras.method == Method::Am ? "foci" : "paths"] = Json::array();
   for (const FocalPath& path : plan.paths) list.push_back(path_json(path));
   for (const FocalPoint& focus : plan.foci) list.push_back(focus_json(focus));
@@ -160,9 +175,11 @@ PlanFile plan_from_json(std::string_view text, const std::string& name) {
   file.method = root.has("foci") ? Method::Am : Method::ProStm;
   if (file.method == Method::Am) {
     if (root.has("paths")) root.fail("has both foci and paths; a plan has one of the two");
+    if (root.has("loop_ms")) root.fail("has foci and loop_ms; only paths have a loop");
     read_list(root.at("foci", "an array of foci"), "foci", read_focus, file.plan.foci);
   } else {
     read_list(root.at("paths", "an array of paths, or foci"), "paths", read_path, file.plan.paths);
+    file.plan.loop = read_loop(root);
   }
 
   // the raster's skin is where it has a height

@@ -232,6 +232,7 @@ void Recorder::Impl::append_plan(const RecordedPlan* made, std::size_t patches_n
   plan.append("length", length, 1);
   plan.append("speed", speed, 1);
   plan.append("period", period, 1);
+  plan.append(recording::kLoop, p == nullptr ? 0.0 : p->loop);
   append_foci(p);
   append_how(made, patches_now);
 }
@@ -256,18 +257,21 @@ void Recorder::Impl::append_how(const RecordedPlan* made, std::size_t patches_no
 void Recorder::Impl::append_foci(const Plan* p) {
   const std::size_t foci = p == nullptr ? 0 : p->foci.size();
   std::vector<std::int32_t> patch(kMaxPaths, -1);
-  std::vector<double> pressure(kMaxPaths, kNan), position(2 * pressure.size(), kNan);
+  std::vector<double> pressure(kMaxPaths, kNan), phase = pressure;
+  std::vector<double> position(2 * pressure.size(), kNan);
   for (std::size_t i = 0; i < foci; ++i) {
     const FocalPoint& focus = p->foci[i];
     patch[i] = focus.patch;
     position[2 * i] = focus.position.x();
     position[2 * i + 1] = focus.position.y();
     pressure[i] = focus.pressure;
+    phase[i] = focus.phase;
   }
   plan.append<std::int32_t>("foci", p == nullptr ? -1 : static_cast<std::int32_t>(foci));
   plan.append("focus_patch", patch, 1);
   plan.append("focus_position", position, 1);
   plan.append("focus_pressure", pressure, 1);
+  plan.append(recording::kFocusPhase, phase, 1);
 }
 
 void Recorder::Impl::append_gate(const std::optional<GateResult>& result) {

@@ -35,7 +35,7 @@ bool is_path(const FocalPath& path, int patches) {
 
 bool is_focus(const FocalPoint& focus, int patches) {
   return focus.patch >= 0 && focus.patch < patches && focus.position.allFinite() &&
-         is_number(focus.pressure);
+         is_number(focus.pressure) && is_phase(focus.phase);
 }
 
 }  // namespace
@@ -68,6 +68,10 @@ struct RecordingReader::Impl {
   template <class T>
   std::vector<T> gate_row(const std::string& name, std::size_t i) const {
     return row<T>("/gate/", "what its gate said", recording::gate_columns(), name, i);
+  }
+  /// Whether the plans have a table that earlier versions did not write.
+  bool has_plan_table(const char* name) const {
+    return H5Lexists(file.get(), ("/plan/" + std::string(name)).c_str(), H5P_DEFAULT) > 0;
   }
   std::size_t checked(int i) const;
   void read_index();
@@ -211,8 +215,12 @@ void RecordingReader::Impl::read_foci(std::size_t i, std::size_t count, Plan& pl
   const auto patch = plan_row<std::int32_t>("focus_patch", i);
   const auto position = plan_row<double>("focus_position", i);
   const auto pressure = plan_row<double>("focus_pressure", i);
+  const bool phased = has_plan_table(recording::kFocusPhase);
+  std::vector<double> phase;
+  if (phased) phase = plan_row<double>(recording::kFocusPhase, i);
   for (std::size_t k = 0; k < count; ++k) {
-    const FocalPoint focus{patch[k], Vec2(position[2 * k], position[2 * k + 1]), pressure[k]};
+    const FocalPoint focus{patch[k], Vec2(position[2 * k], position[2 * k + 1]), pressure[k],
+                           phased ? phase[k] : 0.0};
     if (!is_focus(focus, patches[i])) broken();
     plan.foci.push_back(focus);
   }
@@ -313,6 +321,10 @@ std::optional<RecordedPlan> RecordingReader::plan(int i) const {
   RecordedPlan recorded;
   impl_->read_paths(at, static_cast<std::size_t>(paths), recorded.plan);
   impl_->read_foci(at, static_cast<std::size_t>(foci), recorded.plan);
+  if (impl_->has_plan_table(recording::kLoop)) {
+    recorded.plan.loop = impl_->plan_row<double>(recording::kLoop, at)[0];
+    if (!is_loop(recorded.plan.loop)) impl_->broken();
+  }
   recorded.stats = impl_->read_stats(at);
   recorded.full_scale_pressure = impl_->plan_row<double>("full_scale_pressure", at)[0];
   const auto sigma = impl_->plan_row<double>("sigma", at);

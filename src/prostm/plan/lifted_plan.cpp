@@ -103,6 +103,7 @@ void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out)
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept {
   out.paths.clear();
   out.foci.clear();
+  out.loop = plan.loop;
   for (const FocalPath& path : plan.paths) {
     if (path.points.empty()) continue;
     const auto patch = static_cast<std::size_t>(path.patch);
@@ -115,7 +116,7 @@ void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept 
     assert(patch < frame.patches.size());
     const TargetField& field = frame.patches[patch];
     const Vec3 p(focus.position.x(), focus.position.y(), height_at(field, focus.position));
-    out.foci.push_back({field.X_DP * p, focus.pressure, focus.patch});
+    out.foci.push_back({field.X_DP * p, focus.pressure, focus.patch, focus.phase});
   }
 }
 

@@ -30,12 +30,14 @@ struct LiftedFocus {
   Vec3 p_D = Vec3::Zero();  ///< [m]
   double pressure = 0.0;    ///< rendered at the peak of the modulation, unit of the target
   int patch = 0;            ///< index of the target patch that it lies on
+  double phase = 0.0;       ///< as FocalPoint's
 };
 
 /// Either paths or foci; the other list is empty.
 struct LiftedPlan {
   boost::container::static_vector<LiftedPath, kMaxPaths> paths;
   boost::container::static_vector<LiftedFocus, kMaxPaths> foci;
+  double loop = 0.0;    ///< as Plan's [s]
   std::int64_t id = 0;  ///< number of the plan, from 1
 };
 
@@ -44,8 +46,7 @@ struct LiftedPlan {
 /// path's speed along the 3-D curve. The heights are smoothed along the path over two cells, (E1),
 /// since the stairs of a raster would make the curve longer than the skin is. A path of fewer than
 /// two distinct points is a point at rest; a path without points is left out. A focus gets the
-/// height of the skin there. Sets `paths` and `foci`, leaves `id`. @pre every `patch` is an index
-/// into frame.patches.
+/// height of the skin there. Sets all but `id`. @pre every `patch` is an index into frame.patches.
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
 
 /// Returns the length on the skin of one path over `field`, as lift() makes it [m].

@@ -1,5 +1,10 @@
 #include "prostm/plan/plan.hpp"
 
+#include <stdexcept>
+#include <string>
+
+#include "prostm/core/number_text.hpp"
+
 namespace prostm {
 
 double closed_length(const FocalPath& path) {
@@ -7,6 +12,13 @@ double closed_length(const FocalPath& path) {
   const std::size_t n = path.points.size();
   for (std::size_t i = 0; i < n; ++i) length += (path.points[(i + 1) % n] - path.points[i]).norm();
   return length;
+}
+
+void require_loop(double loop) {
+  if (is_loop(loop)) return;
+  throw std::invalid_argument("loop = " + number_text(loop) + " s must be 0 or between " +
+                              number_text(kShortestLoop) + " and " + number_text(kLongestLoop) +
+                              " s");
 }
 
 void translate(Plan& plan, const Vec2& shift) {

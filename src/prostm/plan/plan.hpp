@@ -2,6 +2,7 @@
 /// A plan: paths or positions of focal points until the next plan comes.
 
 #include <boost/container/static_vector.hpp>
+#include <cmath>
 
 #include "prostm/core/geometry.hpp"
 
@@ -30,19 +31,39 @@ struct FocalPoint {
   int patch = 0;                 ///< index of the target patch (hand)
   Vec2 position = Vec2::Zero();  ///< in P [m]
   double pressure = 0.0;         ///< rendered at the peak of the modulation, unit of the target
+  double phase = 0.0;  ///< delay of its modulation, as a share of its period, 0 to 1, (B7)
 };
 
 using FocalPoints = boost::container::static_vector<FocalPoint, kMaxPaths>;
 
+/// Shortest and longest loop of a plan in step [s].
+inline constexpr double kShortestLoop = 1e-3, kLongestLoop = 1.0;
+/// Whether a plan may have this loop [s]: 0, for none, or within these bounds.
+inline bool is_loop(double loop) {
+  return std::isfinite(loop) && (loop == 0.0 || (loop >= kShortestLoop && loop <= kLongestLoop));
+}
+/// Checks that. @throws std::invalid_argument with a sentence.
+void require_loop(double loop);
+/// Whether a focus may have this phase.
+inline bool is_phase(double phase) {
+  return std::isfinite(phase) && phase >= 0.0 && phase <= 1.0;
+}
+
 /// Either closed paths or foci; the other list is empty.
+///
+/// A plan with `loop` above 0 is in step: each path goes round in a whole number of laps while the
+/// loop goes round once, and is at its first point when the loop begins, (E10). `speed` and
+/// `period` of its paths are those that this takes.
 struct Plan {
   boost::container::static_vector<FocalPath, kMaxPaths> paths;
   FocalPoints foci;
+  double loop = 0.0;  ///< period in which all paths come round together [s]; 0: each on its own
 
   bool empty() const { return paths.empty() && foci.empty(); }
   void clear() {
     paths.clear();
     foci.clear();
+    loop = 0.0;
   }
 };
 

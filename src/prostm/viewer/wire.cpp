@@ -151,6 +151,8 @@ void write_plan(const ViewFrame& frame, Writer& w) {
     w.put(path.length);
     w.put(path.speed);
     w.put(path.period);
+    w.put(path.loop);
+    w.put(path.phase);
     w.put_all(path.points);
   }
   w.end();

@@ -12,7 +12,7 @@
 
 namespace prostm {
 
-inline constexpr int kWireVersion = 1;
+inline constexpr int kWireVersion = 2;
 
 /// The numbers of a frame, in the order of the wire, which only ever grows at its end: metrics that
 /// have no place here follow, in the order of quantities<Metrics>().
@@ -122,6 +122,8 @@ struct ViewPath {
   float length = 0.0F;      ///< in the plane [m]
   float speed = 0.0F;       ///< [m/s]
   float period = 0.0F;      ///< [s]
+  float loop = 0.0F;        ///< in which all paths come round together [s]; 0: none
+  float phase = 0.0F;       ///< delay of a focus' modulation, as a share of its period
   std::vector<ViewPoint> points;
 };
 

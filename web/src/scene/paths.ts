@@ -97,6 +97,7 @@ export class Paths {
   private along: Float64Array[] = []; // of each path: length from its first point to each, and around [m]
   private begin: number[] = []; // first vertex of each path
   private readonly runners: Runner[] = [];
+  private clock = 0; // [s], as it is played
   private linear = Array.from({ length: 8 }, (_, i) => new Color().setRGB(...pathColour(i), "srgb"));
   /// times slower than it is played
   slowdown = 50;
@@ -168,10 +169,11 @@ export class Paths {
   advance(dt: number): void {
     const position = this.points.data("position"), colour = this.points.data("colour"), size = this.points.data("size");
     const shape = this.ribbons.data("shape");
+    this.clock += dt / this.slowdown;
     this.plan.forEach((path, k) => {
       const runner = this.runners[k]!;
       runner.period = path.period > 0 ? path.period : 0.02;
-      runner.phase = (runner.phase + dt / (this.slowdown * runner.period)) % 1;
+      runner.phase = this.phase(path, runner, dt);
       const tint = this.linear[k % this.linear.length]!;
       colour.set([tint.r, tint.g, tint.b], 3 * k);
       if (path.kind === "focus") {
@@ -194,6 +196,13 @@ export class Paths {
     this.points.geometry.setDrawRange(0, this.plan.length);
     this.ribbons.changed();
     this.points.changed();
+  }
+
+  /// Where a path's focal point is now, 0 to 1: by one clock for paths in step and for foci.
+  private phase(path: Path, runner: Runner, dt: number): number {
+    if (path.kind === "focus") return (this.clock / runner.period + 1 - path.phase) % 1;
+    if (path.loop > 0) return (Math.max(1, Math.round(path.loop / runner.period)) * (this.clock / path.loop)) % 1;
+    return (runner.phase + dt / (this.slowdown * runner.period)) % 1;
   }
 
   /// The point of path k before a place along it, and how far from there to the next.

@@ -68,7 +68,7 @@ describe("a connection", () => {
     connection.open();
     newest().open();
     const say = (data: unknown) => newest().onmessage?.({ data });
-    for (const bad of [new ArrayBuffer(0), new ArrayBuffer(3), encode({ version: 2 }), encode({}).slice(0, 30)]) say(bad);
+    for (const bad of [new ArrayBuffer(0), new ArrayBuffer(3), encode({ version: 3 }), encode({}).slice(0, 30)]) say(bad);
     for (const bad of ["", "{", "[]", '{"type":"hello"}', '{"type":"state","controls":[{}]}']) say(bad);
     expect([connection.refused, connection.frames]).toEqual([4, 0]);
     expect(links[links.length - 1]![1]).toMatch(/was not read/);

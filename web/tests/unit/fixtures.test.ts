@@ -13,7 +13,7 @@ function inWords(frame: Frame): unknown {
     (run.muted ? 16 : 0) | (run.calibrating ? 32 : 0) | (run.hot ? 64 : 0);
   const rows = (values: Float32Array, width: number) => Array.from({ length: values.length / width }, (_, i) => [...values.subarray(width * i, width * (i + 1))]);
   return {
-    version: 1,
+    version: 2,
     sequence: frame.sequence,
     run: { time: frame.run.time, recording_time: known(frame.run.recordingTime), world_steps: frame.run.worldSteps, plan_updates: frame.run.planUpdates, flags },
     numbers: Object.fromEntries(kNumbers.map((name, i) => [name, known(frame.numbers[i] ?? NaN)])),
@@ -23,7 +23,7 @@ function inWords(frame: Frame): unknown {
       rows: p.rows, cols: p.cols, cell: p.cell, origin: p.centre, X_DP: [...p.pose], scale: p.scale, height_scale: p.heightScale,
       target: [...p.target], rendered: [...p.rendered], height: [...p.height], skin: [...p.skin],
     })),
-    plan: frame.plan.map((p) => ({ kind: p.kind === "path" ? 0 : 1, patch: p.patch, length: p.length, speed: p.speed, period: p.period, points: rows(p.points, 6) })),
+    plan: frame.plan.map((p) => ({ kind: p.kind === "path" ? 0 : 1, patch: p.patch, length: p.length, speed: p.speed, period: p.period, loop: p.loop, phase: p.phase, points: rows(p.points, 6) })),
     gate: frame.gate,
   };
 }

@@ -9,8 +9,8 @@ const patch: Patch = {
   target: Uint16Array.from({ length: 15 }, (_, i) => 1000 * i), rendered: Uint16Array.from({ length: 15 }, (_, i) => 65535 - i),
   height: Int16Array.from({ length: 15 }, (_, i) => i - 7), skin: Uint8Array.from({ length: 15 }, (_, i) => i % 2),
 };
-const path: Path = { kind: "path", patch: 0, count: 4, length: 0.125, speed: 7, period: 0.5, points: Float32Array.from({ length: 24 }, (_, i) => i) };
-const focus: Path = { kind: "focus", patch: 1, count: 1, length: 0, speed: 0, period: 0.005, points: Float32Array.from([1, 2, 3, 4, 5, 6]) };
+const path: Path = { kind: "path", patch: 0, count: 4, length: 0.125, speed: 7, period: 0.5, loop: 1.5, phase: 0, points: Float32Array.from({ length: 24 }, (_, i) => i) };
+const focus: Path = { kind: "focus", patch: 1, count: 1, length: 0, speed: 0, period: 0.005, loop: 0, phase: 0.25, points: Float32Array.from([1, 2, 3, 4, 5, 6]) };
 const gate: Gate = { passed: true, share: 0.75, maxima: 4, balance: 0.875, saddle: 0.5, area: 0.0625, force: 0.125, problem: "none", sentence: "64 cm² are pressed." };
 const whole = () =>
   encode({ sequence: 12, run: { time: 3.5, recordingTime: 1.25, worldSteps: 175, planUpdates: 87, paused: true, handInSight: true, muted: true }, unknown: 13,
@@ -78,7 +78,7 @@ describe("a malformed message", () => {
     }
   });
   it("of another version is refused with a sentence that says so", () => {
-    expect(() => new Decoder().decode(encode({ version: 2 }))).toThrow(/version 2 .* version 1/);
+    expect(() => new Decoder().decode(encode({ version: 3 }))).toThrow(/version 3 .* version 2/);
   });
   it("that begins with something else is refused", () => refused(changed((v) => v.setUint8(0, 0x51))));
   it("with more sections than it holds is refused", () => refused(changed((v) => v.setUint16(6, 60000, true))));

@@ -32,14 +32,28 @@ std::vector<double> envelope_of(const EmitSettings& settings, int period) {
   return values;
 }
 
-/// Action of the focal points at the next zero of the envelope.
+/// Action of the focal points at their next zeros.
 enum class Next : std::uint8_t { GoOn, TakeOver, Rest };
 
-struct Focus {
+/// A focal point plays what it was given until it waits for something new. At its zero it goes
+/// there; it rises at the next zero of its phase, which is the same one if that has not changed.
+enum class State : std::uint8_t { Plays, Waits, Rises };
+
+/// Part of a focal point in a plan.
+struct Part {
   Vec3 p_D = Vec3(0.0, 0.0, 0.2);  // unused focal points rest 200 mm above the array
   double amplitude = 0.0;          // intensity at the peak
+  std::size_t delay = 0;           // samples from the clock's zero to its own
   bool saturated = false;          // clipped at full scale
+  bool limited = false;            // by the power limit
+};
+
+struct Focus {
+  State state = State::Plays;
+  Part now, wanted;
   FocusSample last;
+
+  bool sounds() const { return now.amplitude > 0.0; }
 };
 
 }  // namespace
@@ -50,7 +64,7 @@ struct FocusEmitter::Impl {
         settings(e.settings),
         envelope(envelope_of(settings, period_samples(settings, sample_rate))),
         stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * sample_rate))) {
-    for (Focus& f : focus) f.last.p_D = f.p_D.cast<float>();
+    for (Focus& f : focus) f.last.p_D = f.now.p_D.cast<float>();
   }
 
   Exchange& exchange;
@@ -66,22 +80,34 @@ struct FocusEmitter::Impl {
   LongestStep longest_step;
   TakeOverLog::Entry entry = TakeOverLog::kNone;
   Next next = Next::GoOn;
-  std::size_t phase = 0;        // envelope index of the next sample
-  bool silent = true;           // whether the last sample was silent
-  bool sounding = false;        // some amplitude is above 0
-  bool limited = false;         // by the power limit
+  std::size_t clock = 0;        // sample of the period, of all focal points
+  bool stood = true;            // whether the clock stood since the last sample
+  bool to_rest = false;         // the focal points that wait are to fall silent
+  bool to_begin = false;        // the plan does not sound as a whole yet
   bool fed = false;             // a plan came and was not lost since
   std::int64_t since_plan = 0;  // samples
   std::size_t to_draw = 0;      // samples of the plan's first period that are left
 
   std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
+  bool sounding() {
+    return std::any_of(foci().begin(), foci().end(), [](const Focus& f) {
+      return f.sounds() || (f.state == State::Rises && f.wanted.amplitude > 0.0);
+    });
+  }
+  bool silent() {
+    return std::none_of(foci().begin(), foci().end(), [](const Focus& f) { return f.sounds(); });
+  }
+  bool at_zero(const Focus& f) const { return f.now.delay == clock; }
 
   void receive(std::int64_t sample);
-  void take_over(std::int64_t sample);
+  void assign(std::int64_t sample);
   void place(const LiftedPlan& plan);
   void limit_power();
+  void go_over();
+  void rise();
+  bool holds();
   void emit(std::int64_t sample, std::span<FocusSample> out);
-  void write(Focus& f, double a, FocusSample& out);
+  void write(Focus& f, FocusSample& out);
 };
 
 /// Acts on the newest message, if one came.
@@ -100,55 +126,111 @@ void FocusEmitter::Impl::place(const LiftedPlan& plan) {
   stats.dropped_paths += static_cast<std::int64_t>(plan.foci.size() - count);
   MatchCosts costs{};
   for (std::size_t i = 0; i < foci().size(); ++i) {
-    for (std::size_t k = 0; k < count; ++k) costs[i][k] = (plan.foci[k].p_D - focus[i].p_D).norm();
+    for (std::size_t k = 0; k < count; ++k) {
+      costs[i][k] = (plan.foci[k].p_D - focus[i].now.p_D).norm();
+    }
   }
   const auto match = match_paths(costs, settings.foci, static_cast<int>(count));
   for (std::size_t i = 0; i < foci().size(); ++i) {
-    Focus& f = focus[i];
-    f.amplitude = 0.0;
-    f.saturated = false;
     if (match[i] == kNoPath) continue;
-    const LiftedFocus& wanted = plan.foci[static_cast<std::size_t>(match[i])];
-    f.p_D = wanted.p_D;
-    f.amplitude = drive_intensity(wanted.pressure, settings.full_scale_pressure,
-                                  settings.silent_below, f.saturated);
+    const LiftedFocus& given = plan.foci[static_cast<std::size_t>(match[i])];
+    Part& part = focus[i].wanted;
+    part.p_D = given.p_D;
+    part.amplitude = drive_intensity(given.pressure, settings.full_scale_pressure,
+                                     settings.silent_below, part.saturated);
+    const auto delay = std::lround(given.phase * static_cast<double>(envelope.size()));
+    part.delay = static_cast<std::size_t>(delay) % envelope.size();
   }
 }
 
 /// Scales all by one factor if Σ I² at the peak exceeds the limit.
 void FocusEmitter::Impl::limit_power() {
   double power = 0.0;
-  for (const Focus& f : foci()) power += f.amplitude * f.amplitude;
-  sounding = power > 0.0;
-  limited = power > settings.power_limit;
-  if (!limited) return;
+  for (const Focus& f : foci()) power += f.wanted.amplitude * f.wanted.amplitude;
+  if (power <= settings.power_limit) return;
   const double scale = std::sqrt(settings.power_limit / power);
-  for (Focus& f : foci()) f.amplitude *= scale;
+  for (Focus& f : foci()) {
+    f.wanted.amplitude *= scale;
+    f.wanted.limited = true;
+  }
 }
 
-void FocusEmitter::Impl::take_over(std::int64_t sample) {
+/// Gives each focal point what it is to do from its next zero on.
+void FocusEmitter::Impl::assign(std::int64_t sample) {
   exchange.log.leave(entry);
   entry = TakeOverLog::kNone;
-  if (next == Next::TakeOver) {
+  if (silent()) clock = 0;
+  for (Focus& f : foci()) {
+    f.state = State::Waits;
+    f.wanted = {f.now.p_D, 0.0, f.now.delay, false, false};
+  }
+  to_rest = next == Next::Rest;
+  if (!to_rest) {
     place(exchange.inbox.value().plan);
     limit_power();
     entry = exchange.log.follow(sample);
-    to_draw = envelope.size();
-  } else {
-    for (Focus& f : foci()) f.amplitude = 0.0;
-    sounding = limited = false;
   }
+  to_begin = !to_rest;
+  to_draw = 0;
   next = Next::GoOn;
 }
 
-void FocusEmitter::Impl::write(Focus& f, double a, FocusSample& out) {
-  out.p_D = f.p_D.cast<float>();
-  out.intensity = static_cast<float>(f.amplitude * a);
+/// Lets those go where they are wanted that are silent, in this sample and the last one.
+void FocusEmitter::Impl::go_over() {
+  for (Focus& f : foci()) {
+    if (f.state != State::Waits) continue;
+    if (f.sounds() && !(at_zero(f) && (stood || to_rest))) continue;
+    f.now = f.wanted;
+    f.now.amplitude = 0.0;
+    f.state = State::Rises;
+  }
+}
+
+/// Gives those their amplitude that have a zero. While others still play an older plan, only what
+/// the power limit leaves; the rest from the next zero on.
+void FocusEmitter::Impl::rise() {
+  double others = 0.0, risen = 0.0;  // Σ I² at the peak
+  for (Focus& f : foci()) {
+    const bool rises = f.state == State::Rises && at_zero(f);
+    if (rises) f.now.amplitude = f.wanted.amplitude;
+    (rises ? risen : others) += f.now.amplitude * f.now.amplitude;
+  }
+  constexpr double kRounding = 1e-9;
+  const bool too_much = others + risen > settings.power_limit * (1.0 + kRounding);
+  const double scale =
+      too_much ? std::sqrt(std::max(0.0, settings.power_limit - others) / risen) : 1.0;
+  bool all_play = true;
+  for (Focus& f : foci()) {
+    if (f.state == State::Rises && at_zero(f)) {
+      if (too_much) f.now.amplitude *= scale;
+      f.now.limited = f.wanted.limited || too_much;
+      if (!too_much) f.state = State::Plays;
+    }
+    all_play = all_play && f.state == State::Plays;
+  }
+  if (to_begin && all_play) {
+    to_begin = false;
+    to_draw = envelope.size();
+  }
+}
+
+void FocusEmitter::Impl::write(Focus& f, FocusSample& out) {
+  const std::size_t n = envelope.size();
+  out.p_D = f.now.p_D.cast<float>();
+  out.intensity = static_cast<float>(f.now.amplitude * envelope[(clock + n - f.now.delay) % n]);
   longest_step.look(f.last, out);
   f.last = out;
   const bool sounds = out.intensity > 0.0F;
-  stats.saturated += sounds && f.saturated ? 1 : 0;
-  stats.limited += sounds && limited ? 1 : 0;
+  stats.saturated += sounds && f.now.saturated ? 1 : 0;
+  stats.limited += sounds && f.now.limited ? 1 : 0;
+}
+
+/// Whether the clock is to stand: a focal point at its zero goes over in the next sample.
+bool FocusEmitter::Impl::holds() {
+  return std::any_of(foci().begin(), foci().end(), [this](const Focus& f) {
+    const bool goes_over = next == Next::TakeOver || f.state == State::Waits;
+    return goes_over && f.sounds() && at_zero(f);
+  });
 }
 
 /// Emits one sample of every focal point.
@@ -156,21 +238,27 @@ void FocusEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
   // silent stall
   if (fed && ++since_plan > stall_samples) {
     fed = false;
-    stats.stalls += sounding ? 1 : 0;
+    stats.stalls += sounding() ? 1 : 0;
     next = Next::Rest;
   }
 
-  // between two silent samples
-  if (phase == 0 && silent && next != Next::GoOn) take_over(sample);
-  for (std::size_t i = 0; i < out.size(); ++i) write(focus[i], envelope[phase], out[i]);
+  // a plan takes over from the first zero on
+  if (next != Next::GoOn) {
+    const bool zero = std::any_of(foci().begin(), foci().end(),
+                                  [this](const Focus& f) { return f.sounds() && at_zero(f); });
+    if (silent() || (zero && (stood || next == Next::Rest))) assign(sample);
+  }
+  go_over();
+  rise();
+  for (std::size_t i = 0; i < out.size(); ++i) write(focus[i], out[i]);
   if (entry != TakeOverLog::kNone && to_draw > 0) {
     --to_draw;
     exchange.log.draw(entry, 1.0 / static_cast<double>(envelope.size()), sample);
   }
 
-  // the zero lasts while there is nothing to modulate, and until a waiting plan has taken over
-  silent = phase == 0;
-  if (sounding && (phase > 0 || next == Next::GoOn)) phase = (phase + 1) % envelope.size();
+  // a zero lasts while there is nothing to modulate, and until its focal point has gone over
+  stood = !sounding() || holds();
+  if (!stood) clock = (clock + 1) % envelope.size();
 }
 
 FocusEmitter::FocusEmitter(const EmitSettings& settings, double sample_rate)

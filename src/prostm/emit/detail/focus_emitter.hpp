@@ -8,11 +8,13 @@
 namespace prostm {
 
 /// Turns plans of foci into samples: all focal points stand still and are modulated by one
-/// envelope (B4), whose period is a whole number of samples. A new plan takes over at the
-/// envelope's next zero, where its foci are matched to the focal points by least total distance
-/// (B5) and get their intensities, sqrt(pressure / full scale) at the peak, all scaled by one
-/// factor if the power limit requires it; they keep both until the next plan. The focal points move
-/// between two silent samples; so a zero at which a plan takes over lasts one sample longer.
+/// envelope (B4), whose period is a whole number of samples, each with its own phase (B7). A new
+/// plan takes over at the envelope's next zero, where its foci are matched to the focal points by
+/// least total distance (B5) and get their intensities, sqrt(pressure / full scale) at the peak,
+/// all scaled by one factor if the power limit requires it; they keep both until the next plan.
+/// With phases, each focal point goes over at a zero of its own; one whose phase changes is silent
+/// from there to the zero of its new phase. The focal points move between two silent samples; so a
+/// zero at which a plan takes over lasts one sample longer, for all, which keeps their phases.
 ///
 /// The guarantees are those of PathEmitter; some are trivial here. After lose(), or when plans stop
 /// coming, the output is silent from the next zero on: at most one period, 40 ms. docs/design.md,

@@ -6,7 +6,6 @@
 namespace prostm {
 namespace {
 
-constexpr double kSlowest = 1e-6;  // below this speed a focal point is at rest [m/s]
 // a lap longer than n samples by up to this share of a sample still takes n
 constexpr double kRounding = 1e-6;
 constexpr double kNothing = 1e-9;  // an offset that counts as zero [m]
@@ -18,23 +17,27 @@ void FocusMotion::configure(double sample_rate, double max_step) {
   max_step_ = max_step;
 }
 
-double FocusMotion::step_of(const LiftedPath& path) const {
+double FocusMotion::step_of(const LiftedPath& path, const InStep& in_step) const {
+  if (in_step.samples > 0) {
+    return path.length * static_cast<double>(in_step.laps) / static_cast<double>(in_step.samples);
+  }
   return std::min(path.speed / sample_rate_, max_step_);
 }
 
 std::int64_t FocusMotion::lap_samples(const LiftedPath& path) const {
   if (path.speed <= kSlowest) return 1;
   return std::max<std::int64_t>(
-      1, static_cast<std::int64_t>(std::ceil(path.length / step_of(path) - kRounding)));
+      1, static_cast<std::int64_t>(std::ceil(path.length / step_of(path, {}) - kRounding)));
 }
 
-bool FocusMotion::reaches(const LiftedPath& path, const PathPlace& place) const {
+bool FocusMotion::reaches(const LiftedPath& path, const PathPlace& place,
+                          const InStep& in_step) const {
   // (E3) shrinks the offset by at least the spare step
-  const double spare = max_step_ - step_of(path);
+  const double spare = max_step_ - step_of(path, in_step);
   return place.distance <= std::min(kMaxOffset, spare * kMaxTransit * sample_rate_);
 }
 
-void FocusMotion::start(const LiftedPath& path, const PathPlace& place) {
+void FocusMotion::start(const LiftedPath& path, const PathPlace& place, const InStep& in_step) {
   path_ = path;
   arc_start_ = place.s;
   lap_end_ = base_ = place.p_D;
@@ -42,6 +45,14 @@ void FocusMotion::start(const LiftedPath& path, const PathPlace& place) {
   edge_ = 0;
   sample_ = 0;
   lap_ = lap_samples(path);
+  in_step_ = in_step;
+  if (is_in_step()) {
+    const std::int64_t n = in_step.samples;
+    arc_start_ = 0.0;  // and forwards: its place has no tangent
+    sample_ = (in_step.count % n + n) % n;
+    turn_ = n;  // the lap ends with a sample that is still to come
+    lap_ = at_rest() ? 1 : std::max<std::int64_t>(1, n / in_step.laps);
+  }
   if (path.speed <= kSlowest) {
     path_.length = 0.0;
     path_.p_D[0] = place.p_D;
@@ -49,31 +60,48 @@ void FocusMotion::start(const LiftedPath& path, const PathPlace& place) {
   }
 }
 
-void FocusMotion::join(const LiftedPath& path, const PathPlace& place) {
-  start(path, place);
+void FocusMotion::join(const LiftedPath& path, const PathPlace& place, const InStep& in_step) {
+  start(path, place, in_step);
   offset_ = p_D_ - base_;
   moving_over_ = true;
 }
 
-void FocusMotion::jump(const LiftedPath& path, const PathPlace& place) {
+void FocusMotion::jump(const LiftedPath& path, const PathPlace& place, const InStep& in_step) {
   last_step_.setZero();
-  start(path, place);
+  start(path, place, in_step);
   offset_.setZero();
   moving_over_ = false;
   p_D_ = base_;
 }
 
+/// Returns the way from the start of the lap, as a share of it, after so many samples.
+double FocusMotion::share_at(std::int64_t sample) const {
+  if (!is_in_step()) return static_cast<double>(sample) / static_cast<double>(lap_);
+  return static_cast<double>(sample * in_step_.laps % in_step_.samples) /
+         static_cast<double>(in_step_.samples);
+}
+
 Vec3 FocusMotion::ahead(std::int64_t samples) const {
-  const double share = static_cast<double>((sample_ + samples) % lap_) / static_cast<double>(lap_);
-  return point_at(path_, arc_start_ + direction_ * path_.length * share).p_D;
+  const std::int64_t sample = (sample_ + samples) % (is_in_step() ? in_step_.samples : lap_);
+  return point_at(path_, arc_start_ + direction_ * path_.length * share_at(sample)).p_D;
+}
+
+std::int64_t FocusMotion::samples_left() const {
+  if (!is_in_step()) return lap_ - sample_;
+  const std::int64_t since = sample_ % in_step_.base;
+  return since > 0 ? in_step_.base - since : 0;
+}
+
+Vec3 FocusMotion::leaving_place() const {
+  return is_in_step() ? ahead(samples_left()) : lap_end_;
 }
 
 double FocusMotion::advance() {
   // integer count to arc length
-  if (sample_ == lap_) sample_ = 0;
+  if (sample_ == (is_in_step() ? in_step_.samples : lap_)) sample_ = 0;
   ++sample_;
-  const double share = static_cast<double>(sample_) / static_cast<double>(lap_);
-  double s = arc_start_ + direction_ * path_.length * share;
+  if (is_in_step()) turn_ = sample_ * in_step_.laps % in_step_.samples;
+  double s = arc_start_ + direction_ * path_.length * share_at(sample_);
   if (s < 0.0) s += path_.length;
   if (s >= path_.length) s -= path_.length;  // also where the line above rounds up to it
 

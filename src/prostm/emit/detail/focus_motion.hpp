@@ -7,12 +7,31 @@
 
 namespace prostm {
 
+/// A path's part in a loop that all focal points share, (E10), and where the clock of that loop is.
+/// Without samples there is no such loop: the path goes round on its own, (E2).
+struct InStep {
+  std::int64_t base = 0;     ///< samples after which a new plan may take over
+  std::int64_t samples = 0;  ///< of the loop, a multiple of `base`
+  std::int64_t laps = 0;     ///< of the path in the loop; 0: it rests at its first point
+  std::int64_t count = 0;    ///< sample of the clock, any whole number
+};
+
+/// Largest step between samples, as a share of that at the largest speed: steps stay in bounds when
+/// positions become floats.
+inline constexpr double kStepMargin = 0.999;
+
+/// Below this speed a focal point is at rest [m/s].
+inline constexpr double kSlowest = 1e-6;
+
 /// A focal point on a closed path. Sample k of a lap lies at arc length s₀ ± L k/n, where n = ⌈L /
 /// step⌉ samples make a lap, (E2); so positions depend on integer counts and never drift.
 ///
 /// A new path is joined at the place nearest to the focal point, in the direction that turns less.
 /// The remaining offset between the two is carried along and shrinks in each sample by as much as
 /// the largest step allows, (E3).
+///
+/// A path in step is gone round forwards from its first point, at the pace of the loop, and joined
+/// at the place where the loop's clock is.
 class FocusMotion {
  public:
   /// @param sample_rate [Hz]; @param max_step largest step between samples [m].
@@ -20,12 +39,12 @@ class FocusMotion {
 
   /// True when the offset to `place` is gone within kMaxTransit wherever it points, and is at most
   /// kMaxOffset.
-  bool reaches(const LiftedPath& path, const PathPlace& place) const;
+  bool reaches(const LiftedPath& path, const PathPlace& place, const InStep& in_step = {}) const;
   /// Joins a path at `place` without a jump: the next advance() goes one step from the last
-  /// position.
-  void join(const LiftedPath& path, const PathPlace& place);
+  /// position. @param in_step part of the path in a loop; then `place` is place_in_step().
+  void join(const LiftedPath& path, const PathPlace& place, const InStep& in_step = {});
   /// Moves to `place` at once. @pre the focal point is silent.
-  void jump(const LiftedPath& path, const PathPlace& place);
+  void jump(const LiftedPath& path, const PathPlace& place, const InStep& in_step = {});
   /// Moves to the next sample. @return the rendered pressure there. @pre a path was joined or
   /// jumped to.
   double advance();
@@ -34,12 +53,20 @@ class FocusMotion {
   /// Returns its position on the path so many samples from now, if it goes on round it [m].
   /// @pre a path was joined or jumped to; samples >= 0.
   Vec3 ahead(std::int64_t samples) const;
-  /// Position at the end of the lap [m]. @pre a path was joined or jumped to.
-  const Vec3& lap_end() const { return lap_end_; }
-  bool lap_ended() const { return sample_ == lap_; }
-  bool at_rest() const { return lap_ == 1; }      ///< the path is a point or shorter than one step
+  /// Whether a new plan may take over: at the end of a lap, or of the loop of a path in step.
+  bool may_leave() const { return samples_left() == 0; }
+  /// Samples until then.
+  std::int64_t samples_left() const;
+  /// Position then [m]. @pre a path was joined or jumped to.
+  Vec3 leaving_place() const;
+  bool lap_ended() const { return is_in_step() ? turn_ < in_step_.laps : sample_ == lap_; }
+  bool is_in_step() const { return in_step_.samples > 0; }
+  std::int64_t base() const { return in_step_.base; }  ///< of the loop, 0 without one
+  /// The path is a point or shorter than one step.
+  bool at_rest() const { return is_in_step() ? in_step_.laps == 0 : lap_ == 1; }
   bool on_path() const { return !moving_over_; }  ///< the offset is zero
   double length() const { return path_.length; }  ///< length of a lap [m]
+  /// Samples of a lap; 1 at rest, rounded down in step.
   std::int64_t lap_samples() const { return lap_; }
   /// Returns how many samples a lap on `path` takes; 1 if it would be at rest on it.
   std::int64_t lap_samples(const LiftedPath& path) const;
@@ -48,16 +75,20 @@ class FocusMotion {
   static constexpr double kMaxOffset = 10e-3;   ///< about the diameter of a focus [m]
 
  private:
-  double step_of(const LiftedPath& path) const;
-  void start(const LiftedPath& path, const PathPlace& place);
+  double step_of(const LiftedPath& path, const InStep& in_step) const;
+  void start(const LiftedPath& path, const PathPlace& place, const InStep& in_step);
+  double share_at(std::int64_t sample) const;
   PathPoint sample_at(double s);
   void shrink_offset(const Vec3& path_step);
 
   double sample_rate_ = 40e3, max_step_ = 0.2e-3;
   LiftedPath path_;
   double arc_start_ = 0.0, direction_ = 1.0;
-  std::int64_t lap_ = 1, sample_ = 1;  // samples a lap, and emitted ones of it
-  std::size_t edge_ = 0;               // edge that held the last sample
+  std::int64_t lap_ = 1,
+               sample_ = 1;  // samples a lap, and emitted ones of it; in step, of the loop
+  InStep in_step_;
+  std::int64_t turn_ = 0;  // in step: way in the lap, in samples of the loop
+  std::size_t edge_ = 0;   // edge that held the last sample
   bool moving_over_ = false;
   Vec3 lap_end_ = Vec3::Zero();
   Vec3 base_ = Vec3::Zero();        // on the path

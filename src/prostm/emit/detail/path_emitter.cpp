@@ -5,9 +5,12 @@
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "prostm/emit/detail/exchange.hpp"
 #include "prostm/emit/detail/focus_motion.hpp"
+#include "prostm/emit/detail/in_step.hpp"
+#include "prostm/emit/detail/loop_clock.hpp"
 #include "prostm/emit/detail/matching.hpp"
 #include "prostm/emit/detail/start_place.hpp"
 #include "prostm/emit/drive.hpp"
@@ -15,8 +18,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kFloatMargin = 0.999;  // keeps steps in bounds when positions become floats
-constexpr double kLongestLap = 1.0;     // a new plan waits for a lap up to this long [s]
+constexpr double kLongestLap = 1.0;  // a new plan waits for a lap up to this long [s]
 
 enum class State : std::uint8_t {
   Resting,    // silent, on no path
@@ -36,16 +38,25 @@ struct Focus {
   FocusSample last;
 };
 
+/// Where a focal point at `from` would join a path: where the loop's clock is, or where it is near.
+PathPlace meeting_place(const LiftedPath& path, const InStep& in_step, const Vec3& from) {
+  if (in_step.samples == 0) return nearest_place(path, from);
+  PathPlace place = place_in_step(path, in_step);
+  place.distance = (place.p_D - from).norm();
+  return place;
+}
+
 }  // namespace
 
 struct PathEmitter::Impl {
-  Impl(Exchange& e, double sample_rate, double max_speed);
+  Impl(Exchange& e, double rate, double max_speed);
 
   Exchange& exchange;
 
   // constant
   const EmitSettings& settings;
-  const bool at_once;  // switch_at = "now"
+  const bool at_once;                  // switch_at = "now"
+  const double sample_rate, max_step;  // [Hz], [m]
   const double fade_slew, stall_slew;
   const std::int64_t stall_samples, longest_lap;
 
@@ -56,16 +67,32 @@ struct PathEmitter::Impl {
   LongestStep longest_step;
   bool fed = false;             // a plan came and was not lost since
   std::int64_t since_plan = 0;  // samples
+  InStep loop;                  // of the newest plan
+  LoopClock clock;
 
   std::span<Focus> foci() { return {focus.data(), static_cast<std::size_t>(settings.foci)}; }
   const LiftedPlan& plan() const { return exchange.inbox.value().plan; }
 
   /// Whether it goes over to a new plan only at the end of its lap.
-  bool waits(const Focus& f) const { return !at_once && f.motion.lap_samples() <= longest_lap; }
+  bool waits(const Focus& f) const {
+    return !at_once && (f.motion.is_in_step() || f.motion.lap_samples() <= longest_lap);
+  }
+  /// Whether it follows a loop that the newest plan does not have.
+  bool in_another_loop(const Focus& f) const {
+    return f.state == State::Following && f.motion.is_in_step() && f.motion.base() != loop.base;
+  }
+  /// Whether it can begin its part in the newest plan now.
+  bool ready(const Focus& f) const {
+    return f.next == kNoPath || loop.samples == 0 || clock.fits(loop);
+  }
 
   void receive(std::int64_t sample);
   void assign(std::int64_t sample);
-  double cost(const Focus& f, const LiftedPath& path) const;
+  void wind();
+  InStep part(const LiftedPath& path, std::int64_t count) const;
+  std::int64_t time_left(const Focus& f) const;
+  std::int64_t time_to_loop() const;
+  double cost(const Focus& f, const LiftedPath& path, std::int64_t to_loop) const;
   void release();
   bool join(Focus& f, std::int64_t sample);
   void jump(Focus& f, std::int64_t sample);
@@ -78,16 +105,18 @@ struct PathEmitter::Impl {
   void count(Focus& f, const Drive& d, std::int64_t sample);
 };
 
-PathEmitter::Impl::Impl(Exchange& e, double sample_rate, double max_speed)
+PathEmitter::Impl::Impl(Exchange& e, double rate, double max_speed)
     : exchange(e),
       settings(e.settings),
       at_once(settings.switch_at == SwitchAt::Now),
-      fade_slew(largest_slew(settings.fade_time, sample_rate)),
-      stall_slew(largest_slew(settings.stall_fade_time, sample_rate)),
-      stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * sample_rate))),
-      longest_lap(static_cast<std::int64_t>(kLongestLap * sample_rate)) {
+      sample_rate(rate),
+      max_step(max_speed / rate * kStepMargin),
+      fade_slew(largest_slew(settings.fade_time, rate)),
+      stall_slew(largest_slew(settings.stall_fade_time, rate)),
+      stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * rate))),
+      longest_lap(static_cast<std::int64_t>(kLongestLap * rate)) {
   for (Focus& f : focus) {
-    f.motion.configure(sample_rate, max_speed / sample_rate * kFloatMargin);
+    f.motion.configure(sample_rate, max_step);
     f.last.p_D = f.motion.position().cast<float>();
   }
 }
@@ -103,29 +132,75 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   }
   fed = true;
   since_plan = 0;
+  loop = shared_loop(plan(), sample_rate, max_step);
+  if (std::none_of(foci().begin(), foci().end(), [](const Focus& f) {
+        return f.state != State::Resting && f.motion.is_in_step();
+      })) {
+    clock.stop();
+  }
   assign(sample);
+  wind();
 
   // a focal point that fades already, or need not wait, goes over at once if it can
   for (std::size_t i = 0; i < foci().size(); ++i) {
     Focus& f = focus[i];
     if (f.state == State::Leaving) {
       drive[i].max_fall = fade_slew;
-      if (f.next != kNoPath) join(f, sample);
-    } else if (f.state == State::Following && !waits(f)) {
+      if (f.next != kNoPath && ready(f)) join(f, sample);
+    } else if (f.state == State::Following && !waits(f) && ready(f)) {
       cut_lap(f);
       take_over(f, drive[i], sample);
     }
   }
 }
 
+/// Lets the clock begin the loop of the newest plan, when the loop in progress has ended.
+void PathEmitter::Impl::wind() {
+  if (loop.samples == 0 || clock.fits(loop)) return;
+  bool ends = false;
+  for (const Focus& f : foci()) {
+    if (!in_another_loop(f)) continue;
+    if (waits(f) && !f.motion.may_leave()) return;
+    ends = true;
+  }
+  clock.stop();
+  if (ends) clock.begin_last(loop);
+}
+
+/// Returns a path's part in the loop of the newest plan, at this count of the clock.
+InStep PathEmitter::Impl::part(const LiftedPath& path, std::int64_t count) const {
+  InStep in_step = with_laps(loop, path, sample_rate, max_step);
+  in_step.count = count;
+  return in_step;
+}
+
+/// Samples until a focal point may go over to a new plan.
+std::int64_t PathEmitter::Impl::time_left(const Focus& f) const {
+  return f.state == State::Following && waits(f) ? f.motion.samples_left() : 0;
+}
+
+/// Samples until the loop of the newest plan begins; below 0 since it began.
+std::int64_t PathEmitter::Impl::time_to_loop() const {
+  if (loop.samples == 0) return 0;
+  if (clock.runs() && clock.fits(loop)) return -clock.last();
+  std::int64_t first = std::numeric_limits<std::int64_t>::max();
+  for (const Focus& f : std::span(focus.data(), static_cast<std::size_t>(settings.foci))) {
+    if (in_another_loop(f)) return time_left(f);
+    first = std::min(first, time_left(f));
+  }
+  return first;
+}
+
 /// Cost of a take-over in (E5) [m]: the way to go, or a substitute for a fade.
-double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path) const {
+/// @param to_loop samples until the loop of the plan begins.
+double PathEmitter::Impl::cost(const Focus& f, const LiftedPath& path, std::int64_t to_loop) const {
   constexpr double kFadeUp = FocusMotion::kMaxOffset, kFadeBoth = 2.0 * kFadeUp;
   if (f.state == State::Resting) return kFadeUp;
   const bool at_lap_end = f.state == State::Following && waits(f);
-  const PathPlace place =
-      nearest_place(path, at_lap_end ? f.motion.lap_end() : f.motion.position());
-  return f.motion.reaches(path, place) ? place.distance : kFadeBoth;
+  const Vec3 from = at_lap_end ? f.motion.leaving_place() : f.motion.position();
+  const InStep in_step = part(path, std::max<std::int64_t>(0, time_left(f) - to_loop));
+  const PathPlace place = meeting_place(path, in_step, from);
+  return f.motion.reaches(path, place, in_step) ? place.distance : kFadeBoth;
 }
 
 /// Gives each focal point its part in the newest plan.
@@ -134,10 +209,13 @@ void PathEmitter::Impl::assign(std::int64_t sample) {
   stats.dropped_paths += static_cast<std::int64_t>(plan().paths.size() - paths);
 
   MatchCosts costs{};
+  const std::int64_t to_loop = time_to_loop();
   double total_length = 0.0;
   for (std::size_t p = 0; p < paths; ++p) total_length += plan().paths[p].length;
   for (std::size_t i = 0; i < foci().size(); ++i) {
-    for (std::size_t p = 0; p < paths; ++p) costs[i][p] = cost(focus[i], plan().paths[p]);
+    for (std::size_t p = 0; p < paths; ++p) {
+      costs[i][p] = cost(focus[i], plan().paths[p], to_loop);
+    }
     costs[i][kMaxPaths] = focus[i].state == State::Resting ? 0.0 : FocusMotion::kMaxOffset;
   }
   const auto match = match_paths(costs, settings.foci, static_cast<int>(paths));
@@ -166,12 +244,14 @@ void PathEmitter::Impl::cut_lap(const Focus& f) {
   if (!f.motion.at_rest() && !f.motion.lap_ended()) ++stats.laps_cut;
 }
 
-/// Goes over to the next path by moving; false if that is too far. @pre next is a path.
+/// Goes over to the next path by moving; false if that is too far. @pre next is a path; ready(f).
 bool PathEmitter::Impl::join(Focus& f, std::int64_t sample) {
   const LiftedPath& path = plan().paths[static_cast<std::size_t>(f.next)];
-  const PathPlace place = nearest_place(path, f.motion.position());
-  if (!f.motion.reaches(path, place)) return false;
-  f.motion.join(path, place);
+  const InStep in_step = part(path, clock.runs() ? clock.last() : 0);
+  const PathPlace place = meeting_place(path, in_step, f.motion.position());
+  if (!f.motion.reaches(path, place, in_step)) return false;
+  if (loop.samples > 0 && !clock.runs()) clock.begin_last(loop);
+  f.motion.join(path, place, in_step);
   adopt(f, sample);
   return true;
 }
@@ -203,7 +283,10 @@ void PathEmitter::Impl::jump(Focus& f, std::int64_t sample) {
     return;
   }
   const LiftedPath& path = plan().paths[static_cast<std::size_t>(f.next)];
-  f.motion.jump(path, start_place(f, path));
+  if (loop.samples > 0 && !clock.runs()) clock.begin_next(loop);
+  const InStep in_step = part(path, clock.last() + 1);
+  f.motion.jump(path, loop.samples > 0 ? place_in_step(path, in_step) : start_place(f, path),
+                in_step);
   f.in_fade = f.jumped = true;
   adopt(f, sample);
 }
@@ -229,17 +312,15 @@ void PathEmitter::Impl::take_over(Focus& f, Drive& d, std::int64_t sample) {
 void PathEmitter::Impl::move(Focus& f, Drive& d, std::int64_t sample) {
   d.wanted = 0.0;
   f.jumped = false;
-  if (f.state == State::Following && f.motion.lap_ended()) {
-    if (f.has_next) {
-      take_over(f, d, sample);
-    } else if (!f.motion.at_rest()) {
-      ++stats.laps_started;
-    }
+  if (f.state == State::Following && f.has_next && f.motion.may_leave() && ready(f)) {
+    take_over(f, d, sample);
+  } else if (f.state == State::Following && f.motion.lap_ended() && !f.motion.at_rest()) {
+    ++stats.laps_started;
   }
 
   // if silent, on to the next path; this sample stays silent, so that nobody feels the jump
   if (f.state != State::Following && d.intensity <= 0.0) {
-    if (f.has_next) jump(f, sample);
+    if (f.has_next && ready(f)) jump(f, sample);
   }
   if (f.jumped || f.state == State::Resting) return;
 
@@ -286,6 +367,7 @@ void PathEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
   }
 
   // wanted intensities, then the limits
+  wind();
   for (std::size_t i = 0; i < out.size(); ++i) move(focus[i], drive[i], sample);
   const std::span<Drive> drives(drive.data(), out.size());
   const bool limited = limit_drives(drives, fade_slew, settings.power_limit);
@@ -295,6 +377,7 @@ void PathEmitter::Impl::emit(std::int64_t sample, std::span<FocusSample> out) {
     count(focus[i], drive[i], sample);
     out[i] = focus[i].last;
   }
+  clock.tick();
 }
 
 PathEmitter::PathEmitter(const EmitSettings& settings, double sample_rate, double max_speed)

@@ -19,7 +19,11 @@ namespace prostm {
 /// if the new path is near, (E3), else by fading down, jumping while silent, and fading up. Focal
 /// points that all start from silence begin at their paths' first points; one that joins running
 /// ones begins where it keeps away from them, (E6). A focal point that no path needs fades down and
-/// rests where it is. docs/design.md, section 7.
+/// rests where it is.
+///
+/// Plans in step share the clock of one loop, (E10): a new plan takes over for all focal points at
+/// the end of the loop (at the next block with switch_at = "now"), and each is at the place where
+/// the clock says, (E11), wherever it comes from. docs/design.md, section 7.
 class PathEmitter final : public Emitter {
  public:
   /// @param sample_rate of the device [Hz].  @param max_speed above 0, at most kMaxFocusSpeed

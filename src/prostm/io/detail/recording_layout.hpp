@@ -19,6 +19,8 @@ h5::Column smoke_column();                 ///< of /target too, once a patch has
 h5::Column movement_column();              ///< of /target too, once a patch has parts
 std::vector<h5::Column> hand_columns();    ///< of /hand, a row for each frame
 std::vector<h5::Column> plan_columns();    ///< of /plan, a row for each frame
+/// Tables of /plan that earlier versions did not write.
+inline constexpr const char *kLoop = "loop", *kFocusPhase = "focus_phase";
 
 std::vector<h5::Column> gate_columns();  ///< of /gate, a row for each frame
 

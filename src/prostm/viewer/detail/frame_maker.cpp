@@ -96,6 +96,8 @@ void fill_paths(const PlanSnapshot& plan, ViewFrame& out) {
     to.length = static_cast<float>(path.length);
     to.speed = static_cast<float>(path.speed);
     to.period = static_cast<float>(path.period);
+    to.loop = static_cast<float>(plan.plan.loop);
+    to.phase = 0.0F;
     to.points.clear();
     for (std::size_t i = 0; i < path.points.size(); ++i)
       to.points.push_back(fill_point(target, path.points[i], path.pressure[i]));
@@ -105,7 +107,8 @@ void fill_paths(const PlanSnapshot& plan, ViewFrame& out) {
     const TargetField& target = plan.target.patches[static_cast<std::size_t>(focus.patch)];
     to.kind = 1;
     to.patch = static_cast<std::uint32_t>(focus.patch);
-    to.length = to.speed = 0.0F;
+    to.length = to.speed = to.loop = 0.0F;
+    to.phase = static_cast<float>(focus.phase);
     to.period = static_cast<float>(1.0 / plan.settings->emit.am_frequency);
     to.points.assign(1, fill_point(target, focus.position, focus.pressure));
   }
