@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
   CLI::App app("the skin under moving focal points: published experiments");
   std::string folder;
   app.add_option("--figures", folder,
-                 "folder in which to draw skin-circles.png, skin-squares.png, skin-lines.png and "
-                 "skin-gap.png");
+                 "folder in which to draw skin-circles.png, skin-squares.png, skin-lines.png, "
+                 "skin-gap.png and skin-loops.png");
   return bench::run(app, argc, argv, [&] {
     const auto figure = [&](const char* name) {
       return folder.empty() ? std::string() : folder + "/" + name;
@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     bench::compute_squares(figure("skin-squares.png"), rows);
     bench::compute_regimes(figure("skin-lines.png"), rows);
     bench::compute_gap(figure("skin-gap.png"), rows);
+    bench::compute_loops(figure("skin-loops.png"), rows);
     return rows;
   });
 }

@@ -114,6 +114,20 @@ void print_felt(std::FILE* out, const PhysicalReport& r) {
   fmt::print(out, "\n");
 }
 
+void print_spectrum(std::FILE* out, const PhysicalReport& r) {
+  if (r.spectrum.empty()) return;
+  fmt::print(out, "  {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "felt at", "share of",
+             "share of", "strongest", "place", "all skin", "");
+  fmt::print(out, "  {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "Hz", "strongest",
+             "intensity", "µm rms", "mm/s rms", "µm rms", "mm/s rms");
+  for (const FeltHarmonic& h : r.spectrum) {
+    fmt::print(out, "  {:>8.1f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.3f} {:>10.4f} {:>10.3f}\n",
+               h.frequency, h.share_at_strongest, h.share_of_intensity,
+               1e6 * h.displacement_strongest, 1e3 * h.velocity_strongest,
+               1e6 * h.displacement_skin, 1e3 * h.velocity_skin);
+  }
+}
+
 void print_scores(std::FILE* out, const PhysicalReport& r) {
   if (r.envelope_metrics == nullptr) {
     fmt::print(out, "  no target to compare with; --field FILE gives one\n");
@@ -206,6 +220,7 @@ void tell(const PhysicalReport& report, const Input& input, const FieldOptionsGi
   print_levels(out, report);
   print_power(out, report);
   print_felt(out, report);
+  print_spectrum(out, report);
   print_scores(out, report);
   say_written(out, given.common.figure);
   say_written(out, given.common.json);
@@ -218,6 +233,8 @@ int field_command(const FieldOptionsGiven& given) {
   const TransducerArray& array = all.transducers;
   if (given.widths != given.plan.empty())
     throw InputError("prostm field needs a plan, or --widths without one");
+  if (given.widths && given.felt_spectrum)
+    throw InputError("--felt-spectrum needs a plan: the widths of a focus are not felt");
   if (given.widths) {
     tell_widths(array, given);
     return 0;
@@ -247,8 +264,10 @@ int field_command(const FieldOptionsGiven& given) {
   report.settings = settings_groups(std::as_const(all));
   Judgement judgement;
   if (is_felt(input.raster, loop)) {
-    judgement.felt = FeelingSkin(input.raster).feel(packed, air, input.raster, loop, drives, pool);
+    FeelingSkin skin(input.raster);
+    judgement.felt = skin.feel(packed, air, input.raster, loop, drives, pool);
     report.felt = &judgement.felt;
+    if (given.felt_spectrum) report.spectrum = felt_spectrum(input.raster, skin.motion());
   }
   if (input.has_target) judge(input, all.plan, report, judgement);
   tell(report, input, given);

@@ -83,6 +83,29 @@ std::vector<SquareLooks> square_looks(double side, std::span<const double> speed
                                       const Step& step);
 void draw_squares(const std::string& path);
 
+/// How strongly a loop is felt: the mean of √e along it, and √E of the palm [m].
+struct LoopStrength {
+  double along = 0.0, intensity = 0.0;
+};
+inline constexpr std::array kLoopLengths = {0.035, 0.0525, 0.070, 0.0875,
+                                            0.105, 0.1225, 0.140};              ///< [m]
+inline constexpr std::array kLoopSpeeds = {2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};  ///< [m/s]
+/// Circles on one skin, length by length, speed by speed.
+using SkinLoops = std::vector<std::vector<LoopStrength>>;
+struct LoopTable {
+  std::vector<SkinLoops> skins;
+
+  const SkinLoops& nominal() const { return skins[skins.size() / 2]; }
+  /// Index of 7 m/s in kLoopSpeeds.
+  static constexpr std::size_t usual_speed() { return 5; }
+};
+LoopTable loop_table(std::span<const double> lengths, std::span<const double> speeds, Skins skins,
+                     const Step& step);
+/// Gain of each length at 7 m/s that makes it as strong as the longest, whose gain is 1.
+std::vector<double> relative_gains(const SkinLoops& loops, double LoopStrength::*strength);
+/// The speed of kLoopSpeeds at which a loop is strongest [m/s].
+double strongest_speed(const std::vector<LoopStrength>& by_speed, double LoopStrength::*strength);
+
 /// Perceived intensity of circles against speed, compared with Frier et al. 2018.
 void compute_circles(const std::string& figure, std::vector<Row>& rows);
 /// Squares of 1 and 3 cm, compared with Reardon et al. 2023.
@@ -91,6 +114,9 @@ void compute_squares(const std::string& figure, std::vector<Row>& rows);
 void compute_regimes(const std::string& figure, std::vector<Row>& rows);
 /// Two modulated foci side by side, compared with Howard et al. 2023.
 void compute_gap(const std::string& figure, std::vector<Row>& rows);
+/// Gain by period and strength by speed of loops of 35 to 140 mm: the paper's open problems (iv)
+/// and (v), answered by the model.
+void compute_loops(const std::string& figure, std::vector<Row>& rows);
 /// Measures the cost of a response.
 void measure_response(std::vector<Row>& rows);
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "acoustics/skin_loops.hpp"
-#include "acoustics/skin_stepper.hpp"
+#include "prostm/acoustics/skin_stepper.hpp"
 #include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 

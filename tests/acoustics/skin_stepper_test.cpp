@@ -1,4 +1,4 @@
-#include "acoustics/skin_stepper.hpp"
+#include "prostm/acoustics/skin_stepper.hpp"
 
 #include <gtest/gtest.h>
 

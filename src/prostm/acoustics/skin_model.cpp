@@ -70,6 +70,18 @@ Complex SkinModel::surface_wave_number(double omega) const {
   return omega * std::sqrt(settings_.density / (kRayleigh * shear_modulus(omega)));
 }
 
+Complex SkinModel::wave_strength(double omega) const {
+  // the residue of (S3) at k_R is 1/(C M), since k_S² = ξ k_R² there; q is β/k
+  const double q = std::sqrt(1.0 - kRayleigh);
+  const double slope = 4.0 * (q + 2.0 * q * q + 1.0 / q) / square(1.0 + q);  // C
+  return 2.0 * surface_wave_number(omega) / (slope * shear_modulus(omega));
+}
+
+Complex SkinModel::wave_compliance(double wave_number, double omega) const {
+  const Complex pole = surface_wave_number(omega);
+  return wave_strength(omega) / (wave_number * wave_number - pole * pole);
+}
+
 double SkinModel::phase_speed(double omega) const {
   return omega / surface_wave_number(omega).real();
 }

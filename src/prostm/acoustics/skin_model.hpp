@@ -43,6 +43,11 @@ class SkinModel {
   std::complex<double> compliance(double wave_number, double omega) const;
   /// Wave number k − iα of the surface wave e^{i(ωt − kx) − αx} [rad/m], (S4). @pre ω ≥ 0
   std::complex<double> surface_wave_number(double omega) const;
+  /// Part of (S3) that is the surface wave: its pole alone, (S14). Far from a load it is all that
+  /// is left. @pre as for compliance()
+  std::complex<double> wave_compliance(double wave_number, double omega) const;
+  /// Strength A [1/(m Pa)] of the pole: wave_compliance = A / (k² − k_R²), (S14). @pre ω > 0
+  std::complex<double> wave_strength(double omega) const;
   /// Phase speed ω / Re k [m/s] of the surface wave, (S4). @pre ω > 0
   double phase_speed(double omega) const;
   /// Complex angular frequency Ω [rad/s] of the surface wave of real wave number k > 0, which moves

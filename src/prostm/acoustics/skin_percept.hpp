@@ -4,7 +4,7 @@
 /// displacement at 250 to 300 Hz that would feel the same. They hold for vibrations above
 /// threshold, 40 to 800 Hz.
 
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin_motion.hpp"
 
 namespace prostm {
 
@@ -17,9 +17,9 @@ inline constexpr double kAreaSumsFrom = 56.568542494923804;
 double pacinian_sensitivity(double frequency);
 
 /// Computes the map of perceived intensity √e [m], (S7). @param out rows·cols of the patch
-void percept_map(const SkinResponse& response, std::span<double> out);
+void percept_map(const SkinMotion& motion, std::span<double> out);
 
 /// Perceived intensity √E [m] of the whole patch, (S8).
-double perceived_intensity(const SkinResponse& response);
+double perceived_intensity(const SkinMotion& motion);
 
 }  // namespace prostm

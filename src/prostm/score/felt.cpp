@@ -61,6 +61,18 @@ bool is_felt(const TargetField& raster, const LoopSamples& loop) {
          raster.cell <= kLargest;
 }
 
+FeltField felt_field(const TargetField& raster, const SkinMotion& motion) {
+  FeltField out;
+  out.percept.resize(raster.size());
+  percept_map(motion, out.percept);
+  for (std::size_t c = 0; c < raster.size(); ++c) {
+    if (raster.skin[c] == 0) out.percept[c] = 0.0;
+  }
+  out.intensity = perceived_intensity(motion);
+  out.largest = *std::max_element(out.percept.begin(), out.percept.end());
+  return out;
+}
+
 FeelingSkin::FeelingSkin(const TargetField& raster)
     : response_(SkinModel(SkinSettings()), {raster.rows, raster.cols, raster.cell}) {}
 
@@ -68,15 +80,7 @@ FeltField FeelingSkin::feel(const TargetField& raster, double period, int parts,
                             std::span<const double> pressure) {
   response_.prepare(period, parts);
   response_.respond({period, parts, pressure});
-  FeltField out;
-  out.percept.resize(raster.size());
-  percept_map(response_, out.percept);
-  for (std::size_t c = 0; c < raster.size(); ++c) {
-    if (raster.skin[c] == 0) out.percept[c] = 0.0;
-  }
-  out.intensity = perceived_intensity(response_);
-  out.largest = *std::max_element(out.percept.begin(), out.percept.end());
-  return out;
+  return felt_field(raster, response_);
 }
 
 FeltField FeelingSkin::feel(const PackedArray& packed, const Medium& medium,
@@ -87,6 +91,20 @@ FeltField FeelingSkin::feel(const PackedArray& packed, const Medium& medium,
   const LoopPressure pressure =
       loop_pressure(packed, medium, drives.output, skin.points, parts, pool);
   return feel(raster, loop.samples / loop.sample_rate, parts, on_raster(raster, skin, pressure));
+}
+
+FeelingBoundedSkin::FeelingBoundedSkin(const TargetField& raster, const SkinSettings& settings)
+    : skin_(SkinModel(settings), {raster.rows, raster.cols, raster.cell}, raster.skin) {}
+
+FeltField FeelingBoundedSkin::feel(const TargetField& raster, double period, int parts,
+                                   std::span<const double> pressure) {
+  if (period != period_ || parts != parts_) {
+    skin_.prepare(period, parts);
+    period_ = period;
+    parts_ = parts;
+  }
+  skin_.respond({period, parts, pressure});
+  return felt_field(raster, skin_);
 }
 
 Ghosts ghosts_of(const TargetField& target, const std::vector<double>& percept) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "prostm/acoustics/bounded_skin.hpp"
 #include "prostm/acoustics/skin_response.hpp"
 #include "prostm/score/physical.hpp"
 
@@ -24,6 +25,9 @@ struct FeltField {
   double intensity = 0.0;       ///< √E, (S8) [m]
 };
 
+/// Returns the percept of a skin that has responded. @pre the patch is that of the raster
+FeltField felt_field(const TargetField& raster, const SkinMotion& motion);
+
 /// Skin under the raster of targets, with the nominal parameters of (S1) to (S5).
 class FeelingSkin {
  public:
@@ -40,9 +44,43 @@ class FeelingSkin {
   /// is_felt(raster, loop)
   FeltField feel(const PackedArray& packed, const Medium& medium, const TargetField& raster,
                  const LoopSamples& loop, const LoopDriveResult& drives, WorkerPool& pool);
+  /// The skin's motion under the last loop.
+  const SkinMotion& motion() const { return response_; }
 
  private:
   SkinResponse response_;
+};
+
+/// One harmonic of a loop as it is felt. "Strongest" is the place of skin where √e is largest.
+struct FeltHarmonic {
+  double frequency = 0.0;               ///< [Hz]
+  double share_at_strongest = 0.0;      ///< of e there, (S7)
+  double share_of_intensity = 0.0;      ///< of E, (S8)
+  double displacement_strongest = 0.0;  ///< rms, there [m]
+  double velocity_strongest = 0.0;      ///< rms, there [m/s]
+  double displacement_skin = 0.0;       ///< rms, over all skin too [m]
+  double velocity_skin = 0.0;           ///< rms, over all skin too [m/s]
+};
+/// Returns all harmonics of a skin that has responded, the lowest first; shares add up to 1, or are
+/// all 0 for a skin at rest. @pre the patch is that of the raster, which has skin
+std::vector<FeltHarmonic> felt_spectrum(const TargetField& raster, const SkinMotion& motion);
+
+/// Skin that ends where that of the raster ends, and whose edges send waves back: a second model,
+/// to judge by, (S14) to (S17).
+class FeelingBoundedSkin {
+ public:
+  /// @throws std::invalid_argument as BoundedSkin does.
+  explicit FeelingBoundedSkin(const TargetField& raster, const SkinSettings& settings = {});
+
+  /// As FeelingSkin::feel with a given pressure. The first loop of a period takes about a second
+  /// for a hand, further ones some tens of ms.
+  FeltField feel(const TargetField& raster, double period, int parts,
+                 std::span<const double> pressure);
+
+ private:
+  BoundedSkin skin_;
+  double period_ = 0.0;
+  int parts_ = 0;
 };
 
 /// Strong places of the percept where the target has nothing to feel.

@@ -7,95 +7,28 @@
 #include <stdexcept>
 #include <vector>
 
-#include "prostm/acoustics/propagation.hpp"
 #include "prostm/core/require.hpp"
+#include "prostm/score/detail/sample_solver.hpp"
 
 namespace prostm {
 namespace {
 
 using Eigen::Index;
-using Eigen::VectorXcd;
-using Eigen::VectorXd;
 
-constexpr double kAboveAll = 1e9;  // target beyond any array, so that drives go up to 1 [Pa]
-constexpr int kWarmUp = 64;        // samples before the first, for the phases to settle
-constexpr double kFull = 0.99;     // |q| above which a drive counts as full
-
-/// The sounding focal points of a sample, each with its index; of two within kNearestFoci only the
-/// stronger.
-struct Sounding {
-  std::vector<Vec3> p_D;
-  std::vector<double> intensity;
-  std::vector<std::size_t> focus;
-  int merged = 0;
-
-  void add(const FocusSample& sample, std::size_t index) {
-    const Vec3 p = sample.p_D.cast<double>();
-    const double wanted = static_cast<double>(sample.intensity);
-    if (wanted <= 0.0) return;
-    for (std::size_t i = 0; i < p_D.size(); ++i) {
-      if ((p - p_D[i]).norm() >= kNearestFoci) continue;
-      ++merged;
-      if (wanted <= intensity[i]) return;
-      p_D[i] = p;
-      intensity[i] = wanted;
-      focus[i] = index;
-      return;
-    }
-    p_D.push_back(p);
-    intensity.push_back(wanted);
-    focus.push_back(index);
-  }
-};
+constexpr int kWarmUp = 64;     // samples before the first, for the phases to settle
+constexpr double kFull = 0.99;  // |q| above which a drive counts as full
 
 Sounding sounding(const LoopSamples& loop, int k) {
-  Sounding out;
   const auto foci = static_cast<std::size_t>(loop.foci);
-  for (std::size_t f = 0; f < foci; ++f) {
-    out.add(loop.sample[static_cast<std::size_t>(k) * foci + f], f);
-  }
-  return out;
+  return Sounding(std::span(loop.sample).subspan(static_cast<std::size_t>(k) * foci, foci));
 }
-
-/// Solves sample after sample, each from the phases that the focal points had before.
-class Solver {
- public:
-  Solver(const TransducerArray& array, const Medium& medium, const FocusSettings& settings,
-         int foci)
-      : array_(array), medium_(medium), settings_(settings), phase_(VectorXd::Zero(foci)) {}
-
-  FocusSolution solve(const Sounding& s) {
-    const Index count = static_cast<Index>(s.p_D.size());
-    VectorXd target(count), start(count);
-    for (Index m = 0; m < count; ++m) {
-      const auto i = static_cast<std::size_t>(m);
-      target[m] = kAboveAll * s.intensity[i];
-      start[m] = phase_[static_cast<Index>(s.focus[i])];
-    }
-    FocusSolution solution =
-        solve_foci(propagation_to(array_, medium_, s.p_D), target, settings_, start);
-    for (Index m = 0; m < count; ++m) {
-      phase_[static_cast<Index>(s.focus[static_cast<std::size_t>(m)])] =
-          std::arg(solution.pressure[m]);
-    }
-    errors_ = focus_errors(solution, target);
-    return solution;
-  }
-  const VectorXd& errors() const { return errors_; }
-
- private:
-  const TransducerArray& array_;
-  const Medium& medium_;
-  const FocusSettings settings_;
-  VectorXd phase_, errors_;
-};
 
 /// Computes the drives at their largest, and the acoustic pressure per intensity that each sample
 /// then reaches [Pa]. @return false if `progress` stopped it.
 bool solve_all(const TransducerArray& array, const Medium& medium, const LoopSamples& loop,
                const FocusSettings& settings, const std::function<bool(int, int)>& progress,
                Eigen::MatrixXcd& drives, std::vector<double>& reached, LoopDriveResult& out) {
-  Solver solver(array, medium, settings, loop.foci);
+  SampleSolver solver(array, medium, settings, loop.foci);
   const int all = loop.samples, warm_up = std::min(kWarmUp, all);
   for (int k = -warm_up; k < all; ++k) {
     if (!progress(k + warm_up, all + warm_up)) return false;
@@ -104,7 +37,7 @@ bool solve_all(const TransducerArray& array, const Medium& medium, const LoopSam
     const FocusSolution solution = solver.solve(s);
     if (k < 0) continue;
     drives.col(k) = solution.drive;
-    reached[static_cast<std::size_t>(k)] = solution.level * kAboveAll;
+    reached[static_cast<std::size_t>(k)] = SampleSolver::reached(solution);
     out.merged += s.merged;
     out.worst_focus_error = std::max(out.worst_focus_error, solver.errors().cwiseAbs().maxCoeff());
   }

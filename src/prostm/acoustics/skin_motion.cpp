@@ -1,0 +1,86 @@
+#include "prostm/acoustics/skin_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "prostm/core/require.hpp"
+#include "prostm/core/units.hpp"
+
+namespace prostm {
+
+SkinMotion::SkinMotion(const SkinPatch& patch) : patch_(patch) {
+  require_between("rows", patch.rows, 1, 512);
+  require_between("cols", patch.cols, 1, 512);
+  require_between("cell", patch.cell, 0.1e-3, 20e-3, "m");
+}
+
+void SkinMotion::choose_harmonics(double period, int samples, double highest) {
+  require_between("period", period, 0.2e-3, 0.25, "s");
+  require_between("samples", samples, 3, 4096);
+  require_between("highest", highest, 1.0, 10e3, "Hz");
+  const int harmonics =
+      std::min((samples - 1) / 2, static_cast<int>(highest * period * (1 + 1e-9)));
+  if (harmonics < 1) {
+    throw std::invalid_argument(
+        "highest must be at least 1/period, or there is no harmonic to respond with");
+  }
+  period_ = period;
+  samples_ = samples;
+  harmonics_ = harmonics;
+  displacement_.assign(static_cast<std::size_t>(harmonics) * patch_.size(), 0.0);
+  course_.resize(static_cast<std::size_t>(samples));
+  spectrum_.resize(course_.size());
+  // the library makes its tables at the first call for this length
+  time_fft_.fwd(spectrum_.data(), course_.data(), samples);
+}
+
+void SkinMotion::load(const PressureLoop& loop) {
+  const std::size_t cells = patch_.size();
+  if (loop.period != period_ || loop.samples != samples_ ||
+      loop.pressure.size() != cells * static_cast<std::size_t>(samples_)) {
+    throw std::invalid_argument(
+        "the loop must have the period and the samples that prepare() was given, and a pressure "
+        "for each sample and cell");
+  }
+  for (std::size_t c = 0; c < cells; ++c) {
+    for (std::size_t k = 0; k < course_.size(); ++k) course_[k] = loop.pressure[k * cells + c];
+    time_fft_.fwd(spectrum_.data(), course_.data(), samples_);
+    for (int n = 1; n <= harmonics_; ++n) {
+      displacement_[static_cast<std::size_t>(n - 1) * cells + c] =
+          2.0 / samples_ * spectrum_[static_cast<std::size_t>(n)];
+    }
+  }
+}
+
+std::span<std::complex<double>> SkinMotion::harmonic(int n) {
+  return std::span(displacement_)
+      .subspan(static_cast<std::size_t>(n - 1) * patch_.size(), patch_.size());
+}
+
+std::span<const std::complex<double>> SkinMotion::displacement(int n) const {
+  return std::span(displacement_)
+      .subspan(static_cast<std::size_t>(n - 1) * patch_.size(), patch_.size());
+}
+
+void rms_velocity(const SkinMotion& motion, std::span<double> out) {
+  std::fill(out.begin(), out.end(), 0.0);
+  for (int n = 1; n <= motion.harmonics(); ++n) {
+    const double omega = 2.0 * kPi * motion.frequency(n);
+    const auto field = motion.displacement(n);
+    for (std::size_t c = 0; c < out.size(); ++c) {
+      out[c] += 0.5 * omega * omega * std::norm(field[c]);
+    }
+  }
+  for (double& value : out) value = std::sqrt(value);
+}
+
+void velocity_spectrum(const SkinMotion& motion, int cell, std::span<double> out) {
+  for (int n = 1; n <= motion.harmonics(); ++n) {
+    out[static_cast<std::size_t>(n - 1)] =
+        2.0 * kPi * motion.frequency(n) *
+        std::abs(motion.displacement(n)[static_cast<std::size_t>(cell)]);
+  }
+}
+
+}  // namespace prostm
