@@ -18,7 +18,7 @@ endfunction()
 
 install(FILES ${PROJECT_SOURCE_DIR}/src/prostm/prostm.hpp ${PROJECT_SOURCE_DIR}/src/prostm/version.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/prostm)
-prostm_install(prostmTargets core target plan am acoustics emit device score)
+prostm_install(prostmTargets core target acoustics felt plan am emit device score)
 
 # before 1.0 a minor version may change anything
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/prostmConfigVersion.cmake COMPATIBILITY SameMinorVersion)

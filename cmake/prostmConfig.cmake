@@ -1,4 +1,4 @@
-# find_package(prostm) provides the planner's library: prostm::core, target, plan, am, acoustics, emit, device and
+# find_package(prostm) provides the planner's library: prostm::core, target, acoustics, felt, plan, am, emit, device and
 # score. find_package(prostm COMPONENTS pipeline) adds prostm::track, hand, stimulus, contact, fluid and
 # pipeline.
 foreach(component ${prostm_FIND_COMPONENTS})

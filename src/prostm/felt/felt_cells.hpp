@@ -1,0 +1,40 @@
+#pragma once
+/// A target in the cells that a felt loss looks at.
+
+#include <cstddef>
+#include <vector>
+
+#include "prostm/target/target_field.hpp"
+
+namespace prostm {
+
+/// Blocks with skin, at most, where pressures are chosen and where points are.
+inline constexpr std::size_t kFeltCells = 512, kFinerFeltCells = 800;
+
+/// The skin of a target, averaged over square blocks of its raster.
+class FeltCells {
+ public:
+  static constexpr double kWidth = 6e-3;  ///< of a block, unless a cell is wider [m]
+
+  /// @param most blocks with skin.
+  explicit FeltCells(std::size_t most);
+
+  /// Takes over the skin of a target, in blocks of at most kWidth, or wider ones if there are
+  /// too many. Allocates nothing. @param maximum the target's largest pressure, > 0.
+  void set(const TargetField& target, double maximum);
+
+  struct Cell {
+    double x = 0.0, y = 0.0;  ///< mean place, from the middle of the target's cell (0, 0) [mm]
+    double area = 0.0;        ///< share of the skin, with the target's weights if it has any
+    double pressure = 0.0;    ///< mean p* over the maximum
+  };
+  const std::vector<Cell>& cells() const { return cells_; }
+
+ private:
+  bool fill(const TargetField& target, double maximum, int width);
+
+  std::size_t most_;
+  std::vector<Cell> cells_, blocks_;
+};
+
+}  // namespace prostm

@@ -1,0 +1,44 @@
+#pragma once
+/// L-BFGS [P-5] for a few hundred variables.
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <span>
+
+namespace prostm {
+
+/// Sized once; run() allocates nothing.
+class QuasiNewton {
+ public:
+  /// Returns the cost at x, and writes its gradient.
+  using Cost = std::function<float(std::span<const float> x, std::span<float> gradient)>;
+
+  explicit QuasiNewton(std::size_t most_variables);
+
+  /// Lowers the cost from x on, which is left at the lowest place found.
+  /// @param first_step length of the first step [unit of x]. @param evaluations at most, ≥ 1.
+  /// @return the number of evaluations.
+  int run(const Cost& cost, float first_step, int evaluations, std::span<float> x);
+
+  float lowest() const { return value_; }  ///< cost at the place found
+
+ private:
+  static constexpr std::size_t kMemory = 6;
+  using Vector = Eigen::VectorXf;
+  void find_direction();
+  void remember();
+  auto head(Vector& v) { return v.head(variables_); }
+  float evaluate(const Cost& cost, Vector& x, Vector& gradient);
+  bool advance(const Cost& cost, float share, int evaluations, int& used);
+
+  // of the first variables_ entries
+  Eigen::Index variables_ = 0;
+  std::array<Vector, kMemory + 1> step_, change_;  // the newest at the front, one spare
+  std::array<float, kMemory + 1> curvature_{};     // step · change
+  std::size_t remembered_ = 0;
+  Vector x_, gradient_, trial_, trial_gradient_, direction_;
+  float value_ = 0.0F;
+};
+
+}  // namespace prostm

@@ -1,0 +1,46 @@
+#pragma once
+/// 1 − S of a field against its target, and the gradient of that.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "prostm/felt/felt_cells.hpp"
+
+namespace prostm {
+
+/// 1 − S_8.5 and 1 − S_0, (Q4) and (Q5), over the cells of a target.
+template <class Real>
+class RenderLack {
+ public:
+  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+  /// Sized once; nothing else allocates.
+  explicit RenderLack(std::size_t most_cells);
+
+  /// Takes over a target. @pre some pressure is above 0.
+  void set(const std::vector<FeltCells::Cell>& cells);
+  /// Returns 1 − S_8.5 + fine (1 − S_0). @param pull its gradient with respect to the field. @pre
+  /// the field has a value above 0.
+  Real of(const Eigen::Ref<const Vector>& field, Real fine, Eigen::Ref<Vector> pull);
+
+  /// Shares of the skin of the cells; their sum is 1.
+  Eigen::Ref<const Vector> area() const { return area_.head(cells_); }
+
+ private:
+  using Field = Eigen::Ref<const Vector>;
+  /// 1 − S against one target.
+  struct Measure {
+    Real square = 0, variance = 1;
+    void set(const Field& area, const Field& target);
+    Real of(const Field& area, const Field& target, const Field& field,
+            Eigen::Ref<Vector> pull) const;
+  };
+
+  Eigen::Index cells_ = 0;
+  // of the first cells_ entries
+  Vector area_, target_, blurred_target_, smooth_, pull_;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> blur_;  // each row adds up to 1
+  Measure sharp_, blurred_;
+};
+
+}  // namespace prostm
