@@ -70,6 +70,40 @@ TEST(GainLaw, IsThePowerLawThatItStates) {
   EXPECT_DOUBLE_EQ((GainLaw{1.0, -2.0, 50.0}.of(0.0)), 256.0);
 }
 
+TEST(GainLaw, FromTheSkinIsItsTable) {
+  const GainLaw law{1.4, 0.0, 50.0, true};
+  EXPECT_DOUBLE_EQ(law.of(0.02), 1.4);
+  EXPECT_DOUBLE_EQ(law.of(0.01), 1.4 * 0.825);
+  EXPECT_DOUBLE_EQ(law.of(0.01125), 1.4 * 0.847);  // half-way
+  EXPECT_DOUBLE_EQ(law.of(0.0), 1.4 * 0.713);
+  EXPECT_DOUBLE_EQ(law.of(1.0), 1.4);
+  // the longest path has γ of the settings at any draw rate
+  EXPECT_DOUBLE_EQ((GainLaw{2.0, 0.0, 100.0, true}.of(0.01)), 2.0);
+  EXPECT_GT((GainLaw{2.0, 0.0, 100.0, true}.of(0.0125)), 2.0);
+}
+
+TEST(GainLaw, FromTheSkinMovesPressuresAndNoPaths) {
+  const TargetField field = fields::make(Pattern::Fingertips, 3);
+  PlanSettings settings = settings_with("best", 0.0);
+  const Plan plain = test::plan_of(settings, field);
+  settings.gain_from_skin = true;
+  const Plan scaled = test::plan_of(settings, field);
+  ASSERT_EQ(plain.paths.size(), scaled.paths.size());
+  bool weaker = false;
+  for (std::size_t k = 0; k < plain.paths.size(); ++k) {
+    const FocalPath &a = plain.paths[k], &b = scaled.paths[k];
+    ASSERT_EQ(a.points, b.points);
+    const double share = skin_gain(a.period);
+    weaker = weaker || share < 0.9;
+    for (std::size_t i = 0; i < a.pressure.size(); ++i) {
+      EXPECT_NEAR(b.pressure[i], share * a.pressure[i], 1e-12 * (1.0 + a.pressure[i]));
+    }
+  }
+  EXPECT_TRUE(weaker);
+  settings.gain_exponent = 0.5;
+  EXPECT_THROW(Planner(settings, 100), std::invalid_argument);
+}
+
 TEST(GainLaw, ScalesTheRenderedPressuresOfEveryPresetAndNoScore) {
   for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
     for (const Pattern pattern : {Pattern::FourPlumes, Pattern::Fingertips, Pattern::Letter}) {

@@ -12,6 +12,38 @@ namespace prostm {
 
 namespace {
 
+/// Those of presets best and fast.
+template <class Settings, class Visitor>
+void list_fit(Settings& s, Visitor& v) {
+  constexpr double kPoints = kMaxPathPoints;
+  v.field({"least_length", "m", 0.005, 1, "least length of a path of presets best and fast"},
+          s.least_length);
+  v.field({"fit_coverage", "", 0, 100, "weight of pressure that no path reaches"}, s.fit_coverage);
+  v.field({"fit_length", "", 0, 1000, "weight of length and uneven points"}, s.fit_length);
+  v.field({"fit_spacing", "", 0, 1000, "weight of points that are too near"}, s.fit_spacing);
+  v.field({"fit_bending", "", 0, 1000, "weight of bends"}, s.fit_bending);
+  v.field({"felt_weight", "", 0, 1,
+           "share that what is felt has in the choice of pressures by best and fast; 0: off"},
+          s.felt_weight);
+  v.field({.name = "felt_points",
+           .help = "with felt_weight: whether what is felt moves the points of paths, too"},
+          s.felt_points);
+  v.field({"fit_samples", "", 8, kPoints,
+           "points of a path that preset best moves; plans have twice as many, up to 64"},
+          s.fit_samples);
+  v.field({"fit_hysteresis", "", 0, 1, "share of the cost that new paths must save"},
+          s.fit_hysteresis);
+  v.field({"fit_starts", "", 1, 10'000, "sets of paths that are tried without a plan before"},
+          s.fit_starts);
+  v.field({"fit_kicks", "", 0, 100'000, "tries to lay one or two paths anew"}, s.fit_kicks);
+  v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts apply"},
+          s.budget);
+  v.field({"full_scale_pressure", "", 0, 1e300,
+           "rendered pressure at full output that best and "
+           "fast plan for; 0: gain times the largest"},
+          s.full_scale_pressure);
+}
+
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   constexpr int kSeeds = std::numeric_limits<int>::max();
@@ -29,6 +61,9 @@ void list(Settings& s, Visitor& v) {
   v.field({"gain_exponent", "", -2, 2,
            "exponent of a path's period in its gamma; 0: one gamma for all"},
           s.gain_exponent);
+  v.field({.name = "gain_from_skin",
+           .help = "gamma by period from the model of the skin, in place of gain_exponent"},
+          s.gain_from_skin);
   v.field({"weight_pressure", "", 0, 1000, "weight of Eq. (2), the pressure on a path"},
           s.weight_pressure);
   v.field({"weight_length", "", 0, 1000, "weight of Eq. (3), the length of a path"},
@@ -45,26 +80,7 @@ void list(Settings& s, Visitor& v) {
   v.field({"refine_iterations", "", 0, 100'000, "largest number of gradient steps"},
           s.refine_iterations);
   v.field({"seed", "", 0, kSeeds, "seed of the planner's random choices"}, s.seed);
-  v.field({"least_length", "m", 0.005, 1, "least length of a path of presets best and fast"},
-          s.least_length);
-  v.field({"fit_coverage", "", 0, 100, "weight of pressure that no path reaches"}, s.fit_coverage);
-  v.field({"fit_length", "", 0, 1000, "weight of length and uneven points"}, s.fit_length);
-  v.field({"fit_spacing", "", 0, 1000, "weight of points that are too near"}, s.fit_spacing);
-  v.field({"fit_bending", "", 0, 1000, "weight of bends"}, s.fit_bending);
-  v.field({"fit_samples", "", 8, kPoints,
-           "points of a path that preset best moves; plans have twice as many, up to 64"},
-          s.fit_samples);
-  v.field({"fit_hysteresis", "", 0, 1, "share of the cost that new paths must save"},
-          s.fit_hysteresis);
-  v.field({"fit_starts", "", 1, 10'000, "sets of paths that are tried without a plan before"},
-          s.fit_starts);
-  v.field({"fit_kicks", "", 0, 100'000, "tries to lay one or two paths anew"}, s.fit_kicks);
-  v.field({"budget", "s", 0, 60, "time after which best tries nothing more; 0: only counts apply"},
-          s.budget);
-  v.field({"full_scale_pressure", "", 0, 1e300,
-           "rendered pressure at full output that best and "
-           "fast plan for; 0: gain times the largest"},
-          s.full_scale_pressure);
+  list_fit(s, v);
 }
 
 }  // namespace
@@ -87,8 +103,19 @@ void validate(const PlanSettings& s) {
   require_between("rise_time", s.rise_time, 1e-6, 1.0, "s");
   require_between("silent_below", s.silent_below, 0.0, 1.0);
   validate(s.widths);
+  if (s.gain_from_skin && s.gain_exponent != 0.0) {
+    throw std::invalid_argument(
+        "gain_from_skin takes the place of gain_exponent: gain_exponent must be 0 with it");
+  }
   if (s.budget > 0.0 && s.preset != Preset::Best) {
     throw std::invalid_argument("a budget is for preset best, not " +
+                                std::string(name_of(s.preset)));
+  }
+  // a loop may be half as long as a lap of the longest path, and must be one that is_loop() takes
+  if (s.felt_weight > 0.0)
+    require_between("draw_rate with felt_weight", s.draw_rate, 1.0, 500.0, "Hz");
+  if (s.felt_weight > 0.0 && s.preset != Preset::Best && s.preset != Preset::Fast) {
+    throw std::invalid_argument("felt_weight is for presets best and fast, not " +
                                 std::string(name_of(s.preset)));
   }
 }

@@ -33,6 +33,8 @@ struct PlanSettings {
   double sigma = 8.6e-3;       ///< fall-off σ of a focal point in Eqs. (1) and (4) [m]
   double gain = 1.4;           ///< γ of the longest path: rendered over effective pressure, (P9b)
   double gain_exponent = 0.0;  ///< exponent of a path's period in its γ, (P9b); 0: one γ for all
+  /// γ of shorter paths from the model of the skin, (P9c), in place of the exponent.
+  bool gain_from_skin = false;
   double weight_pressure = 3.0;      ///< weight of Eq. (2), p* over the frame's maximum
   double weight_length = 3.0;        ///< weight of Eq. (3), lengths in mm
   double weight_intersection = 1.0;  ///< weight of Eq. (4), lengths in mm
@@ -48,7 +50,11 @@ struct PlanSettings {
   double fit_length = 1.0;      ///< weight of length and uneven samples, (P13)
   double fit_spacing = 0.3;     ///< weight of samples that are too near, (P14)
   double fit_bending = 0.03;    ///< weight of bending, (P15)
-  int fit_samples = 28;  ///< N of a path that best moves, 8..64; plans have 2 N of at most 64
+  /// Weight of what is felt when pressures are chosen, 0 to 1, (P19); the rest is that of the
+  /// field (P10). 0: pressures are those of the fit.
+  double felt_weight = 0.0;
+  bool felt_points = false;  ///< whether what is felt moves the points of paths, too
+  int fit_samples = 28;      ///< N of a path that best moves, 8..64; plans have 2 N of at most 64
   double fit_hysteresis = 0.03;  ///< share of the cost that a new set of paths must save
   int fit_starts = 4;            ///< sets of paths laid anew if there is no plan before
   int fit_kicks = 8;             ///< tries to lay one or two paths anew
@@ -72,7 +78,7 @@ struct PlanSettings {
   double max_length() const { return speed / draw_rate; }
 
   /// The law that gives γ of each path by its period.
-  GainLaw gain_law() const { return {gain, gain_exponent, draw_rate}; }
+  GainLaw gain_law() const { return {gain, gain_exponent, draw_rate, gain_from_skin}; }
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);

@@ -46,7 +46,8 @@ struct Planner::Scratch {
   /// Appends at most `paths` paths for one patch to `plan` and adds to `stats` (all but the total).
   /// @param highest pressure of the frame.
   PlanStatus plan_patch(const TargetField& target, double highest, int patch, int paths,
-                        double budget, Plan& plan, PlanStats& stats, PlanTrace* trace);
+                        double budget, bool is_alone, Plan& plan, PlanStats& stats,
+                        PlanTrace* trace);
   /// Rendered pressure at full output. @param highest pressure of the frame.
   double full_scale(double highest) const {
     return settings.full_scale_pressure > 0.0 ? settings.full_scale_pressure
@@ -158,8 +159,8 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
 }
 
 PlanStatus Planner::Scratch::plan_patch(const TargetField& target, double highest, int patch,
-                                        int paths, double budget, Plan& plan, PlanStats& stats,
-                                        PlanTrace* trace) {
+                                        int paths, double budget, bool is_alone, Plan& plan,
+                                        PlanStats& stats, PlanTrace* trace) {
   StageTimer timer;
   const double maximum = highest_pressure(target, max_cells);
   if (maximum < 0.0) return PlanStatus::InvalidTarget;
@@ -169,8 +170,9 @@ PlanStatus Planner::Scratch::plan_patch(const TargetField& target, double highes
   }
   if (!fits.empty()) {
     if (trace != nullptr) *trace = {};
-    fits[static_cast<std::size_t>(patch)].plan_patch(
-        target, maximum, full_scale(std::max(highest, maximum)), patch, paths, budget, plan, stats);
+    fits[static_cast<std::size_t>(patch)].plan_patch(target, maximum,
+                                                     full_scale(std::max(highest, maximum)), patch,
+                                                     paths, budget, is_alone, plan, stats);
     return PlanStatus::Planned;
   }
   collect_points(target, maximum);
@@ -213,8 +215,9 @@ PlanStatus Planner::plan(const TargetField& target, Plan& plan, PlanStats& stats
   StageTimer timer;
   plan.clear();
   stats = {};
-  const PlanStatus status = scratch_->plan_patch(target, 0.0, 0, scratch_->settings.paths,
-                                                 scratch_->settings.budget, plan, stats, trace);
+  const PlanStatus status =
+      scratch_->plan_patch(target, 0.0, 0, scratch_->settings.paths, scratch_->settings.budget,
+                           true, plan, stats, trace);
   stats.total = timer.seconds();
   return status;
 }
@@ -240,8 +243,8 @@ PlanStatus Planner::plan(const TargetFrame& frame, Plan& plan, PlanStats& stats)
       scratch_->settings.budget / static_cast<double>(std::max<std::ptrdiff_t>(planned, 1));
   for (std::size_t i = 0; i < frame.patches.size(); ++i) {
     if (share[i] == 0 && pressure[i] > 0.0) continue;
-    scratch_->plan_patch(frame.patches[i], highest, static_cast<int>(i), share[i], budget, plan,
-                         stats, nullptr);
+    scratch_->plan_patch(frame.patches[i], highest, static_cast<int>(i), share[i], budget,
+                         planned < 2, plan, stats, nullptr);
   }
   // a hand that has left starts anew when it comes back
   for (std::size_t i = frame.patches.size(); i < scratch_->fits.size(); ++i) {

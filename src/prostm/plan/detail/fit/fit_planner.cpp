@@ -86,15 +86,17 @@ FitSettings fit_settings(const PlanSettings& s) {
 FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells)
     : settings_(settings),
       search_(max_cells, fit_settings(settings), search_settings(settings, preset)),
+      felt_(settings.felt_weight > 0.0 ? std::make_unique<FeltStep>(settings) : nullptr),
       pieces_(pieces_of(preset, search_settings(settings, preset).samples)) {}
 
 /// Bounds of (P18) for a path whose rendered pressure is `gain` times the effective one.
-PlayBounds FitPlanner::play_bounds(double gain) const {
+/// @param speed of its focal point [m/s].
+PlayBounds FitPlanner::play_bounds(double gain, double speed) const {
   // full output over the target's maximum
   const double highest = gain * rendered_;
   const double room = full_scale_ >= kAmple * highest ? kAmple : full_scale_ / highest;
   // length of a full rise [mm]
-  const double reach = kMmPerMetre * settings_.speed * settings_.rise_time;
+  const double reach = kMmPerMetre * speed * settings_.rise_time;
   return PlayBounds::all(static_cast<float>(std::min(1.0, room)),
                          static_cast<float>(std::sqrt(room) / reach),
                          static_cast<float>(settings_.silent_below * room));
@@ -108,6 +110,7 @@ void FitPlanner::move_to(const Vec2& origin) {
     fit_.loops.y[i] += static_cast<float>(shift.y());
   }
   phases_.move(shift);
+  if (felt_) felt_->move(shift);
   origin_ = origin;
 }
 
@@ -253,7 +256,7 @@ int FitPlanner::mend_between(const TargetField& target, int paths) {
 /// Copies the paths of points_ to plan_, and sets bounds_ to what the emission can play on them.
 void FitPlanner::take_plan(const TargetField& target, int paths) {
   plan_.loops.reset(samples_, paths);
-  bounds_ = play_bounds(settings_.gain);
+  bounds_ = play_bounds(settings_.gain, settings_.speed);
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
     const std::span<Vec2> loop = path_at(k);
@@ -263,11 +266,28 @@ void FitPlanner::take_plan(const TargetField& target, int paths) {
       x = plan_.loops.point(i, k);  // rounded as in the plan
     }
     factor_[place] = skin_factor(target, loop);
-    period_[place] = loop_length(loop) / kMmPerMetre * factor_[place] / settings_.speed;
-    const PlayBounds own = play_bounds(settings_.gain_law().of(period_[place]));
+    length_[place] = loop_length(loop) / kMmPerMetre * factor_[place];
+    period_[place] = length_[place] / settings_.speed;
+  }
+  if (felt_) step_together(paths);
+  for (int k = 0; k < paths; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    const double period = period_[place];
+    const PlayBounds own = play_bounds(settings_.gain_law().of(period), length_[place] / period);
     bounds_.most[place] = own.most[place];
     bounds_.slope[place] = own.slope[place];
     bounds_.least[place] = own.least[place];
+  }
+}
+
+/// Slows the paths down until all make whole laps in one loop.
+void FitPlanner::step_together(int paths) {
+  const auto own = std::span<const double>(period_).first(static_cast<std::size_t>(paths));
+  const double longest = 1.0 / settings_.draw_rate;
+  loop_ = is_alone_ ? choose_loop(own, longest, last_period_) : loop_of(own, longest);
+  for (int k = 0; k < paths; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    period_[place] = loop_.period / std::max(loop_.laps[place], 1);
   }
 }
 
@@ -293,7 +313,7 @@ bool FitPlanner::leave_out_silent(int& paths) {
       own = std::max(own, plan_.reconstruction.pressure[plan_.loops.node(i, k)]);
   }
   const auto [least, most] = std::minmax_element(highest.begin(), highest.begin() + paths);
-  const float sounds = play_bounds(settings_.gain).least[0];
+  const float sounds = play_bounds(settings_.gain, settings_.speed).least[0];
   const auto weak = static_cast<float>(settings_.weak_pressure);
   if (paths == 1 || *least >= (*most >= sounds ? std::max(weak, sounds) : weak)) return false;
   const auto silent = static_cast<int>(least - highest.begin());
@@ -302,21 +322,61 @@ bool FitPlanner::leave_out_silent(int& paths) {
   return true;
 }
 
+/// Chooses where the laps of plan_ start, (P16).
+void FitPlanner::choose_starts() {
+  starts_ = phases_.choose(fit_.loops, std::span<const double>(period_).first(
+                                           static_cast<std::size_t>(plan_.loops.paths)));
+  for (LapStart& start : starts_) start.first *= pieces_;
+}
+
+/// The shape that the paths of fit_ should have on this skin.
+ShapeSettings FitPlanner::shape_of(const TargetField& target) {
+  ShapeSettings shape = fit_settings(settings_).shape;
+  samples_ = fit_.loops.samples;
+  for (int k = 0; k < fit_.loops.paths; ++k) {
+    shape.most_length[static_cast<std::size_t>(k)] = static_cast<float>(
+        kMmPerMetre * settings_.max_length() / skin_factor(target, copy_path(k, 0)));
+  }
+  return shape;
+}
+
+/// Moves the points of the plan by what is felt, and mends it again.
+void FitPlanner::move_felt(const TargetField& target, PlanStats& stats) {
+  LapStarts starts = starts_;
+  for (LapStart& start : starts) start.first /= pieces_;
+  for (int k = 0; k < fit_.loops.paths; ++k) {
+    for (int i = 0; i < fit_.loops.samples; ++i) {
+      fit_.reconstruction.pressure[fit_.loops.node(i, k)] =
+          plan_.reconstruction.pressure[plan_.loops.node(i * pieces_, k)];
+    }
+  }
+  stats.cost_evaluations +=
+      felt_->move_points(starts, loop_, shape_of(target), fit_.reconstruction.pressure, fit_.loops);
+  mend(target, stats);
+  choose_starts();
+}
+
+/// Chooses the pressures of plan_ anew by what is felt, as they can be played.
+void FitPlanner::choose_felt(PlanStats& stats) {
+  stats.cost_evaluations += felt_->choose_pressures(plan_.loops, starts_, loop_, pieces_,
+                                                    bounds_.most[0], plan_.reconstruction.pressure);
+  make_playable(plan_.loops, bounds_, plan_.reconstruction.pressure);
+}
+
 void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanStats& stats) {
   const int n = samples_, paths = plan_.loops.paths;
-  const LapStarts starts = phases_.choose(
-      fit_.loops, std::span<const double>(period_).first(static_cast<std::size_t>(paths)));
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
-    const LapStart start{pieces_ * starts[place].first, starts[place].reversed};
+    const LapStart start = starts_[place];
     FocalPath path;
     path.patch = patch;
     for (int i = 0; i < n; ++i) {
       path.points.push_back(target.origin + plan_.loops.point(start.sample(i, n), k) / kMmPerMetre);
     }
     path.length = closed_length(path);
-    path.speed = settings_.speed;
-    path.period = path.length * factor_[place] / path.speed;
+    const double on_skin = path.length * factor_[place];
+    path.period = felt_ ? period_[place] : on_skin / settings_.speed;
+    path.speed = felt_ ? on_skin / path.period : settings_.speed;
     const double gain = settings_.gain_law().of(path.period);
     for (int i = 0; i < n; ++i) {
       const std::size_t node = plan_.loops.node(start.sample(i, n), k);
@@ -325,15 +385,18 @@ void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanSt
     }
     plan.paths.push_back(path);
   }
+  plan.loop = felt_ ? loop_.period : 0.0;
+  last_period_ = plan.loop;
   stats.leaves += paths;
 }
 
 void FitPlanner::plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
-                            int paths, double budget, Plan& plan, PlanStats& stats) {
+                            int paths, double budget, bool is_alone, Plan& plan, PlanStats& stats) {
   StageTimer timer;
   full_scale_ = full_scale;
+  is_alone_ = is_alone;
   rendered_ = std::min(maximum, kAmple * (full_scale / settings_.gain));
-  search_.set_bounds(play_bounds(settings_.gain));
+  search_.set_bounds(play_bounds(settings_.gain, settings_.speed));
   is_flat_ = is_constant(target.height);
   if (!settings_.widths.empty()) {
     settings_.sigma = settings_.widths.on(target);
@@ -344,19 +407,23 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, double fu
 
   move_to(target.origin);
   const bool continues = has_previous_ && fit_.loops.paths <= paths;
-  if (!continues) phases_.forget();
-  stats.cost_evaluations += search_.run(paths, continues, fit_);
-  samples_ = fit_.loops.samples;
-  std::array<float, kMaxPaths> most{};
-  for (int k = 0; k < fit_.loops.paths; ++k) {
-    most[static_cast<std::size_t>(k)] = static_cast<float>(kMmPerMetre * settings_.max_length() /
-                                                           skin_factor(target, copy_path(k, 0)));
+  if (!continues) {
+    phases_.forget();
+    if (felt_) felt_->forget();
+    last_period_ = 0.0;
   }
-  stats.cost_evaluations += search_.finish(most, fit_);
+  stats.cost_evaluations += search_.run(paths, continues, fit_);
+  stats.cost_evaluations += search_.finish(shape_of(target).most_length, fit_);
   stats.cost += static_cast<double>(fit_.cost);
 
   const double start = timer.seconds();
   mend(target, stats);
+  choose_starts();
+  if (felt_) {
+    felt_->set_target(target, maximum, settings_.sigma);
+    if (settings_.felt_points) move_felt(target, stats);
+    choose_felt(stats);
+  }
   append(target, patch, plan, stats);
   search_.learn_ending(timer.seconds() - start);
   has_previous_ = true;

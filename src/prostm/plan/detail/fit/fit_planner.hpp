@@ -3,8 +3,10 @@
 
 #include <array>
 #include <boost/container/static_vector.hpp>
+#include <memory>
 #include <span>
 
+#include "prostm/plan/detail/fit/felt/felt_step.hpp"
 #include "prostm/plan/detail/fit/phases.hpp"
 #include "prostm/plan/detail/fit/search.hpp"
 #include "prostm/plan/detail/fit/spacing.hpp"
@@ -24,28 +26,38 @@ class FitPlanner {
   FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells);
 
   /// Forgets the last plan.
-  void reset() { has_previous_ = false; }
+  void reset() {
+    has_previous_ = false;
+    last_period_ = 0.0;
+    if (felt_) felt_->forget();
+  }
   /// Appends at most `paths` paths to `plan` and adds to `stats` (all but the total).
   /// @param full_scale rendered pressure at full output [unit of the target].
   /// @param budget time limit [s]; 0: only the counts of the settings apply.
+  /// @param is_alone whether no other patch has paths in this plan; patches share one loop.
   /// @pre maximum > 0, full_scale > 0.
   void plan_patch(const TargetField& target, double maximum, double full_scale, int patch,
-                  int paths, double budget, Plan& plan, PlanStats& stats);
+                  int paths, double budget, bool is_alone, Plan& plan, PlanStats& stats);
 
  private:
   void move_to(const Vec2& origin);
   boost::container::static_vector<int, kMaxPaths> by_pressure() const;
-  PlayBounds play_bounds(double gain) const;
+  PlayBounds play_bounds(double gain, double speed) const;
   SpacingRule spacing_rule(double between) const;
   int space_out(const TargetField& target, int paths, SpacingRule rule);
   void take_points(int paths);
   void mend(const TargetField& target, PlanStats& stats);
   int mend_between(const TargetField& target, int paths);
+  void step_together(int paths);
   void take_plan(const TargetField& target, int paths);
   void solve(const TargetField& target, int& paths, PlanStats& stats);
   bool leave_out_silent(int& paths);
   bool bound_lengths(const TargetField& target, int paths, double share, SpacingRule& rule);
   int leave_out_long(const TargetField& target, int paths, double least_length);
+  void choose_starts();
+  ShapeSettings shape_of(const TargetField& target);
+  void move_felt(const TargetField& target, PlanStats& stats);
+  void choose_felt(PlanStats& stats);
   void append(const TargetField& target, int patch, Plan& plan, PlanStats& stats);
   double skin_factor(const TargetField& target, std::span<const Vec2> loop);
   std::span<Vec2> copy_path(int k, int to);
@@ -60,17 +72,21 @@ class FitPlanner {
   PlanSettings settings_;
   Search search_;
   Phases phases_;
-  const int pieces_;            // pieces per segment of the search, in a plan
-  Fit fit_;                     // the last plan until the next
-  Vec2 origin_ = Vec2::Zero();  // origin of the target that fit_ is for [m]
-  bool has_previous_ = false, is_flat_ = false;
-  double rendered_ = 0.0;    // effective pressure that 1 of fit_ stands for
-  double full_scale_ = 0.0;  // rendered pressure at full output
+  std::unique_ptr<FeltStep> felt_;  // null if what is felt does not count
+  const int pieces_;                // pieces per segment of the search, in a plan
+  Fit fit_;                         // the last plan until the next
+  Vec2 origin_ = Vec2::Zero();      // origin of the target that fit_ is for [m]
+  bool has_previous_ = false, is_flat_ = false, is_alone_ = true;
+  double last_period_ = 0.0;  // of the last plan's loop [s]
+  double rendered_ = 0.0;     // effective pressure that 1 of fit_ stands for
+  double full_scale_ = 0.0;   // rendered pressure at full output
   // scratch
   int samples_ = 0;                                       // samples of a path of points_
   Fit plan_;                                              // fit_ with the samples of the plan
   PlayBounds bounds_ = PlayBounds::all(1.0F, kAnySlope);  // bounds of plan_
-  std::array<double, kMaxPaths> factor_{}, period_{};     // for each path of plan_
+  std::array<double, kMaxPaths> factor_{}, length_{}, period_{};  // for each path of plan_
+  LapStarts starts_;                                              // the same
+  CommonLoop loop_;                                               // of plan_, if it is in step
   FocalPath flat_;
   std::array<Vec2, kMaxLoopNodes> points_;  // one path after the other [mm]
   SpacingScratch spacing_;

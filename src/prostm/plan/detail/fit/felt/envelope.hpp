@@ -1,0 +1,57 @@
+#pragma once
+/// The field of Eq. (1) in the cells of a felt loss, and how badly it renders the target.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prostm/felt/render_lack.hpp"
+
+namespace prostm::planning {
+
+/// Closed paths as they lie in the variables of a felt step: `samples` points each, one path after
+/// the other [mm].
+struct StepPoints {
+  int samples = 0;
+  std::span<const float> x, y;
+
+  std::size_t next(std::size_t i) const {
+    const auto n = static_cast<std::size_t>(samples);
+    return i % n + 1 < n ? i + 1 : i + 1 - n;
+  }
+};
+
+/// Sized once; nothing else allocates.
+class EnvelopeLack {
+ public:
+  explicit EnvelopeLack(std::size_t most_cells);
+
+  /// Takes over a target.
+  void set_target(const std::vector<FeltCells::Cell>& cells);
+  /// Takes over the points. @param sigma of a focus [mm].
+  void set_points(const StepPoints& points, float sigma);
+  /// Returns 1 − S_8.5 of (P10), and adds `weight` times its gradient with respect to the
+  /// pressures.
+  float add(float weight, std::span<const float> pressure, std::span<float> gradient);
+  /// Adds `weight` times the gradient of the last add() with respect to the points [1/mm].
+  void add_slide(float weight, const StepPoints& points, std::span<const float> pressure,
+                 std::span<float> gradient_x, std::span<float> gradient_y) const;
+
+ private:
+  /// The closest place of the paths to a cell: its field is a·p_first + b·p_second.
+  struct Nearest {
+    std::uint32_t first = 0, second = 0;
+    float a = 0.0F, b = 0.0F;
+    float along = 0.0F, dx = 0.0F,
+          dy = 0.0F;  // share of the segment, vector from there to the cell
+  };
+  RenderLack<float> lack_;
+  std::vector<FeltCells::Cell> cells_;
+  std::vector<Nearest> nearest_;
+  float sigma_ = 1.0F;
+  Eigen::VectorXf field_, pull_;
+};
+
+}  // namespace prostm::planning

@@ -1,0 +1,79 @@
+#pragma once
+/// How badly closed paths in step render a target, by what is felt and by the field of Eq. (1), as
+/// a function of their pressures and points: (P19) and (P20).
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "prostm/felt/felt_loss.hpp"
+#include "prostm/felt/step_path.hpp"
+#include "prostm/plan/detail/fit/felt/common_loop.hpp"
+#include "prostm/plan/detail/fit/felt/envelope.hpp"
+#include "prostm/plan/plan.hpp"
+#include "prostm/plan/plan_settings.hpp"
+
+namespace prostm::planning {
+
+/// Speeds of the waves on the skins that a plan is fitted to, over the nominal ones.
+inline constexpr std::array kFeltSpeeds = {1.0, 0.7, 1.3};
+/// The most points that are chosen in a plan.
+std::size_t most_felt_points(const PlanSettings& settings);
+
+/// Sized once; nothing else allocates.
+class FeltProblem {
+ public:
+  explicit FeltProblem(const PlanSettings& settings);
+
+  /// Takes over a target. @param maximum its largest pressure, > 0. @param sigma of a focus [m].
+  void set_target(const TargetField& target, double maximum, double sigma);
+  /// Takes over points: each path begins at its first.
+  void set_points(const StepPoints& points, const CommonLoop& loop);
+  /// Keeps the loudness of these pressures, from now on, as the one that must not be lost. @return
+  /// that loudness, and the output that it takes.
+  struct Loudness {
+    float felt = 0.0F;    ///< rms percept [µm per unit of pressure]
+    float output = 0.0F;  ///< (P20)
+  };
+  Loudness keep_loudness(std::span<const float> root);
+  /// Returns loudness and output of other pressures.
+  Loudness loudness(std::span<const float> root);
+  /// Returns (P19), and its gradient with respect to the roots of the pressures.
+  float cost(std::span<const float> root, std::span<float> gradient);
+  /// Computes the gradient of the last cost() with respect to the points [1/mm].
+  void slide(std::span<float> gradient_x, std::span<float> gradient_y);
+
+  /// Area of the skin times mean p*² [mm²]: the scale of (P11).
+  float square() const { return square_; }
+
+ private:
+  /// Tables of all skins, for one σ and one period.
+  struct Tables {
+    float sigma = 0.0F;   ///< [mm]
+    double period = 0.0;  ///< [s]
+    FeltSkins<float> skins;
+  };
+  const Tables& tables(double period);
+  float normalise(std::span<const float> root);
+  template <class F>
+  void for_moments(F&& f) const;
+
+  const float weight_;
+  int first_ = 1;       // first harmonic that is felt
+  float sigma_ = 1.0F;  // rounded, as tables are made for [mm]
+  float square_ = 1.0F;
+  FocusResponseMaker maker_;
+  std::array<Tables, 12> tables_;  // the last ones made
+  std::size_t oldest_ = 0;
+  FeltCells cells_;
+  FeltLoss<float> loss_;
+  EnvelopeLack envelope_;
+  StepPoints points_;
+  std::vector<StepPath<float>> paths_;
+  std::vector<FeltSource<float>> sources_;
+  // of each point; gradients with respect to its pressure, moment and share
+  std::vector<float> pressure_, gradient_, felt_gradient_, by_time_, by_share_;
+  std::array<float, kMaxPathPoints> demand_{};  // at each of as many moments as a path has points
+};
+
+}  // namespace prostm::planning

@@ -1,0 +1,204 @@
+#include "prostm/plan/detail/fit/felt/felt_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "prostm/plan/detail/fit/cell_tiles.hpp"
+
+namespace prostm::planning {
+namespace {
+
+constexpr float kLeastRoot = 0.03F;  // √p at the beginning, over the largest: at 0 it would stick
+constexpr float kFirstStep = 0.5F, kWarmFirstStep = 0.3F;  // length of the first step in √p …
+constexpr float kPerUnit = 5.0F;                           // … and that of this many mm
+// a point goes on from one of the last plan, or of moved points, this near [mm]
+constexpr float kNear = 2.0F, kMovedNear = 6.0F;
+constexpr int kEvaluations = 12, kWarmEvaluations = 6;   // of pressures
+constexpr int kMovedEvaluations = 90, kAfterMoved = 20;  // of points, and of pressures after that
+
+}  // namespace
+
+FeltStep::FeltStep(const PlanSettings& settings)
+    : problem_(settings), descent_((settings.felt_points ? 3 : 1) * most_felt_points(settings)) {
+  const std::size_t most = most_felt_points(settings);
+  last_.reserve(most);
+  node_.reserve(most);
+  for (auto* list : {&x_, &y_, &root_, &fitted_, &gradient_}) list->reserve(most);
+  if (settings.felt_points) variables_.reserve(3 * most);
+}
+
+void FeltStep::forget() {
+  last_.clear();
+  from_ = From::Fit;
+}
+
+void FeltStep::move(const Vec2& shift) {
+  for (Chosen& point : last_) {
+    point.x += static_cast<float>(shift.x());
+    point.y += static_cast<float>(shift.y());
+  }
+}
+
+void FeltStep::set_target(const TargetField& target, double maximum, double sigma) {
+  problem_.set_target(target, maximum, sigma);
+}
+
+/// Takes every so many-th point of each path in the order in which it is passed.
+void FeltStep::take_points(const Loops& loops, const LapStarts& starts, int pieces) {
+  samples_ = loops.samples / pieces;
+  node_.clear();
+  x_.clear();
+  y_.clear();
+  for (int k = 0; k < loops.paths; ++k) {
+    for (int i = 0; i < samples_; ++i) {
+      const int sample = starts[static_cast<std::size_t>(k)].sample(i * pieces, loops.samples);
+      node_.push_back(loops.node(sample, k));
+      x_.push_back(loops.x[node_.back()]);
+      y_.push_back(loops.y[node_.back()]);
+    }
+  }
+  problem_.set_points(points(), loop_);
+}
+
+/// Takes the pressures of the fit.
+void FeltStep::fit(const NodeArray& pressure) {
+  constexpr float kTiny = 1e-3F;  // so that the fit is never silent throughout
+  fitted_.clear();
+  for (const std::size_t node : node_)
+    fitted_.push_back(std::max(std::sqrt(pressure[node]), kTiny));
+}
+
+/// Sets √p to where the descent begins: to the fit's, changed as the last plan's were; or to those
+/// of moved points.
+void FeltStep::begin() {
+  const float least = kLeastRoot * *std::max_element(fitted_.begin(), fitted_.end());
+  root_.clear();
+  for (std::size_t j = 0; j < node_.size(); ++j) {
+    const Chosen* nearest = nullptr;
+    float distance = from_ == From::LastPlan ? kNear * kNear : kMovedNear * kMovedNear;
+    for (const Chosen& point : last_) {
+      const float dx = point.x - x_[j], dy = point.y - y_[j], square = dx * dx + dy * dy;
+      if (square >= distance) continue;
+      distance = square;
+      nearest = &point;
+    }
+    float root = fitted_[j];
+    if (nearest != nullptr) root = from_ == From::LastPlan ? root + nearest->more : nearest->root;
+    root_.push_back(std::max(root, least));
+  }
+}
+
+/// Begins at the fit where that is better: a path that has changed is not what the last plan's
+/// changes were for. @return evaluations used.
+int FeltStep::begin_lower() {
+  gradient_.resize(root_.size());
+  if (problem_.cost(fitted_, gradient_) < problem_.cost(root_, gradient_)) {
+    last_.clear();
+    begin();
+  }
+  return 2;
+}
+
+void FeltStep::remember(From from) {
+  last_.clear();
+  for (std::size_t j = 0; j < node_.size(); ++j)
+    last_.push_back({x_[j], y_[j], root_[j], root_[j] - fitted_[j]});
+  from_ = from;
+}
+
+/// Sets the pressures between the chosen points.
+void FeltStep::join(const Loops& loops, const LapStarts& starts, int pieces,
+                    NodeArray& pressure) const {
+  for (int k = 0; k < loops.paths; ++k) {
+    const auto at = [&](int i) -> float& {
+      return pressure[loops.node(
+          starts[static_cast<std::size_t>(k)].sample(i % loops.samples, loops.samples), k)];
+    };
+    for (int i = 0; i < loops.samples; ++i) {
+      const int before = i / pieces * pieces;
+      const float share = static_cast<float>(i - before) / static_cast<float>(pieces);
+      if (i != before) at(i) = (1.0F - share) * at(before) + share * at(before + pieces);
+    }
+  }
+}
+
+int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
+                               int pieces, float most, NodeArray& pressure) {
+  loop_ = loop;
+  take_points(loops, starts, pieces);
+  fit(pressure);
+  begin();
+  const FeltProblem::Loudness wanted = problem_.keep_loudness(fitted_);
+  int evaluations = 2;
+  if (from_ == From::LastPlan) evaluations += begin_lower();
+  const std::array most_evaluations = {kEvaluations, kWarmEvaluations, kAfterMoved};
+  evaluations +=
+      descent_.run([this](std::span<const float> root,
+                          std::span<float> gradient) { return problem_.cost(root, gradient); },
+                   from_ == From::LastPlan ? kWarmFirstStep : kFirstStep,
+                   most_evaluations[static_cast<std::size_t>(from_)], root_);
+  // as loud as the fit, if its output suffices
+  const FeltProblem::Loudness found = problem_.loudness(root_);
+  const float highest = *std::max_element(root_.begin(), root_.end());
+  const float scale = std::min(
+      {wanted.felt / found.felt, wanted.output / found.output, most / (highest * highest)});
+  for (float& root : root_) root *= std::sqrt(scale);
+  for (std::size_t j = 0; j < node_.size(); ++j) pressure[node_[j]] = root_[j] * root_[j];
+  remember(From::LastPlan);
+  join(loops, starts, pieces, pressure);
+  return evaluations;
+}
+
+/// (P21): the variables are √p, then x and y of all points in units of kPerUnit.
+float FeltStep::moved_cost(const ShapeSettings& shape, std::span<const float> x,
+                           std::span<float> gradient) {
+  const std::size_t n = node_.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    x_[j] = loops_.x[node_[j]] = kPerUnit * x[n + j];
+    y_[j] = loops_.y[node_[j]] = kPerUnit * x[2 * n + j];
+  }
+  problem_.set_points(points(), loop_);
+  float value = problem_.cost(x.first(n), gradient.first(n));
+  problem_.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
+  pairs_.update(loops_, shape);
+  shape_x_.fill(0.0F);
+  shape_y_.fill(0.0F);
+  const float share = kUnitArea / problem_.square();
+  value += share * shape_cost(loops_, shape, pairs_.list(), shape_x_, shape_y_);
+  for (std::size_t j = 0; j < n; ++j) {
+    gradient[n + j] = kPerUnit * (gradient[n + j] + share * shape_x_[node_[j]]);
+    gradient[2 * n + j] = kPerUnit * (gradient[2 * n + j] + share * shape_y_[node_[j]]);
+  }
+  return value;
+}
+
+int FeltStep::move_points(const LapStarts& starts, const CommonLoop& loop,
+                          const ShapeSettings& shape, const NodeArray& pressure, Loops& loops) {
+  loop_ = loop;
+  take_points(loops, starts, 1);
+  fit(pressure);
+  begin();
+  problem_.keep_loudness(fitted_);
+  loops_ = loops;
+  pairs_.clear();
+  const std::size_t n = node_.size();
+  variables_.resize(3 * n);
+  for (std::size_t j = 0; j < n; ++j) {
+    variables_[j] = root_[j];
+    variables_[n + j] = x_[j] / kPerUnit;
+    variables_[2 * n + j] = y_[j] / kPerUnit;
+  }
+  const int evaluations =
+      descent_.run([&](std::span<const float> x,
+                       std::span<float> gradient) { return moved_cost(shape, x, gradient); },
+                   kFirstStep, kMovedEvaluations, variables_);
+  for (std::size_t j = 0; j < n; ++j) {
+    root_[j] = variables_[j];
+    x_[j] = loops.x[node_[j]] = kPerUnit * variables_[n + j];
+    y_[j] = loops.y[node_[j]] = kPerUnit * variables_[2 * n + j];
+  }
+  remember(From::MovedPoints);
+  return evaluations + 1;
+}
+
+}  // namespace prostm::planning
