@@ -123,7 +123,8 @@ GalleryField compared(const ReportWork& work, const std::string& scene, int fram
     field.plans.push_back(
         planned("PRO-STM, " + std::string(name_of(preset)), field.target, plan, settings));
   }
-  AmPlanner(settings.am, field.target.size()).plan(field.target, plan, stats);
+  AmPlanner(am_settings(settings, settings.emission_rate()), field.target.size())
+      .plan(field.target, plan, stats);
   field.plans.push_back(planned("AM", field.target, plan, settings));
   return field;
 }

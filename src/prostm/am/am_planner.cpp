@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <boost/container/static_vector.hpp>
+#include <memory>
 
 #include "prostm/am/am_pressures.hpp"
+#include "prostm/am/detail/felt_foci.hpp"
+#include "prostm/core/require.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/clustering.hpp"
 #include "prostm/plan/patches.hpp"
@@ -52,6 +55,9 @@ void list(Settings& s, Visitor& v) {
   v.field({"sigma", "m", 1e-3, 0.1, "fall-off of a focal point"}, s.sigma);
   v.field({"lloyd_iterations", "", 1, 1'000'000, "largest number of iterations of the k-means"},
           s.lloyd_iterations);
+  v.field({"felt_weight", "", 0, 1,
+           "share that what is felt has in the choice of pressures and phases; 0: off"},
+          s.felt_weight);
 }
 
 }  // namespace
@@ -63,8 +69,18 @@ void AmSettings::visit(SettingsWriter& v) {
   list(*this, v);
 }
 
+void validate(const AmSettings& settings) {
+  require_bounds(settings);
+  require_between("frequency", settings.frequency, 25.0, 1e4, "Hz");
+  validate(settings.widths);
+}
+
 struct AmPlanner::Scratch {
-  Scratch(const AmSettings& s, std::size_t cells) : settings(s), max_cells(cells), kmeans(cells) {}
+  Scratch(const AmSettings& s, std::size_t cells)
+      : settings(s),
+        max_cells(cells),
+        kmeans(cells),
+        felt(s.felt_weight > 0.0 ? std::make_unique<FeltFoci>(s) : nullptr) {}
 
   void plan_patch(const TargetField& target, int patch, int foci, double maximum, Plan& plan,
                   PlanStats& stats);
@@ -72,6 +88,7 @@ struct AmPlanner::Scratch {
   AmSettings settings;
   std::size_t max_cells;
   WeightedKMeans kmeans;
+  std::unique_ptr<FeltFoci> felt;  // null if what is felt does not count
   Clusters clusters;
 };
 
@@ -95,12 +112,13 @@ void AmPlanner::Scratch::plan_patch(const TargetField& target, int patch, int fo
   FocalPoints own;
   for (const Vec2& x : clusters.centre) own.push_back({patch, x, 0.0});
   set_pressures(target, settings.sigma, own);
+  if (felt && !own.empty()) felt->choose(target, maximum, own);
   for (const FocalPoint& focus : own) plan.foci.push_back(focus);
   stats.refine += timer.lap();
 }
 
 AmPlanner::AmPlanner(const AmSettings& settings, std::size_t max_cells) {
-  require_bounds(settings);
+  validate(settings);
   scratch_ = std::make_unique<Scratch>(settings, max_cells);
 }
 AmPlanner::~AmPlanner() = default;

@@ -14,11 +14,21 @@ struct AmSettings {
   int foci = 4;                 ///< N, maximum number of focal points, 1..8
   double sigma = 8.6e-3;        ///< fall-off σ of a focal point [m], 1 to 100 mm
   int lloyd_iterations = 1000;  ///< maximum; a field of a hand takes 5 to 50
+  /// Weight of what is felt when pressures and phases are chosen, 0 to 1, (B8); the rest is that of
+  /// the field (B2). 0: the pressures are (B3), and all foci are in phase.
+  double felt_weight = 0.0;
+  /// For that, not fields in files: frequency of the modulation [Hz], and the array's own σ by the
+  /// target's position and tilt; if empty, `sigma`.
+  double frequency = 200.0;
+  FocusWidths widths;
 
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
   bool operator==(const AmSettings&) const = default;
 };
+
+/// @throws std::invalid_argument with a message that names the setting, its value and its bound.
+void validate(const AmSettings& settings);
 
 /// Plans the foci of targets, each from scratch. Deterministic: the same settings and targets give
 /// bit-identical plans.

@@ -61,7 +61,8 @@ double sigma_on(const TargetField& target, const std::variant<Planner, AmPlanner
 std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
                                               std::size_t max_cells, double scene_full_scale,
                                               double emission_rate) {
-  if (settings.method == Method::Am) return AmPlanner(settings.am, max_cells);
+  if (settings.method == Method::Am)
+    return AmPlanner(am_settings(settings, emission_rate), max_cells);
   PlanSettings plan = plan_settings(settings, emission_rate);
   if (plan.full_scale_pressure == 0.0)
     plan.full_scale_pressure = emit_settings(settings, scene_full_scale).full_scale_pressure;

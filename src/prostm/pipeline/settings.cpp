@@ -69,6 +69,13 @@ PlanSettings playable_plan_settings(const PipelineSettings& settings, double emi
   return plan;
 }
 
+AmSettings am_settings(const PipelineSettings& settings, double emission_rate) {
+  AmSettings am = settings.am;
+  am.frequency = settings.emit.am_frequency;
+  if (am.felt_weight > 0.0) am.widths = plan_settings(settings, emission_rate).widths;
+  return am;
+}
+
 PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate) {
   PlanSettings plan = playable_plan_settings(settings, emission_rate);
   FocusWidths& out = plan.widths;

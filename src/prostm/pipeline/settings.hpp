@@ -85,6 +85,9 @@ PlanSettings playable_plan_settings(const PipelineSettings& settings, double emi
 /// The same with the widths that `array_width` asks for: those of `plan`, or else (A22) of
 /// `transducers`.
 PlanSettings plan_settings(const PipelineSettings& settings, double emission_rate);
+/// Settings of the planner of AM, with the frequency of the modulation and, where what is felt
+/// counts, the table of σ of plan_settings().
+AmSettings am_settings(const PipelineSettings& settings, double emission_rate);
 
 /// The levels that the array of the settings can reach, for its limiter.
 std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings);

@@ -141,7 +141,7 @@ ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, co
   StimulusFeeler feeler(settings, full_scale);
   settings.emit.full_scale_pressure = emit_settings(settings, full_scale).full_scale_pressure;
   Planner planner(plan_settings(settings, settings.emission_rate()), world.max_cells());
-  AmPlanner am(settings.am, world.max_cells());
+  AmPlanner am(am_settings(settings, settings.emission_rate()), world.max_cells());
   ScenePercepts out;
   const double dt = 1.0 / settings.world_rate;
   const auto apart = static_cast<std::int64_t>(std::lround(kApart * settings.world_rate));

@@ -1,0 +1,55 @@
+#pragma once
+/// Pressures and phases of AM's foci that make what is felt look like the target, (B8) and (B9).
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "prostm/am/am_planner.hpp"
+#include "prostm/felt/felt_loss.hpp"
+#include "prostm/felt/quasi_newton.hpp"
+#include "prostm/felt/render_lack.hpp"
+
+namespace prostm {
+
+/// Sized once; nothing else allocates.
+class FeltFoci {
+ public:
+  explicit FeltFoci(const AmSettings& settings);
+
+  /// Chooses the foci's pressures anew, and their phases. @param maximum the target's largest
+  /// pressure, > 0. @pre some focus has pressure. @return evaluations used.
+  int choose(const TargetField& target, double maximum, FocalPoints& foci);
+
+ private:
+  static constexpr std::size_t kMost = kMaxPaths;
+  /// Two parts of each focus, a quarter of a period apart: amplitudes of either sign, one after the
+  /// other; their sum is the focus.
+  using Parts = std::array<float, 2 * kMost>;
+
+  void set_skins(double sigma);
+  void set_foci(const TargetField& target, const FocalPoints& foci);
+  float pressure(std::span<const float> parts, std::size_t focus) const;
+  float normalise(std::span<const float> parts);
+  float cost(std::span<const float> parts, std::span<float> gradient);
+  float add_field(std::span<float> by_pressure);
+  float loudness(std::span<const float> parts);
+
+  const AmSettings settings_;
+  float sigma_ = 0.0F;  // of the skins' tables [mm]
+  FocusResponseMaker maker_;
+  FeltSkins<float> skins_;
+  FeltCells cells_;
+  FeltLoss<float> loss_;
+  RenderLack<float> field_lack_;
+  QuasiNewton descent_;
+  std::size_t foci_ = 0;
+  std::vector<std::size_t> nearest_;  // focus of each cell, (B2) …
+  std::vector<float> reach_;          // … and its φ there
+  Eigen::VectorXf field_, pull_;
+  std::vector<FeltSource<float>> sources_;
+  Parts at_{}, by_part_{}, unit_{};  // where it is; gradient; parts over the output
+  std::array<float, 16> by_moment_{};
+};
+
+}  // namespace prostm
