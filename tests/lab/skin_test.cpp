@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "prostm/plan/gain.hpp"
 #include "skin/experiments.hpp"
 #include "skin/stimuli.hpp"
 
@@ -94,6 +96,28 @@ TEST(SkinBench, TwoFociAreAlikeAndWeakerThanOne) {
   EXPECT_NEAR(at(two, 13) / at(two, 34), 1.0, 1e-3);  // −21 and +21 mm
   EXPECT_LT(at(two, 13), 0.55 * at(one, 24));
   EXPECT_GT(at(two, 13), 0.3 * at(one, 24));
+}
+
+TEST(SkinBench, TheGainsOfThePlannerAreThoseOfTheModel) {
+  const std::array<SkinSettings, 1> nominal = {SkinSettings()};
+  const std::array<double, 1> usual = {kLoopSpeeds[LoopTable::usual_speed()]};
+  const LoopTable table = loop_table(kLoopLengths, usual, nominal, [] {});
+  ASSERT_EQ(kSkinGains.size(), kLoopLengths.size());
+  const double longest = table.nominal().back()[0].along;
+  for (std::size_t l = 0; l < kLoopLengths.size(); ++l) {
+    EXPECT_NEAR(longest / table.nominal()[l][0].along, kSkinGains[l], 6e-4) << l;
+    EXPECT_NEAR(skin_gain(kLoopLengths[l] / usual[0]), kSkinGains[l], 1e-9);
+  }
+}
+
+TEST(SkinBench, SmallLoopsAreStrongestAtTheFastestSpeed) {
+  const std::array<SkinSettings, 1> nominal = {SkinSettings()};
+  const std::array<double, 1> length = {0.070};
+  const LoopTable table = loop_table(length, kLoopSpeeds, nominal, [] {});
+  const auto& by_speed = table.nominal()[0];
+  EXPECT_EQ(strongest_speed(by_speed, &LoopStrength::along), 8.0);
+  EXPECT_EQ(strongest_speed(by_speed, &LoopStrength::intensity), 8.0);
+  EXPECT_GT(by_speed[5].along, 5.0 * by_speed[0].along);
 }
 
 }  // namespace

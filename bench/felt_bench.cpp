@@ -1,0 +1,138 @@
+/// Time that a plan takes more when pressures, or points too, are chosen by what is felt; and of
+/// one evaluation of what is felt, beside plain loops.
+
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "fields/fields.hpp"
+#include "program.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/stage_timer.hpp"
+#include "prostm/felt/felt_loss.hpp"
+#include "prostm/plan/planner.hpp"
+
+namespace prostm::bench {
+namespace {
+
+constexpr double kSigma = 4.3e-3;  // of the array's focus at 200 mm [m]
+
+PlanSettings settings_of(double felt_weight, bool points) {
+  PlanSettings settings;
+  settings.sigma = kSigma;
+  settings.felt_weight = felt_weight;
+  settings.felt_points = points;
+  return settings;
+}
+
+/// One way to plan, with the time that its plans took [ms].
+struct Timed {
+  Timed(const PlanSettings& settings, bool is_warm)
+      : planner(settings, fields::kCells * fields::kCells), warm(is_warm) {}
+
+  double plan(const TargetField& field) {
+    if (!warm) planner.reset();
+    StageTimer timer;
+    planner.plan(field, out, stats);
+    return 1e3 * timer.lap();
+  }
+  Planner planner;
+  bool warm;
+  Plan out;
+  PlanStats stats;
+};
+
+/// Plans sequences in turn without and with the step, and adds the difference in time.
+void measure_plans(int frames, bool warm, bool points, std::vector<Row>& rows) {
+  Distribution more, plain_times;
+  for (const fields::Pattern pattern : fields::kPatterns) {
+    Timed plain(settings_of(0.0, false), warm), felt(settings_of(0.9, points), warm);
+    for (int frame = 0; frame < frames; ++frame) {
+      const TargetField field = fields::make(pattern, frame);
+      const double without = plain.plan(field), with = felt.plan(field);
+      // the first plan also makes the tables, which are kept
+      if (frame == 0) continue;
+      plain_times.add(without);
+      more.add(with - without);
+    }
+  }
+  rows.push_back({fmt::format("felt/more for a plan, {}, {}", points ? "points" : "pressures",
+                              warm ? "warm" : "cold"),
+                  "ms", more.summary(), "the plan without it", plain_times.summary().p50});
+}
+
+/// Sources of four paths of 28 points on a hand, as a plan has them.
+template <class Real>
+std::vector<FeltSource<Real>> sources() {
+  Random random(1);
+  std::vector<FeltSource<Real>> out(4 * 28);
+  for (FeltSource<Real>& source : out) {
+    source.x = static_cast<Real>(random.uniform(20.0, 140.0));
+    source.y = static_cast<Real>(random.uniform(20.0, 140.0));
+    for (Real& part : source.spectrum) part = static_cast<Real>(random.uniform(-1.0, 1.0));
+  }
+  return out;
+}
+
+/// The loss of one target on three skins.
+template <class Real>
+struct Evaluated {
+  explicit Evaluated(const std::vector<FeltCells::Cell>& cells)
+      : loss(3, kFeltCells, 4 * 28, FeltWeights(), false),
+        pressure(4 * 28, Real(0.5)),
+        gradient(4 * 28) {
+    FeltSkins<Real> skins(3);
+    FocusResponseMaker maker;
+    for (FocusResponse<Real>& skin : skins)
+      maker.make(SkinModel(SkinSettings()), kSigma, 20e-3, skin);
+    loss.set_target(cells);
+    loss.set_sources(skins, sources<Real>());
+  }
+  double evaluate() {
+    StageTimer timer;
+    loss.evaluate(pressure, gradient);
+    return 1e3 * timer.lap();
+  }
+  FeltLoss<Real> loss;
+  std::vector<Real> pressure, gradient;
+};
+
+void measure_evaluations(std::vector<Row>& rows) {
+  const TargetField field = fields::make(fields::Pattern::FourPlumes, 10);
+  FeltCells cells(kFeltCells);
+  cells.set(field, max_pressure(field));
+  Evaluated<float> fast(cells.cells());
+  Evaluated<double> plain(cells.cells());
+  Distribution fast_time, plain_time;
+  for (int round = 0; round < 200; ++round) {
+    fast_time.add(fast.evaluate());
+    plain_time.add(plain.evaluate());
+  }
+  const double bytes = 2.0 * 3.0 * static_cast<double>(cells.cells().size()) * 4 * 28 * 64;
+  fmt::print("one evaluation reads {:.1f} MB of pairs twice over ({} cells, 112 points, 3 skins)\n",
+             1e-6 * bytes, cells.cells().size());
+  rows.push_back({"felt/evaluation and gradient", "ms", fast_time.summary(), "plain loops, double",
+                  plain_time.summary().p50});
+  Distribution rate;
+  for (int round = 0; round < 200; ++round) rate.add(1e-6 * bytes / fast.evaluate());
+  rows.push_back({"felt/pairs read", "GB/s", rate.summary(), "", 0.0});
+}
+
+}  // namespace
+}  // namespace prostm::bench
+
+int main(int argc, char** argv) {
+  using namespace prostm::bench;
+  CLI::App app("the time that choosing pressures by what is felt takes");
+  int frames = 25;
+  app.add_option("--frames", frames, "frames of each generated sequence")
+      ->check(CLI::Range(2, 100))
+      ->capture_default_str();
+  return run(app, argc, argv, [&] {
+    std::vector<Row> rows;
+    measure_evaluations(rows);
+    for (const bool warm : {false, true}) measure_plans(frames, warm, false, rows);
+    measure_plans(std::min(frames, 6), false, true, rows);
+    return rows;
+  });
+}

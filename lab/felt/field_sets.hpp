@@ -1,0 +1,39 @@
+#pragma once
+/// The sets of fields on which plans are judged.
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "prostm/core/names.hpp"
+#include "prostm/target/target_field.hpp"
+
+namespace prostm::bench {
+
+/// Tuning: the twelve kinds of fields::kFeltKinds, for choosing settings; it judges nothing.
+/// Gallery: three frames of each generated sequence. Scout: the twelve kinds with other seeds.
+/// Plumes: four moments of the scene four-plumes on the study's hand. New: eight kinds that are in
+/// no other set, three seeds each.
+enum class SetName : std::uint8_t { Tuning, Gallery, Scout, Plumes, New };
+
+}  // namespace prostm::bench
+
+namespace prostm {
+template <>
+inline constexpr std::array<std::string_view, 5> kNames<bench::SetName> = {
+    "tuning", "gallery", "scout", "plumes", "new"};
+}  // namespace prostm
+
+namespace prostm::bench {
+
+struct NamedField {
+  std::string name;
+  TargetField field;
+};
+
+/// Makes a set. @param most so many of its fields, evenly chosen; 0: all. Plumes takes half a
+/// minute.
+std::vector<NamedField> field_set(SetName set, int most = 0);
+
+}  // namespace prostm::bench

@@ -1,0 +1,39 @@
+#pragma once
+/// Judgements that are kept in a file, since the same plans are judged again and again.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <vector>
+
+#include "felt/judge.hpp"
+
+namespace prostm::bench {
+
+/// Judgements by a key that stands for the plan, the target, and what else decides the scores but
+/// for the program itself: the file is to be removed when emission, acoustics or skin change. The
+/// map Judged::percept is not kept. Serves several threads.
+class Kept {
+ public:
+  /// @param path of the file, which need not exist; empty: nothing is kept. @throws InputError for
+  /// a file that is not one of these.
+  explicit Kept(std::string path);
+
+  std::optional<Judged> find(const std::string& key) const;
+  void add(const std::string& key, const Judged& judged);
+  /// Writes the file, if it has a name. @throws InputError when it cannot be written.
+  void write() const;
+
+ private:
+  std::string path_;
+  mutable std::shared_mutex mutex_;
+  std::map<std::string, Judged> all_;
+};
+
+/// Returns the key of a judgement. @param names those of skins and disturbances.
+std::string key_of(const Plan& plan, const TargetField& target,
+                   const std::vector<std::string>& names, std::uint64_t seed);
+
+}  // namespace prostm::bench

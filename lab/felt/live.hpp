@@ -1,0 +1,52 @@
+#pragma once
+/// Live runs: plans that take over from one another every 40 ms, and what is felt of them.
+
+#include <string>
+#include <vector>
+
+#include "felt/ways.hpp"
+#include "prostm/acoustics/array.hpp"
+#include "prostm/target/target_field.hpp"
+#include "report.hpp"
+
+namespace prostm::bench {
+
+/// The targets of a live run, all on one raster.
+struct LiveSequence {
+  std::string name;
+  std::vector<TargetField> targets;
+};
+
+/// Returns five generated sequences of a second, moving. @param is_still every target is the first
+/// one. @param most so many of them; 0: all.
+std::vector<LiveSequence> live_sequences(bool is_still, int most = 0);
+
+/// The scores of one way on one sequence: S_8.5 of the map √e on the nominal skin.
+struct LiveScores {
+  double alone = 0.0;   ///< plans for one target alone, played on and on; the mean of several
+  double loop = 0.0;    ///< the same of plans of the live run
+  double live = 0.0;    ///< the whole run after it has settled, against the mean target
+  double window = 0.0;  ///< each 40 ms of that, against the target that was then planned; the mean
+  double intensity = 0.0;  ///< √E of the run [m]
+  double faded = 0.0;      ///< share of samples in a fade
+};
+
+/// A set of sequences, scored in several ways: [way][sequence]. Ways are compared with the first.
+struct LiveSet {
+  std::string name;
+  std::vector<std::string> ways, sequences;
+  std::vector<std::vector<LiveScores>> scores;
+};
+
+/// Scores ways, several runs at once. Steps the skin first, which takes some 10 s.
+/// @param threads ≥ 1. @throws InputError as Judge::judge() does.
+LiveSet score_live(const std::string& name, const TransducerArray& array,
+                   const std::vector<LiveSequence>& sequences, const std::vector<Way>& ways,
+                   int threads);
+
+/// Prints a table, a line for each way. @param each and one for each sequence, too.
+void print_live(const LiveSet& set, bool each);
+/// Adds the distributions of lack, live and as loops, for every way.
+void add_live_rows(const LiveSet& set, std::vector<Row>& rows);
+
+}  // namespace prostm::bench

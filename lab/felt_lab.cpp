@@ -1,0 +1,121 @@
+/// How well plans are felt: ways to plan, judged by the array's own field and the skin's waves, on
+/// sets of fields that are kept apart. Nobody has felt any of this.
+
+#include <array>
+#include <chrono>
+#include <thread>
+
+#include "felt/kept.hpp"
+#include "felt/live.hpp"
+#include "felt/picture.hpp"
+#include "felt/tables.hpp"
+#include "program.hpp"
+#include "prostm/figure/figures.hpp"
+
+namespace {
+
+using namespace prostm;
+using namespace prostm::bench;
+
+/// Keeps those that are named, in their own order; all if no name is given.
+template <class Named>
+void keep_only(std::vector<Named>& all, const std::vector<std::string>& names, const char* what) {
+  if (names.empty()) return;
+  for (const std::string& name : names) {
+    if (std::none_of(all.begin(), all.end(), [&](const Named& one) { return one.name == name; })) {
+      std::string known;
+      for (const Named& one : all) known += (known.empty() ? "" : ", ") + one.name;
+      throw InputError(fmt::format("{} \"{}\" is unknown; there are: {}", what, name, known));
+    }
+  }
+  std::erase_if(all, [&](const Named& one) {
+    return std::find(names.begin(), names.end(), one.name) == names.end();
+  });
+}
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& all) {
+  std::vector<std::string> out;
+  for (const Named& one : all) out.push_back(one.name);
+  return out;
+}
+
+/// Scores live runs of moving and of still targets.
+std::vector<Row> live_rows(const TransducerArray& array, const std::vector<Way>& ways, int most,
+                           int threads, bool each) {
+  std::vector<Row> rows;
+  for (const bool is_still : {false, true}) {
+    const LiveSet set = score_live(is_still ? "live, still" : "live, moving", array,
+                                   live_sequences(is_still, most), ways, threads);
+    print_live(set, each);
+    std::fflush(stdout);
+    add_live_rows(set, rows);
+  }
+  return rows;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("how well plans are felt, by the array's own field");
+  std::vector<std::string> sets = {"gallery", "scout", "plumes", "new"}, only_ways, only_skins,
+                           only_disturbances;
+  std::string figure, keep;
+  int most = 0, threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  bool each = false, quick = false, live = false;
+  app.add_option("--set", sets, "sets of fields: tuning, gallery, scout, plumes, new")
+      ->capture_default_str();
+  app.add_option("--ways", only_ways, "only these ways; the first is compared with");
+  app.add_option("--skins", only_skins, "only these skins; the first has all readouts");
+  app.add_option("--disturbances", only_disturbances, "only these disturbances");
+  app.add_flag("--live", live,
+               "plans that take over every 40 ms, felt in time, in place of the sets");
+  app.add_flag("--quick", quick, "only the first skin, and no disturbance");
+  app.add_option("--fields", most, "so many fields of each set; 0: all")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  app.add_option("--threads", threads, "fields that are judged at once")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_flag("--each", each, "print every field, too");
+  app.add_option("--keep", keep,
+                 "keep judgements of plans in this file, and use those in it; remove it when "
+                 "emission, acoustics or skin have changed");
+  app.add_option("--figure", figure, "draw fields of the last set, and what is felt of them");
+  return bench::run(app, argc, argv, [&] {
+    if (!figure.empty()) check_figure(figure);
+    const TransducerArray array = usx_array();
+    std::vector<Way> all_ways = ways(array);
+    std::vector<Skin> all_skins = skins();
+    std::vector<Disturbed> disturbances = felt_disturbances();
+    keep_only(all_ways, only_ways, "way");
+    keep_only(all_skins, only_skins, "skin");
+    keep_only(disturbances, only_disturbances, "disturbance");
+    if (all_ways[0].is_control)
+      throw InputError("the first way is compared with, so it must not be a control");
+    if (live) return live_rows(array, all_ways, most, threads, each);
+    if (quick) {
+      all_skins.resize(1);
+      disturbances.clear();
+    }
+    if (!figure.empty() && !keep.empty())
+      throw InputError("--figure needs maps, which --keep does not keep: give one of them");
+    Kept kept(keep);
+    std::vector<Row> rows;
+    std::vector<JudgedSet> judged;
+    for (const std::string& name : sets) {
+      const SetName set = from_name<SetName>(name, "set");
+      const std::vector<NamedField> fields = field_set(set, most);
+      judged.push_back(
+          {name, names_of(fields), names_of(all_ways), names_of(all_skins), names_of(disturbances),
+           judge_all(array, fields, all_ways, all_skins, disturbances, threads, kept)});
+      print_tables(judged.back());
+      if (each) print_each(judged.back());
+      std::fflush(stdout);
+      add_rows(judged.back(), rows);
+      if (!figure.empty() && name == sets.back()) draw_felt(judged.back(), fields, figure);
+    }
+    if (judged.size() > 1) print_tables(pooled("all of these sets", judged));
+    return rows;
+  });
+}
