@@ -96,7 +96,9 @@ void bind_lifted(py::module_& m) {
           },
           "(3,) in the device's frame [m]; a view.")
       .def_readonly("pressure", &LiftedFocus::pressure,
-                    "Rendered pressure at the peak of the modulation, in the target's unit.");
+                    "Rendered pressure at the peak of the modulation, in the target's unit.")
+      .def_readonly("phase", &LiftedFocus::phase,
+                    "Delay of its modulation, as a share of its period.");
 
   py::class_<LiftedPlan>(m, "LiftedPlan", "A plan on the skin, ready to be emitted; see lift().")
       .def_property_readonly(
@@ -119,6 +121,8 @@ void bind_lifted(py::module_& m) {
             return foci;
           },
           "The LiftedFoci, as a new list.")
+      .def_readonly("loop", &LiftedPlan::loop,
+                    "Period in which all paths come round together [s]; 0: each on its own.")
       .def_readwrite("id", &LiftedPlan::id, "Number of the plan, which TakeOver repeats.");
 
   m.def(

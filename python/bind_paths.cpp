@@ -4,6 +4,7 @@
 
 #include "bindings.hpp"
 #include "plan_result.hpp"
+#include "prostm/core/number_text.hpp"
 #include "prostm/core/require.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static.hpp"
@@ -44,15 +45,16 @@ FocalPath make_path(const py::object& points, const py::object& pressure, double
   return path;
 }
 
-FocalPoint make_focus(const py::object& position, double pressure, int patch) {
+FocalPoint make_focus(const py::object& position, double pressure, int patch, double phase) {
   const Numbers x = numbers(position, "position", std::vector<py::ssize_t>{2});
-  const FocalPoint focus{patch, Vec2(x.data()[0], x.data()[1]), pressure};
+  const FocalPoint focus{patch, Vec2(x.data()[0], x.data()[1]), pressure, phase};
   for (const double coordinate : focus.position) {
     require_between("a coordinate of position", coordinate, -kLargestCoordinate, kLargestCoordinate,
                     "m");
   }
   require_between("pressure", pressure, 0.0, kLargestPressure);
   require_between("patch", patch, 0, kMaxPatches - 1);
+  require_between("phase", phase, 0.0, 1.0);
   return focus;
 }
 
@@ -63,12 +65,15 @@ void check_count(std::size_t count, const char* what) {
 }
 
 Plan make_plan(const std::vector<const FocalPath*>& paths,
-               const std::vector<const FocalPoint*>& foci) {
+               const std::vector<const FocalPoint*>& foci, double loop) {
   check_count(paths.size(), "paths");
   check_count(foci.size(), "foci");
   if (!paths.empty() && !foci.empty())
     throw std::invalid_argument("a plan has paths or foci, not both");
+  require_loop(loop);
+  if (loop > 0.0 && !foci.empty()) throw std::invalid_argument("a plan of foci has no loop");
   Plan plan;
+  plan.loop = loop;
   for (const FocalPoint* focus : foci) {
     if (focus == nullptr) throw py::type_error("a focus must be a FocalPoint, not None");
     plan.foci.push_back(*focus);
@@ -122,24 +127,29 @@ void bind_focus(py::module_& m) {
                          "A focal point that stands still in a target's plane, modulated (AM).")
       .def(py::init(&make_focus),
            "position: (2,) in the plane [m]. pressure: rendered pressure at the peak of the\n"
-           "modulation, >= 0. patch: index of the target patch (hand). Raises ValueError, "
-           "TypeError.",
-           py::arg("position"), py::arg("pressure"), py::arg("patch") = 0)
+           "modulation, >= 0. patch: index of the target patch (hand). phase: delay of its\n"
+           "modulation, as a share of its period, 0 to 1. Raises ValueError, TypeError.",
+           py::arg("position"), py::arg("pressure"), py::arg("patch") = 0, py::arg("phase") = 0.0)
       .def_property_readonly("position", &position_of, "(2,) in the plane [m]; a view.")
       .def_readonly("pressure", &FocalPoint::pressure,
                     "Rendered pressure at the peak of the modulation, in the target's unit.")
       .def_readonly("patch", &FocalPoint::patch, "Index of the target patch (hand).")
+      .def_readonly("phase", &FocalPoint::phase,
+                    "Delay of its modulation, as a share of its period.")
       .def("__repr__",
            [](const py::object& self) {
+             const double phase = self.cast<const FocalPoint&>().phase;
              return "FocalPoint(" + std::string(py::repr(self.attr("position").attr("tolist")())) +
-                    ", pressure=" + std::string(py::repr(self.attr("pressure"))) + ")";
+                    ", pressure=" + std::string(py::repr(self.attr("pressure"))) +
+                    (phase == 0.0 ? "" : ", phase=" + number_text(phase)) + ")";
            })
       .def(py::pickle(
           [](const py::object& self) {
-            return py::make_tuple(position_of(self), self.attr("pressure"), self.attr("patch"));
+            return py::make_tuple(position_of(self), self.attr("pressure"), self.attr("patch"),
+                                  self.attr("phase"));
           },
           [](const py::tuple& t) {
-            return make_focus(t[0], t[1].cast<double>(), t[2].cast<int>());
+            return make_focus(t[0], t[1].cast<double>(), t[2].cast<int>(), t[3].cast<double>());
           }));
 }
 
@@ -179,22 +189,33 @@ void bind_classes(py::module_& m) {
 
   py::class_<Plan>(m, "Plan",
                    "A plan for the focal points: at most 8 closed paths, or 8 foci (AM).")
-      .def(py::init(&make_plan), "paths: FocalPaths, or foci: FocalPoints, which are copied.",
-           py::arg("paths") = py::list(), py::arg("foci") = py::list())
+      .def(
+          py::init(&make_plan),
+          "paths: FocalPaths, or foci: FocalPoints, which are copied. loop: of paths in step, the\n"
+          "period in which all come round together [s], 1 ms to 1 s; each then makes whole laps "
+          "in\n"
+          "it, as many as its speed says. 0: each goes round on its own.",
+          py::arg("paths") = py::list(), py::arg("foci") = py::list(), py::arg("loop") = 0.0)
       .def_property_readonly("paths", &paths_of, "The FocalPaths, as a new list.")
       .def_property_readonly("foci", &foci_of, "The FocalPoints, as a new list.")
+      .def_readonly("loop", &Plan::loop,
+                    "Period in which all paths come round together [s]; 0: each on its own.")
       .def("__len__", [](const Plan& plan) { return plan.paths.size() + plan.foci.size(); })
       .def("__repr__",
            [](const py::object& self) {
+             const double loop = self.cast<const Plan&>().loop;
              const bool has_foci = !self.cast<const Plan&>().foci.empty();
              return (has_foci ? "Plan(foci=" : "Plan(") +
-                    std::string(py::repr(has_foci ? foci_of(self) : paths_of(self))) + ")";
+                    std::string(py::repr(has_foci ? foci_of(self) : paths_of(self))) +
+                    (loop == 0.0 ? "" : ", loop=" + number_text(loop)) + ")";
            })
       .def(py::pickle(
-          [](const py::object& self) { return py::make_tuple(paths_of(self), foci_of(self)); },
+          [](const py::object& self) {
+            return py::make_tuple(paths_of(self), foci_of(self), self.attr("loop"));
+          },
           [](const py::tuple& t) {
             return make_plan(t[0].cast<std::vector<const FocalPath*>>(),
-                             t[1].cast<std::vector<const FocalPoint*>>());
+                             t[1].cast<std::vector<const FocalPoint*>>(), t[2].cast<double>());
           }));
 }
 
@@ -229,19 +250,21 @@ void bind_paths(py::module_& m) {
   m.def(
       "quasi_static_field",
       [](const Plan& plan, const TargetField& raster, double sigma, double gain, int patch,
-         double gain_exponent, double draw_rate) {
-        return quasi_static_array(plan, raster, sigma, {gain, gain_exponent, draw_rate}, patch);
+         double gain_exponent, double draw_rate, bool gain_from_skin) {
+        return quasi_static_array(plan, raster, sigma,
+                                  {gain, gain_exponent, draw_rate, gain_from_skin}, patch);
       },
       "The paper's Eq. (1): p(x) = p_i / gain * exp(-|x - x_i|^2 / (2 sigma^2)), with x_i the\n"
       "closest point to x over all paths of the patch, or the nearest focus, for which gain is 1\n"
       "(B2). Returns (rows, cols) in the target's\n"
       "unit, for every cell of the raster, skin or not.\n\n"
       "sigma: fall-off of a focal point [m]. gain: rendered over effective pressure, of a path\n"
-      "with the period T times (T * draw_rate)**gain_exponent.",
+      "with the period T times (T * draw_rate)**gain_exponent, or with gain_from_skin by (P9c).",
       py::arg("plan"), py::arg("raster"), py::arg("sigma") = PlanSettings{}.sigma,
       py::arg("gain") = PlanSettings{}.gain, py::arg("patch") = 0,
       py::arg("gain_exponent") = PlanSettings{}.gain_exponent,
-      py::arg("draw_rate") = PlanSettings{}.draw_rate);
+      py::arg("draw_rate") = PlanSettings{}.draw_rate,
+      py::arg("gain_from_skin") = PlanSettings{}.gain_from_skin);
 }
 
 }  // namespace prostm::python

@@ -25,8 +25,8 @@ Metrics score_array(const TargetField& target, const py::object& rendered, doubl
 }
 
 Metrics score(const TargetField& target, const Plan& plan, double sigma, double gain, int patch,
-              double gain_exponent, double draw_rate) {
-  const GainLaw law{gain, gain_exponent, draw_rate};
+              double gain_exponent, double draw_rate, bool gain_from_skin) {
+  const GainLaw law{gain, gain_exponent, draw_rate, gain_from_skin};
   check_model(sigma, law, patch);
   const py::gil_scoped_release unlocked;
   return score_plan(target, plan, patch, sigma, law);
@@ -34,8 +34,8 @@ Metrics score(const TargetField& target, const Plan& plan, double sigma, double 
 
 std::vector<Control> controls_of(const TargetField& target, double sigma, double gain,
                                  double length, const Plan* other, std::uint64_t seed,
-                                 double gain_exponent, double draw_rate) {
-  const GainLaw law{gain, gain_exponent, draw_rate};
+                                 double gain_exponent, double draw_rate, bool gain_from_skin) {
+  const GainLaw law{gain, gain_exponent, draw_rate, gain_from_skin};
   check_model(sigma, law, 0);
   require_between("length", length, 0.01, 1.0, "m");
   const py::gil_scoped_release unlocked;
@@ -63,7 +63,8 @@ void bind_score(py::module_& m) {
         py::arg("target"), py::arg("plan"), py::arg("sigma") = defaults.sigma,
         py::arg("gain") = defaults.gain, py::arg("patch") = 0,
         py::arg("gain_exponent") = defaults.gain_exponent,
-        py::arg("draw_rate") = defaults.draw_rate);
+        py::arg("draw_rate") = defaults.draw_rate,
+        py::arg("gain_from_skin") = defaults.gain_from_skin);
   m.def("score_field", &score_array,
         "Metrics of any field: rendered (rows, cols), finite, the effective field in the target's\n"
         "unit. coverage is passed through.",
@@ -77,7 +78,8 @@ void bind_score(py::module_& m) {
         py::arg("target"), py::arg("sigma") = defaults.sigma, py::arg("gain") = defaults.gain,
         py::arg("length") = defaults.max_length(), py::arg("other") = py::none(),
         py::arg("seed") = 1, py::arg("gain_exponent") = defaults.gain_exponent,
-        py::arg("draw_rate") = defaults.draw_rate);
+        py::arg("draw_rate") = defaults.draw_rate,
+        py::arg("gain_from_skin") = defaults.gain_from_skin);
 }
 
 }  // namespace prostm::python

@@ -28,6 +28,7 @@ void bind_plan(py::module_& m);
 void bind_planners(py::module_& m);
 void bind_result(py::module_& m);
 void bind_score(py::module_& m);
+void bind_felt(py::module_& m);
 void bind_emit(py::module_& m);
 void bind_io(py::module_& m);
 void bind_shape(py::module_& m);

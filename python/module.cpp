@@ -20,6 +20,7 @@ PYBIND11_MODULE(_prostm, m) {
   bind_paths(m);
   bind_plan(m);
   bind_score(m);
+  bind_felt(m);
   bind_emit(m);
   bind_result(m);
   bind_planners(m);

@@ -324,6 +324,18 @@ std::string thousandths(double value) {
   return fmt::format("{:.3f}", std::round(1e3 * value) / 1e3 + 0.0);  // -0 + 0 is 0
 }
 
+std::string felt_words(const PipelineSettings& settings) {
+  const bool am = settings.method == Method::Am;
+  const double weight = am ? settings.am.felt_weight : settings.plan.felt_weight;
+  if (weight == 0.0) return {};
+  const char* chosen = am                          ? "pressures and phases"
+                       : settings.plan.felt_points ? "points and pressures"
+                                                   : "pressures";
+  return fmt::format(
+      "{} chosen by what the model of the skin feels ({}.felt_weight {:g}); nobody has felt it",
+      chosen, am ? "am" : "plan", weight);
+}
+
 void print_metrics(std::FILE* out, const std::string& heading,
                    const std::vector<MetricsRow>& rows) {
   std::vector<const Quantity<Metrics>*> columns;

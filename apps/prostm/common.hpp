@@ -125,6 +125,9 @@ void print_metrics(std::FILE* out, const std::string& heading, const std::vector
 /// Three decimals; what rounds to zero has no sign.
 std::string thousandths(double value);
 
+/// Says what of a plan was chosen by what is felt; empty where that does not count.
+std::string felt_words(const PipelineSettings& settings);
+
 /// Checks that the device of the settings can play in a mode. @throws InputError.
 void check_mode(const PipelineSettings& settings, RunMode mode);
 

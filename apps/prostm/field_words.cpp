@@ -121,7 +121,8 @@ std::vector<std::string> field_warnings(const std::string& path, const TargetFie
   return warnings;
 }
 
-std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played) {
+std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played,
+                    bool by_felt) {
   const bool stands = !plan.foci.empty();
   const std::size_t count = stands ? plan.foci.size() : plan.paths.size();
   const bool one = count == 1;
@@ -133,21 +134,26 @@ std::string verdict(const TargetField& field, const Plan& plan, const Metrics& p
         "{} {} this even field with an error (RMSE) of {:.2f} of its pressure; 0 is perfect", what,
         render, played.rmse);
   }
+  const std::string felt =
+      !by_felt ? ""
+      : std::isfinite(played.felt_skill)
+          ? fmt::format(" as pressure and S_8.5 {:.2f} as felt by the model", played.felt_skill)
+          : " as pressure; --array judges what is felt";
   return fmt::format(
-      "{} {} this field with skill {:.2f} (1 is perfect, 0 is no better than an even field)", what,
-      render, played.skill_0);
+      "{} {} this field with skill {:.2f}{} (1 is perfect, 0 is no better than an even field)",
+      what, render, played.skill_0, felt);
 }
 
 std::vector<std::string> control_warnings(const Metrics& played,
-                                          const std::vector<Control>& controls) {
+                                          const std::vector<Control>& controls, bool by_felt) {
   const auto best = std::max_element(
       controls.begin(), controls.end(),
       [](const auto& a, const auto& b) { return a.metrics.skill_0 < b.metrics.skill_0; });
   if (best == controls.end() || best->metrics.skill_0 <= played.skill_0) return {};
-  return {
-      fmt::format("the plan loses to the control \"{}\", skill {:.2f} against {:.2f}: what is "
-                  "felt will hardly resemble the field",
-                  best->name, played.skill_0, best->metrics.skill_0)};
+  return {fmt::format("the plan loses to the control \"{}\", skill {:.2f} against {:.2f}: {}",
+                      best->name, played.skill_0, best->metrics.skill_0,
+                      by_felt ? "its pressure hardly resembles the field"
+                              : "what is felt will hardly resemble the field")};
 }
 
 }  // namespace prostm::app

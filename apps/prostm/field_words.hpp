@@ -18,11 +18,13 @@ std::vector<std::string> field_warnings(const std::string& path, const TargetFie
                                         const FieldFileOptions& options);
 
 /// One sentence that judges a plan for people who do not know the metrics. @param played metrics of
-/// what is played of the plan.
-std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played);
+/// what is played of the plan. @param by_felt whether it was chosen by what is felt, at the cost of
+/// the pressure.
+std::string verdict(const TargetField& field, const Plan& plan, const Metrics& played,
+                    bool by_felt);
 
-/// A sentence about the control that beats the plan, if any does.
+/// A sentence about the control that beats the plan, if any does. @param by_felt as of verdict().
 std::vector<std::string> control_warnings(const Metrics& played,
-                                          const std::vector<Control>& controls);
+                                          const std::vector<Control>& controls, bool by_felt);
 
 }  // namespace prostm::app

@@ -162,6 +162,8 @@ void add_field(CLI::App& app, Work& work) {
                       "acoustic pressure of intensity 1, rms; 0: the most that the array can hold "
                       "over the whole loop");
   command->add_flag("--memoryless", o->memoryless, "transducers that follow their drives at once");
+  command->add_flag("--felt-spectrum", o->felt_spectrum,
+                    "also tell what is felt harmonic by harmonic of the loop");
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
             "settings of any stage, a TOML file (docs/files.md)");
   add_figure(*command, o->common, "target, envelope, mean and difference (.png, .svg or .pdf)");

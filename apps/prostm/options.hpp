@@ -82,7 +82,8 @@ struct FieldOptionsGiven {
   std::string solver = "weighted";
   double full_scale_pa = 0.0;
   bool memoryless = false;
-  bool widths = false;  ///< of a focus, instead of the field of a plan
+  bool felt_spectrum = false;  ///< tell what is felt harmonic by harmonic
+  bool widths = false;         ///< of a focus, instead of the field of a plan
 };
 
 struct LevelsOptionsGiven {

@@ -31,23 +31,32 @@ bool is_am(const PipelineSettings& settings) {
   return settings.method == Method::Am;
 }
 
-void print_foci(std::FILE* out, const Plan& plan, const PlanStats& stats, double maximum) {
+void print_foci(std::FILE* out, const Plan& plan, const PlanStats& stats, double maximum,
+                const std::string& felt) {
   fmt::print(out, "{} foci, {} iterations of k-means; {:.3f} ms\n", plan.foci.size(),
              stats.lloyd_iterations, 1e3 * stats.total);
+  if (!felt.empty()) fmt::print(out, "  {}\n", felt);
   for (std::size_t i = 0; i < plan.foci.size(); ++i) {
     const FocalPoint& focus = plan.foci[i];
-    fmt::print(out, "  focus {}: at ({:.1f}, {:.1f}) mm, {:.3f} of the target's maximum\n", i + 1,
-               focus.position.x() * 1e3, focus.position.y() * 1e3, focus.pressure / maximum);
+    const std::string phase =
+        focus.phase > 0.0 ? fmt::format(", {:.0f} % of a period late", 100.0 * focus.phase) : "";
+    fmt::print(out, "  focus {}: at ({:.1f}, {:.1f}) mm, {:.3f} of the target's maximum{}\n", i + 1,
+               focus.position.x() * 1e3, focus.position.y() * 1e3, focus.pressure / maximum, phase);
   }
 }
 
-void print_paths(std::FILE* out, const Plan& plan, const PlanStats& stats) {
+void print_paths(std::FILE* out, const Plan& plan, const PlanStats& stats,
+                 const std::string& felt) {
   const std::string work = stats.clusters > 0
                                ? fmt::format("{} clusters, {} leaves", stats.clusters, stats.leaves)
                                : fmt::format("{} evaluations of the field", stats.cost_evaluations);
   const std::size_t paths = plan.paths.size();
   fmt::print(out, "{} path{} in {:.2f} ms ({}); {} too long, {} crossings\n", paths,
              paths == 1 ? "" : "s", 1e3 * stats.total, work, stats.long_paths, stats.crossings);
+  if (!felt.empty()) {
+    fmt::print(out, "  in step: all paths come round together every {:.1f} ms; {}\n",
+               1e3 * plan.loop, felt);
+  }
   for (std::size_t i = 0; i < plan.paths.size(); ++i) {
     const FocalPath& path = plan.paths[i];
     fmt::print(out, "  path {}: {:.1f} mm, {:.1f} ms, {:.1f} Hz, {} points\n", i + 1,
@@ -139,7 +148,7 @@ Result plan_paths(const TargetField& target, const PlanSettings& s, bool traced)
 }
 
 Result plan_foci(const TargetField& target, const PipelineSettings& settings) {
-  AmPlanner planner(settings.am, target.size());
+  AmPlanner planner(am_settings(settings, settings.emission_rate()), target.size());
   Result r;
   r.status = planner.plan(target, r.plan, r.stats);
   PlanStats unused;
@@ -282,12 +291,13 @@ void print_warnings(std::FILE* out, const std::vector<std::string>& warnings) {
 
 void print_plan(std::FILE* out, const Result& r, const TargetField& target,
                 const PipelineSettings& settings, std::optional<double> own_width) {
-  fmt::print(out, "{}\n", verdict(target, r.plan, r.quality.played));
-  print_warnings(out, control_warnings(r.quality.played, r.controls));
+  const std::string felt = felt_words(settings);
+  fmt::print(out, "{}\n", verdict(target, r.plan, r.quality.played, !felt.empty()));
+  print_warnings(out, control_warnings(r.quality.played, r.controls, !felt.empty()));
   if (is_am(settings)) {
-    print_foci(out, r.plan, r.stats, max_pressure(target));
+    print_foci(out, r.plan, r.stats, max_pressure(target), felt);
   } else {
-    print_paths(out, r.plan, r.stats);
+    print_paths(out, r.plan, r.stats, felt);
   }
   print_quality(out, r.quality, r.controls);
   if (own_width) {
@@ -348,7 +358,8 @@ int plan_command(const PlanOptionsGiven& given) {
 
   score(target, settings, other_widths, r);
   if (given.common.array) r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
-  const auto losses = control_warnings(r.quality.played, r.controls);
+  const bool by_felt = !felt_words(settings).empty();
+  const auto losses = control_warnings(r.quality.played, r.controls, by_felt);
   r.warnings.insert(r.warnings.end(), losses.begin(), losses.end());
   write_results(r, target, settings, given);
   if (r.status == PlanStatus::EmptyTarget) {

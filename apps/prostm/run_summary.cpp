@@ -86,6 +86,8 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
   } else {
     print_paths(out, s, settings);
   }
+  const std::string felt = felt_words(settings);
+  if (!felt.empty()) print_row(out, "felt", felt);
   print_output(out, s);
   const ContactStats& c = s.contact_stats;
   print_row(out, "hand",

@@ -18,6 +18,7 @@ the data that they show. The interpreter's lock is released while planning, scor
   recordings           Recording, GateResult
   shape of a field     field_shape, FieldShape
   quality              quasi_static_field, score_plan, score_field, controls, Metrics, Control
+  what is felt         felt_plan, FeltPlan, felt_skins, SkinSettings
   samples at 40 kHz    emit, Emitter, PathEmitter, EmitSettings, lift, LiftedPlan, LiftedPath, LiftedFocus,
                        drive_intensity, even_share, EmitStats, TakeOver
 """
@@ -30,13 +31,13 @@ from ._arguments import explain_wrong_types as _explain_wrong_types, wrong_type 
 
 _explain_wrong_types()
 
-from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, Emitter, FocalPath, FocalPoint,
+from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, Emitter, FeltPlan, FocalPath, FocalPoint,
                       FieldShape, FocusEmitter, GateResult, InputError, LiftedFocus, LiftedPath, LiftedPlan, Metrics,
                       PathEmitter, Plan, PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace,
-                      Recording, TakeOver, TargetField, TargetFrame, __version__, closed_length, controls,
-                      drive_intensity, even_share, field_from_json, field_shape, field_to_json, height_at,
-                      kMaxFieldCells, kMaxPatches, kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples, lift,
-                      max_pressure, plan_from_json, plan_to_json, quasi_static_field, read_field, read_plan,
+                      Recording, SkinSettings, TakeOver, TargetField, TargetFrame, __version__, closed_length, controls,
+                      drive_intensity, even_share, felt_plan, felt_skins, field_from_json, field_shape, field_to_json,
+                      height_at, kMaxFieldCells, kMaxPatches, kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples,
+                      lift, max_pressure, plan_from_json, plan_to_json, quasi_static_field, read_field, read_plan,
                       score_field, score_plan, write_field, write_plan)
 
 __all__ = [
@@ -47,6 +48,7 @@ __all__ = [
     "Plan", "FocalPath", "closed_length", "read_plan", "write_plan", "plan_from_json", "plan_to_json", "PlanFile",
     "Recording", "GateResult", "field_shape", "FieldShape",
     "quasi_static_field", "score_plan", "score_field", "controls", "Metrics", "Control",
+    "felt_plan", "FeltPlan", "felt_skins", "SkinSettings",
     "emit", "Emitter", "PathEmitter", "EmitSettings", "lift", "LiftedPlan", "LiftedPath", "LiftedFocus",
     "drive_intensity", "even_share",
     "EmitStats", "TakeOver", "InputError", "kMaxFieldCells", "kMaxPatches", "kMaxPathPoints", "kMaxPaths",

@@ -81,6 +81,8 @@ def wrong_type(label, name, words, value):
 def _wrong_argument(label, name, kind, value):
     """Returns the error for an argument that its parameter does not take."""
     base, inner = _parts(kind)
+    if base == "Optional" and isinstance(value, (list, tuple)):
+        base, inner = _parts(inner[0])
     if base == "List" and isinstance(value, (list, tuple)):
         place, item = next((i, item) for i, item in enumerate(value) if not _takes(inner[0], item))
         return wrong_type(label, f"{name}[{place}]", _words(inner[0]), item)

@@ -351,6 +351,9 @@ def test_field_refuses_what_has_no_field(refuses, prostm, tmp_path):
     empty["paths"] = []
     other.write_text(json.dumps(empty))
     refuses("field", other, words=["no path"])
+    for loop, words in [(0.5, "1 to 1000"), (2000, "0 to 1000"), ("20", "number")]:
+        other.write_text(json.dumps({**json.loads(plan.read_text()), "loop_ms": loop}))
+        refuses("field", other, words=["other.json", "loop_ms", str(loop), words])
     near = json.loads(plan.read_text())
     near["plane"]["origin_mm"] = [0, 0, 1]
     other.write_text(json.dumps(near))

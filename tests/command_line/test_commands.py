@@ -479,6 +479,28 @@ def test_field_of_a_plan(prostm, field, tmp_path):
     assert am["envelope"]["metrics"]["correlation"] > 0.2
 
 
+def test_plans_in_step_and_foci_with_phases_have_fields(prostm, field, tmp_path):
+    prostm("plan", field, "--json", "plan.json")
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    plan["loop_ms"] = 40
+    for path, laps in zip(plan["paths"], [1, 2, 1, 2]):
+        path["speed_m_s"] = path["length_mm"] * laps / 40
+        path.pop("period_ms")
+    (tmp_path / "step.json").write_text(json.dumps(plan))
+    step = json.loads(prostm("field", "step.json", "--memoryless", "--json", "-").stdout)
+    assert step["loop"]["samples"] == 1600 and step["loop"]["duration_ms"] == 40
+    assert step["loop"]["laps"] == [1, 2, 1, 2][: len(plan["paths"])] and set(step["loop"]["stretch"]) == {0}
+
+    prostm("plan", field, "--method", "am", "--json", "foci.json")
+    same = json.loads(prostm("field", "foci.json", "--memoryless", "--json", "-").stdout)
+    foci = json.loads((tmp_path / "foci.json").read_text())
+    for k, focus in enumerate(foci["foci"]):
+        focus["phase"] = 0.25 * k
+    (tmp_path / "late.json").write_text(json.dumps(foci))
+    late = json.loads(prostm("field", "late.json", "--memoryless", "--json", "-").stdout)
+    assert late["loop"] == same["loop"] and late["felt_um"] != same["felt_um"]
+
+
 @pytest.mark.long
 def test_a_louder_full_scale_is_short(prostm, field):
     prostm("plan", field, "--json", "plan.json")

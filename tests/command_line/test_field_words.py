@@ -163,3 +163,25 @@ def test_field_reads_the_picture_as_plan_did(prostm, tmp_path):
     prostm("plan", *picture, "--json", "plan.json")
     done = prostm("field", "plan.json", "--field", *picture, "--json", "-")
     assert json.loads(done.stdout)["envelope"]["metrics"]["correlation"] > 0.2
+
+
+def test_the_spectrum_of_what_is_felt(prostm, tmp_path):
+    (tmp_path / "blob.json").write_text(json.dumps(blob_field()))
+    prostm("plan", "blob.json", "--preset", "fast", "--json", "blob.plan.json")
+    done = prostm("field", "blob.plan.json", "--felt-spectrum", "--json", "-")
+    felt = json.loads(done.stdout)["felt"]
+    spectrum = felt["spectrum"]
+    assert sum(h["share_at_strongest"] for h in spectrum) == pytest.approx(1)
+    assert sum(h["share_of_intensity"] for h in spectrum) == pytest.approx(1)
+    frequencies = [h["frequency_hz"] for h in spectrum]
+    assert frequencies == pytest.approx([(n + 1) * frequencies[0] for n in range(len(spectrum))])
+    assert frequencies[-1] <= 1000 < frequencies[-1] + frequencies[0]
+    for h in spectrum:
+        omega = 2 * np.pi * h["frequency_hz"]
+        assert h["strongest_mm_s"] == pytest.approx(1e-3 * omega * h["strongest_um"])
+    rows = [line.split() for line in done.stderr.splitlines()]
+    loudest = max(spectrum, key=lambda h: h["share_at_strongest"])
+    assert [f"{loudest['frequency_hz']:.1f}", f"{loudest['share_at_strongest']:.4f}"] in [row[:2] for row in rows]
+    assert json.loads(prostm("field", "blob.plan.json", "--json", "-").stdout)["felt"]["spectrum"] is None
+    refused = prostm("field", "--widths", "--felt-spectrum", status=2)
+    assert refused.stderr == "prostm: --felt-spectrum needs a plan: the widths of a focus are not felt\n"

@@ -190,7 +190,7 @@ def public_headers(prefix):
 def test_every_public_header_finds_what_it_includes_in_what_is_installed(prefix, pkg_config, tmp_path):
     headers = public_headers(prefix)
     stages = {header.parts[1] for header in headers if len(header.parts) > 2}
-    assert stages == {"core", "target", "plan", "am", "acoustics", "emit", "device", "score",
+    assert stages == {"core", "target", "acoustics", "felt", "plan", "am", "emit", "device", "score",
                       "track", "hand", "stimulus", "contact", "fluid", "pipeline"}
     flags = pkg_config("--cflags")
     for header in headers:

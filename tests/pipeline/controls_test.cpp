@@ -161,10 +161,74 @@ TEST(Controls, EachChangesThePlanOrWhatIsPlayed) {
   }
 }
 
+const RunControl& control_of(const char* id) {
+  return run_controls()[static_cast<std::size_t>(control_index(id))];
+}
+
+// the weight is off, and its switch does nothing, until the weight is set
+TEST(Controls, WhatIsFeltMovesPathsOnlyWhileItCounts) {
+  LiveSettings s = small_settings();
+  const RunControl &weight = control_of("felt_weight"), &points = control_of("felt_points");
+  EXPECT_EQ(weight.get(s), 0.0);
+  EXPECT_FALSE(points.enabled(s));
+  s.pipeline.plan.felt_points = true;
+  EXPECT_EQ(difference(outcome_of(s, s), outcome_of(small_settings(), small_settings())), 0.0);
+
+  weight.set(s, 0.9);
+  EXPECT_TRUE(points.enabled(s));
+  LiveSettings still = s;
+  points.set(still, 0.0);
+  const Outcome moved = outcome_of(s, s);
+  EXPECT_GT(moved.plan.loop, 0.0);
+  EXPECT_GT(difference(moved, outcome_of(still, still)), 1e-4);
+}
+
+// what a page would otherwise be refused
+TEST(Controls, ThePapersPresetsTurnWhatIsFeltOff) {
+  for (const Preset preset : {Preset::Paper, Preset::PaperValid, Preset::Fast}) {
+    LiveSettings s = small_settings();
+    Pipeline pipeline = pipeline_of(s);
+    control_of("felt_weight").set(s, 0.9);
+    ASSERT_NO_THROW(pipeline.reconfigure(s.pipeline));
+    control_of("preset").set(s, static_cast<double>(preset));
+    EXPECT_NO_THROW(pipeline.reconfigure(s.pipeline));
+    const bool fitted = preset == Preset::Fast;
+    EXPECT_EQ(s.pipeline.plan.felt_weight, fitted ? 0.9 : 0.0);
+    EXPECT_EQ(control_of("felt_weight").enabled(s), fitted);
+    EXPECT_FALSE(control_of("am_felt_weight").enabled(s));
+  }
+}
+
+// a new plan is in step from the next update on, and on its own again once the weight is 0
+TEST(Controls, WhatIsFeltComesAndGoesInARun) {
+  LiveSettings s = small_settings();
+  Pipeline pipeline = pipeline_of(s);
+  for (int i = 0; i < 65; ++i) pipeline.step(0.02);
+  for (const double weight : {0.9, 0.0, 0.5}) {
+    control_of("felt_weight").set(s, weight);
+    pipeline.reconfigure(s.pipeline);
+    while (!pipeline.step(0.02)) {
+    }
+    ASSERT_EQ(pipeline.plan().status, PlanStatus::Planned);
+    EXPECT_EQ(pipeline.plan().plan.loop > 0.0, weight > 0.0);
+  }
+  control_of("method").set(s, static_cast<double>(Method::Am));
+  const auto late = [&] {
+    pipeline.reconfigure(s.pipeline);
+    while (!pipeline.step(0.02)) {
+    }
+    const FocalPoints& foci = pipeline.plan().plan.foci;
+    return std::any_of(foci.begin(), foci.end(), [](const FocalPoint& f) { return f.phase > 0.0; });
+  };
+  EXPECT_FALSE(late()) << "the weight of paths is not that of foci";
+  control_of("am_felt_weight").set(s, 0.9);
+  EXPECT_TRUE(late());
+}
+
 TEST(Controls, BothPartsOfThePressureComeAndGo) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
-  const RunControl& parts = run_controls()[static_cast<std::size_t>(control_index("parts"))];
+  const RunControl& parts = control_of("parts");
   for (const double on : {0.0, 1.0, 0.0}) {
     parts.set(s, on);
     pipeline.reconfigure(s.pipeline);

@@ -63,6 +63,22 @@ def test_plans_of_foci_are_values():
     assert "FocalPoint([0.01, 0.02], pressure=3.0)" in repr(plan)
     with pytest.raises(ValueError):
         plan.foci[0].position[0] = 0
+    plan = prostm.Plan(foci=[prostm.FocalPoint([0.01, 0.02], 3.0, phase=0.25)])
+    assert pickle.loads(pickle.dumps(plan)).foci[0].phase == 0.25
+    assert "FocalPoint([0.01, 0.02], pressure=3.0, phase=0.25)" in repr(plan)
+
+
+def test_phases_are_played(field):
+    foci = [prostm.FocalPoint([0.01 * k, 0.0], 1.0, phase=0.3 * k) for k in range(3)]
+    lifted = prostm.lift(prostm.Plan(foci=foci), field)
+    assert [focus.phase for focus in lifted.foci] == [0, 0.3, 0.6]
+    emitter = prostm.FocusEmitter(foci=3, full_scale_pressure=1.0)
+    emitter.submit(lifted)
+    positions, intensities = emitter.fill(0, 600)
+    k = np.arange(200)
+    for f in range(3):
+        mine = np.linalg.norm(positions[-1] - lifted.foci[f].p_D, axis=1).argmin()
+        np.testing.assert_allclose(intensities[400:, mine], np.abs(np.sin(np.pi * (k / 200 - 0.3 * f))), atol=1e-6)
 
 
 def test_what_cannot_be(field):
@@ -71,6 +87,10 @@ def test_what_cannot_be(field):
     for words, call in [
         ("paths or foci, not both", lambda: prostm.Plan([path], [focus])),
         ("9 foci", lambda: prostm.Plan(foci=9 * [focus])),
+        ("a plan of foci has no loop", lambda: prostm.Plan(foci=[focus], loop=0.02)),
+        ("loop = 2 s must be 0 or between 0.001 and 1 s", lambda: prostm.Plan([path], loop=2)),
+        ("loop = nan s must be", lambda: prostm.Plan([path], loop=np.nan)),
+        ("phase = 1.5 must be between 0 and 1", lambda: prostm.FocalPoint([0, 0], 1.0, phase=1.5)),
         ("pressure", lambda: prostm.FocalPoint([0, 0], -1.0)),
         ("position", lambda: prostm.FocalPoint([0, np.nan], 1.0)),
         ("foci = 9", lambda: prostm.AmPlanner(foci=9)),

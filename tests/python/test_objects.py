@@ -90,7 +90,8 @@ def test_a_field_without_pressure_gives_a_plan_without_paths():
 def test_settings_follow_the_header():
     """Names and order are those of PlanSettings::visit, for any number of settings."""
     source = (ROOT / "src" / "prostm" / "plan" / "plan_settings.cpp").read_text()
-    listed = re.findall(r'v\.field\(\{(?:\.name = )?"(\w+)"', source)
+    fitted, others = source.split("void list(")  # list() ends with list_fit(), which stands before it
+    listed = [name for part in (others, fitted) for name in re.findall(r'v\.field\(\{(?:\.name = )?"(\w+)"', part)]
     settings = prostm.PlanSettings()
     assert list(settings.as_dict()) == listed and len(listed) >= 16
     for name, value in settings.as_dict().items():
@@ -133,6 +134,9 @@ def test_pickles_are_the_same_to_the_bit(field):
         np.testing.assert_array_equal(a.points, b.points)
         np.testing.assert_array_equal(a.pressure, b.pressure)
         assert (a.length, a.speed, a.period, a.patch) == (b.length, b.speed, b.period, b.patch)
+    in_step = prostm.Plan(result.paths, loop=0.02)
+    assert (again.loop, pickle.loads(pickle.dumps(in_step)).loop, prostm.lift(in_step, field).loop) == (0, 0.02, 0.02)
+    assert repr(in_step).endswith(", loop=0.02)") and "loop" not in repr(again)
     height = np.linspace(0, 0.01, 720).reshape(24, 30)
     tilted = prostm.TargetField(blobs(), 5e-3, origin=(0.1, 0.2), height=height)
     twin = pickle.loads(pickle.dumps(tilted))

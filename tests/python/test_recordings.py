@@ -159,7 +159,25 @@ def test_a_recording_of_foci(program, tmp_path):
         for k, focus in enumerate(result.foci):
             np.testing.assert_array_equal(focus.position, file["plan/focus_position"][frame, k])
             assert focus.pressure == file["plan/focus_pressure"][frame, k]
+            assert focus.phase == file["plan/focus_phase"][frame, k] == 0
     assert result.quasi_static_field().max() > 0
+
+
+def test_loops_and_phases(run, tmp_path):
+    frame, path = planned_frame(run), tmp_path / "loop.h5"
+    path.write_bytes(run.read_bytes())
+    with h5py.File(path, "r+") as file:
+        assert file["plan/loop"].attrs["unit"] == "s" and (file["plan/loop"][:] == 0).all()
+        file["plan/loop"][frame] = 0.02
+    assert prostm.Recording(run).plan(frame).plan.loop == 0 and prostm.Recording(path).plan(frame).plan.loop == 0.02
+    with h5py.File(path, "r+") as file:
+        file["plan/loop"][frame] = -1.0
+    with pytest.raises(prostm.InputError, match="is broken"):
+        prostm.Recording(path).plan(frame)
+    # recordings of earlier versions have neither
+    with h5py.File(path, "r+") as file:
+        del file["plan/loop"], file["plan/focus_phase"]
+    assert prostm.Recording(path).plan(frame).plan.loop == 0
 
 
 @pytest.mark.parametrize("mode", ["r", "r+"])

@@ -58,6 +58,23 @@ def test_every_path_has_the_gain_of_its_period(field, preset):
         assert one.metrics.rmse == pytest.approx(two.metrics.rmse, rel=1e-9)
 
 
+def test_the_gain_of_a_path_from_the_skin(field):
+    ample = 1e5 * prostm.max_pressure(field)
+    result = prostm.plan(field, gain_from_skin=True, full_scale_pressure=ample)
+    constant = prostm.plan(field, full_scale_pressure=ample)
+    periods = np.arange(5, 20.1, 2.5) * 1e-3  # (P9c)
+    gains = [np.interp(path.period, periods, [0.713, 0.744, 0.825, 0.869, 0.930, 0.975, 1]) for path in result.paths]
+    for path, other, gain in zip(result.paths, constant.paths, gains):
+        np.testing.assert_allclose(path.pressure, other.pressure * gain, rtol=1e-9)
+    one = prostm.score_plan(field, result.plan, gain_from_skin=True)
+    assert one.rmse == pytest.approx(prostm.score_plan(field, constant.plan).rmse, rel=1e-9)
+    for one, two in zip(prostm.controls(field, other=result.plan, gain_from_skin=True),
+                        prostm.controls(field, other=constant.plan)):
+        assert one.metrics.rmse == pytest.approx(two.metrics.rmse, rel=1e-9)
+    np.testing.assert_allclose(prostm.quasi_static_field(result.plan, field, gain_from_skin=True),
+                               prostm.quasi_static_field(constant.plan, field), rtol=1e-9, atol=1e-12)
+
+
 def test_metrics_are_those_of_eq_1(field):
     result = prostm.plan(field, "paper")
     p, r = field.pressure[field.skin], eq1(result.paths, field)[field.skin]

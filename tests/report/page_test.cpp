@@ -96,7 +96,9 @@ TEST(Page, OutlinesAreCutToHundredths) {
 
 class Folder : public testing::Test {
  protected:
-  std::string name_ = testing::TempDir() + "report_parts";
+  // each case is a process of its own, and they run at the same time
+  std::string name_ = testing::TempDir() + "report_parts_" +
+                      testing::UnitTest::GetInstance()->current_test_info()->name();
   void SetUp() override { std::filesystem::remove_all(name_); }
 };
 

@@ -66,6 +66,9 @@ bool is_fitted(const LiveSettings& s) {
   return is_pro_stm(s) &&
          (s.pipeline.plan.preset == Preset::Best || s.pipeline.plan.preset == Preset::Fast);
 }
+bool is_felt(const LiveSettings& s) {
+  return is_fitted(s) && s.pipeline.plan.felt_weight > 0.0;
+}
 bool has_jets(const LiveSettings& s) {
   return s.pipeline.scene != "still-air";
 }
@@ -75,11 +78,13 @@ bool has_source(const LiveSettings& s, std::size_t place) {
 
 // ---- what more than one line has to do ----
 
-/// A clock runs: preset best gets a share of an update, and no other preset takes a budget.
+/// A clock runs: preset best gets a share of an update, and no other preset takes a budget. The
+/// paper's presets do not take what is felt, either.
 void set_preset(LiveSettings& s, double value) {
   PlanSettings& plan = s.pipeline.plan;
   plan.preset = static_cast<Preset>(value);
   plan.budget = plan.preset == Preset::Best ? kLiveBudget : 0.0;
+  if (plan.preset != Preset::Best && plan.preset != Preset::Fast) plan.felt_weight = 0.0;
 }
 
 void set_paths(LiveSettings& s, double value) {
@@ -225,6 +230,26 @@ std::vector<RunControl> make_controls() {
       [](const S& s) { return s.pipeline.plan.fit_bending; },
       [](S& s, double v) { s.pipeline.plan.fit_bending = v; }, is_fitted,
       "How much bends in a path cost, of the presets Best and Fast.");
+  number(
+      "Plan", "felt_weight", "What is felt", "", 0, 1, 0.05,
+      [](const S& s) { return s.pipeline.plan.felt_weight; },
+      [](S& s, double v) { s.pipeline.plan.felt_weight = v; }, is_fitted,
+      "How much the model of the skin counts when Best and Fast choose pressures; the paths then "
+      "run "
+      "in step. 0 is off, 0.9 is recommended. Nobody has felt it.");
+  toggle(
+      "Plan", "felt_points", "What is felt moves paths",
+      [](const S& s) { return s.pipeline.plan.felt_points ? 1.0 : 0.0; },
+      [](S& s, double v) { s.pipeline.plan.felt_points = v != 0.0; }, is_felt,
+      "What is felt chooses where the paths run, too, while it counts. It takes tenths of a second "
+      "a "
+      "plan, more than a run in real time has.");
+  number(
+      "Plan", "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
+      [](const S& s) { return s.pipeline.am.felt_weight; },
+      [](S& s, double v) { s.pipeline.am.felt_weight = v; }, is_am,
+      "How much the model of the skin counts when pressures and phases of the focal points are "
+      "chosen. 0 is off. Nobody has felt it.");
 
   choice(
       "Output", "switch", "Take over", kSwitches,

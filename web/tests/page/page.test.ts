@@ -229,6 +229,30 @@ describe("controls", () => {
     await turn("method", "pro-stm");
     await planHas(4, "path");
   });
+  it("bring the paths in step by what is felt, until the paper's presets turn it off", async () => {
+    const inStep = (wanted: boolean) =>
+      until(page, (w) => window.prostm.frame!.plan.length > 0 && window.prostm.frame!.plan.every((p) => p.loop > 0 === w), wanted, `paths in step: ${wanted}`);
+    const works = (id: string) => page.evaluate((i) => window.prostm.state!.controls.find((c) => c.id === i)!.enabled, id);
+    await inStep(false);
+    expect([await works("felt_weight"), await works("felt_points"), await works("am_felt_weight")]).toEqual([true, false, false]);
+    await turn("felt_weight", 0.9);
+    await inStep(true);
+    expect(await works("felt_points")).toBe(true);
+    await turn("preset", "paper-valid");
+    await becomes("felt_weight", 0);
+    await inStep(false);
+    expect(await works("felt_weight")).toBe(false);
+    await turn("preset", "best");
+  });
+  it("make foci late by what is felt", async () => {
+    await turn("method", "am");
+    await turn("am_felt_weight", 0.9);
+    await until(page, () => window.prostm.frame!.plan.some((p) => p.kind === "focus" && p.phase > 0), 0, "foci with phases");
+    await turn("am_felt_weight", 0);
+    await until(page, () => window.prostm.frame!.plan.length > 0 && window.prostm.frame!.plan.every((p) => p.phase === 0), 0, "foci in phase");
+    await turn("method", "pro-stm");
+    await planHas(4, "path");
+  });
   it("change the speed of the focal points", async () => {
     await turn("speed", 4);
     await until(page, () => window.prostm.frame!.plan.length > 0 && window.prostm.frame!.plan.every((p) => Math.abs(p.speed - 4) < 0.01), 0, "paths at 4 m/s");

@@ -71,7 +71,7 @@ export function encode(contents: Contents): ArrayBuffer {
   }
   if (plan) {
     section(6, plan.length, (w) => {
-      for (const p of plan) w.u32(p.kind === "path" ? 0 : 1, p.patch, p.count).f32(p.length, p.speed, p.period).array(p.points);
+      for (const p of plan) w.u32(p.kind === "path" ? 0 : 1, p.patch, p.count).f32(p.length, p.speed, p.period, p.loop, p.phase).array(p.points);
     });
   }
   if (gate) {
@@ -85,7 +85,7 @@ export function encode(contents: Contents): ArrayBuffer {
   }
 
   const length = 16 + sections.reduce((sum, s) => sum + s.byteLength, 0);
-  const message = new Writer().bytes(new TextEncoder().encode("PSTM")).u16(contents.version ?? 1, sections.length).u32(contents.sequence ?? 0, length);
+  const message = new Writer().bytes(new TextEncoder().encode("PSTM")).u16(contents.version ?? 2, sections.length).u32(contents.sequence ?? 0, length);
   for (const s of sections) message.bytes(s);
   return message.done().buffer as ArrayBuffer;
 }
