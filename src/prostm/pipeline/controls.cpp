@@ -66,9 +66,6 @@ bool is_fitted(const LiveSettings& s) {
   return is_pro_stm(s) &&
          (s.pipeline.plan.preset == Preset::Best || s.pipeline.plan.preset == Preset::Fast);
 }
-bool is_felt(const LiveSettings& s) {
-  return is_fitted(s) && s.pipeline.plan.felt_weight > 0.0;
-}
 bool has_jets(const LiveSettings& s) {
   return s.pipeline.scene != "still-air";
 }
@@ -235,15 +232,7 @@ std::vector<RunControl> make_controls() {
       [](const S& s) { return s.pipeline.plan.felt_weight; },
       [](S& s, double v) { s.pipeline.plan.felt_weight = v; }, is_fitted,
       "How much the model of the skin counts when Best and Fast choose pressures; the paths then "
-      "run "
-      "in step. 0 is off, 0.9 is recommended. Nobody has felt it.");
-  toggle(
-      "Plan", "felt_points", "What is felt moves paths",
-      [](const S& s) { return s.pipeline.plan.felt_points ? 1.0 : 0.0; },
-      [](S& s, double v) { s.pipeline.plan.felt_points = v != 0.0; }, is_felt,
-      "What is felt chooses where the paths run, too, while it counts. It takes tenths of a second "
-      "a "
-      "plan, more than a run in real time has.");
+      "run in step. 0 is off, 0.9 is recommended. Nobody has felt it.");
   number(
       "Plan", "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
       [](const S& s) { return s.pipeline.am.felt_weight; },

@@ -111,6 +111,12 @@ void validate(const PlanSettings& s) {
     throw std::invalid_argument("a budget is for preset best, not " +
                                 std::string(name_of(s.preset)));
   }
+  if (s.budget > 0.0 && s.felt_points) {
+    throw std::invalid_argument(
+        "felt_points takes tenths of a second a plan, so it is not for plans with a budget, as "
+        "runs "
+        "in real time have");
+  }
   // a loop may be half as long as a lap of the longest path, and must be one that is_loop() takes
   if (s.felt_weight > 0.0)
     require_between("draw_rate with felt_weight", s.draw_rate, 1.0, 500.0, "Hz");

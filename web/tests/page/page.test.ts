@@ -234,10 +234,9 @@ describe("controls", () => {
       until(page, (w) => window.prostm.frame!.plan.length > 0 && window.prostm.frame!.plan.every((p) => p.loop > 0 === w), wanted, `paths in step: ${wanted}`);
     const works = (id: string) => page.evaluate((i) => window.prostm.state!.controls.find((c) => c.id === i)!.enabled, id);
     await inStep(false);
-    expect([await works("felt_weight"), await works("felt_points"), await works("am_felt_weight")]).toEqual([true, false, false]);
+    expect([await works("felt_weight"), await works("am_felt_weight")]).toEqual([true, false]);
     await turn("felt_weight", 0.9);
     await inStep(true);
-    expect(await works("felt_points")).toBe(true);
     await turn("preset", "paper-valid");
     await becomes("felt_weight", 0);
     await inStep(false);
