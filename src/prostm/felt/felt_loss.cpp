@@ -7,7 +7,6 @@
 
 #include "prostm/core/units.hpp"
 #include "prostm/felt/detail/felt_kernels.hpp"
-#include "prostm/felt/render_lack.hpp"
 
 namespace prostm {
 namespace {
@@ -210,6 +209,11 @@ void FeltLoss<Real>::turn(std::span<const Real> amplitude, int first, std::span<
                      (d.sums[j].part[n] + d.sums[j].part[n + kImaginary]);
     }
   }
+}
+
+template <class Real>
+RenderLack<Real>& FeltLoss<Real>::rendering() {
+  return impl_->lack;
 }
 
 template <class Real>

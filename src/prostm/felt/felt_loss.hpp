@@ -10,6 +10,7 @@
 
 #include "prostm/felt/felt_cells.hpp"
 #include "prostm/felt/focus_response.hpp"
+#include "prostm/felt/render_lack.hpp"
 
 namespace prostm {
 
@@ -62,6 +63,8 @@ class FeltLoss {
   /// act, as shares of the loop. @param first first harmonic of their spectra.
   void turn(std::span<const Real> amplitude, int first, std::span<Real> gradient);
 
+  /// Tells how badly other fields in the cells render the target of set_target().
+  RenderLack<Real>& rendering();
   /// Percepts √e of the last evaluate() in each cell, by skin [µm per unit of amplitude].
   std::span<const Real> percept(std::size_t skin) const;
   /// Loudness of the last evaluate(): the geometric mean over the skins of the rms percept.

@@ -9,7 +9,6 @@
 #include "prostm/core/require.hpp"
 #include "prostm/felt/felt_loss.hpp"
 #include "prostm/felt/step_path.hpp"
-#include "prostm/plan/detail/fit/felt/felt_problem.hpp"
 
 namespace prostm {
 namespace {
@@ -102,16 +101,6 @@ void take_gradient(const Plan& plan, const Sources& of, const std::vector<double
 }
 
 }  // namespace
-
-std::vector<SkinSettings> felt_skins() {
-  std::vector<SkinSettings> skins;
-  for (const double speed : planning::kFeltSpeeds) {
-    SkinSettings& skin = skins.emplace_back();
-    skin.slow_speed *= speed;
-    skin.fast_speed *= speed;
-  }
-  return skins;
-}
 
 FeltPlan felt_plan(const Plan& plan, const TargetField& target, double sigma,
                    std::span<const SkinSettings> skins) {

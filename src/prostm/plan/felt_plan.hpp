@@ -7,14 +7,11 @@
 #include <vector>
 
 #include "prostm/acoustics/skin_model.hpp"
+#include "prostm/felt/felt_tables.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {
-
-/// The three skins that plans are fitted to: waves as fast as the nominal ones, and 0.7 and 1.3
-/// times as fast.
-std::vector<SkinSettings> felt_skins();
 
 /// The model looks at blocks of the target's skin, not at its cells.
 struct FeltBlock {

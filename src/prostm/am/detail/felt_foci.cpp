@@ -10,13 +10,11 @@ namespace prostm {
 namespace {
 
 constexpr double kMm = 1e3;         // per metre
-constexpr double kSigmaStep = 0.2;  // σ of the skins' tables is rounded to this [mm]
 constexpr int kStarts = 4;          // in phase, then phases drawn at random
 constexpr int kEvaluations = 20;    // of each start
 constexpr float kFirstStep = 0.3F;  // length of the first step, over the largest pressure
 constexpr float kNorm = 16.0F;      // exponent of the norm that stands for the largest
 constexpr float kTiny = 1e-6F;      // keeps a silent focus from having no direction
-constexpr std::array kSpeeds = {1.0, 0.7, 1.3};  // waves of the skins, over the nominal ones
 
 /// cos or sin of a moment of the period.
 struct Moment {
@@ -36,28 +34,13 @@ std::array<Moment, kCount> moments() {
 
 FeltFoci::FeltFoci(const AmSettings& settings)
     : settings_(settings),
-      skins_(kSpeeds.size()),
       cells_(kFeltCells),
-      loss_(kSpeeds.size(), kFeltCells, 2 * kMost, FeltWeights(), false),
-      field_lack_(kFeltCells),
+      loss_(kFeltSkins, kFeltCells, 2 * kMost, FeltWeights(), false),
       descent_(2 * kMost) {
   nearest_.reserve(kFeltCells);
   reach_.reserve(kFeltCells);
   sources_.reserve(2 * kMost);
   for (Eigen::VectorXf* v : {&field_, &pull_}) v->setZero(static_cast<Eigen::Index>(kFeltCells));
-}
-
-/// Makes the tables for another σ.
-void FeltFoci::set_skins(double sigma) {
-  const double rounded = kSigmaStep * std::max(1.0, std::round(kMm * sigma / kSigmaStep));
-  if (static_cast<float>(rounded) == sigma_) return;
-  sigma_ = static_cast<float>(rounded);
-  for (std::size_t s = 0; s < skins_.size(); ++s) {
-    SkinSettings skin;
-    skin.slow_speed *= kSpeeds[s];
-    skin.fast_speed *= kSpeeds[s];
-    maker_.make(SkinModel(skin), rounded / kMm, 1.0 / settings_.frequency, skins_[s]);
-  }
 }
 
 /// Takes over the places of the foci. Their pressure has one harmonic, the modulation's.
@@ -74,7 +57,8 @@ void FeltFoci::set_foci(const TargetField& target, const FocalPoints& foci) {
     source.spectrum[kFeltParts / 2] = -1.0F;  // a quarter of a period later
     sources_.push_back(source);
   }
-  loss_.set_sources(skins_, sources_);
+  const double focus = settings_.widths.empty() ? settings_.sigma : settings_.widths.on(target);
+  loss_.set_sources(tables_.of(focus, 1.0 / settings_.frequency), sources_);
   nearest_.clear();
   reach_.clear();
   for (const FeltCells::Cell& cell : cells_.cells()) {
@@ -126,7 +110,7 @@ float FeltFoci::add_field(std::span<float> by_pressure) {
     const auto cell = static_cast<std::size_t>(c);
     field[c] = kTiny + reach_[cell] * pressure(unit_, nearest_[cell]);
   }
-  const float value = field_lack_.of(field, 0.0F, pull);
+  const float value = loss_.rendering().of(field, 0.0F, pull);
   for (Eigen::Index c = 0; c < n; ++c) {
     const auto cell = static_cast<std::size_t>(c);
     by_pressure[nearest_[cell]] += pull[c] * reach_[cell];
@@ -171,10 +155,8 @@ float FeltFoci::loudness(std::span<const float> parts) {
 }
 
 int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foci) {
-  set_skins(settings_.widths.empty() ? settings_.sigma : settings_.widths.on(target));
   cells_.set(target, maximum);
   loss_.set_target(cells_.cells());
-  field_lack_.set(cells_.cells());
   set_foci(target, foci);
   Parts fitted{};
   for (std::size_t f = 0; f < foci_; ++f)

@@ -7,8 +7,8 @@
 
 #include "prostm/am/am_planner.hpp"
 #include "prostm/felt/felt_loss.hpp"
+#include "prostm/felt/felt_tables.hpp"
 #include "prostm/felt/quasi_newton.hpp"
-#include "prostm/felt/render_lack.hpp"
 
 namespace prostm {
 
@@ -27,7 +27,6 @@ class FeltFoci {
   /// other; their sum is the focus.
   using Parts = std::array<float, 2 * kMost>;
 
-  void set_skins(double sigma);
   void set_foci(const TargetField& target, const FocalPoints& foci);
   float pressure(std::span<const float> parts, std::size_t focus) const;
   float normalise(std::span<const float> parts);
@@ -36,12 +35,9 @@ class FeltFoci {
   float loudness(std::span<const float> parts);
 
   const AmSettings settings_;
-  float sigma_ = 0.0F;  // of the skins' tables [mm]
-  FocusResponseMaker maker_;
-  FeltSkins<float> skins_;
+  FeltTables tables_;
   FeltCells cells_;
   FeltLoss<float> loss_;
-  RenderLack<float> field_lack_;
   QuasiNewton descent_;
   std::size_t foci_ = 0;
   std::vector<std::size_t> nearest_;  // focus of each cell, (B2) …

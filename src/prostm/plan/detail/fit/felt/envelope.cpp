@@ -11,21 +11,16 @@ constexpr float kLeastField = 1e-6F;  // keeps a field without pressure in reach
 
 }  // namespace
 
-EnvelopeLack::EnvelopeLack(std::size_t most_cells) : lack_(most_cells) {
-  cells_.reserve(most_cells);
+EnvelopeLack::EnvelopeLack(std::size_t most_cells) {
   nearest_.reserve(most_cells);
   for (Eigen::VectorXf* v : {&field_, &pull_}) v->setZero(static_cast<Eigen::Index>(most_cells));
 }
 
-void EnvelopeLack::set_target(const std::vector<FeltCells::Cell>& cells) {
-  cells_ = cells;
-  lack_.set(cells);
-}
-
-void EnvelopeLack::set_points(const StepPoints& points, float sigma) {
+void EnvelopeLack::set_points(const std::vector<FeltCells::Cell>& cells, const StepPoints& points,
+                              float sigma) {
   nearest_.clear();
   sigma_ = sigma;
-  for (const FeltCells::Cell& cell : cells_) {
+  for (const FeltCells::Cell& cell : cells) {
     const auto x = static_cast<float>(cell.x), y = static_cast<float>(cell.y);
     Nearest best;
     float least = std::numeric_limits<float>::max();
@@ -47,14 +42,15 @@ void EnvelopeLack::set_points(const StepPoints& points, float sigma) {
   }
 }
 
-float EnvelopeLack::add(float weight, std::span<const float> pressure, std::span<float> gradient) {
+float EnvelopeLack::add(RenderLack<float>& rendering, float weight, std::span<const float> pressure,
+                        std::span<float> gradient) {
   const auto n = static_cast<Eigen::Index>(nearest_.size());
   auto field = field_.head(n), pull = pull_.head(n);
   for (Eigen::Index c = 0; c < n; ++c) {
     const Nearest& at = nearest_[static_cast<std::size_t>(c)];
     field[c] = kLeastField + at.a * pressure[at.first] + at.b * pressure[at.second];
   }
-  const float value = lack_.of(field, 0.0F, pull);
+  const float value = rendering.of(field, 0.0F, pull);
   for (Eigen::Index c = 0; c < n; ++c) {
     const Nearest& at = nearest_[static_cast<std::size_t>(c)];
     gradient[at.first] += weight * pull[c] * at.a;

@@ -28,13 +28,12 @@ class EnvelopeLack {
  public:
   explicit EnvelopeLack(std::size_t most_cells);
 
-  /// Takes over a target.
-  void set_target(const std::vector<FeltCells::Cell>& cells);
   /// Takes over the points. @param sigma of a focus [mm].
-  void set_points(const StepPoints& points, float sigma);
+  void set_points(const std::vector<FeltCells::Cell>& cells, const StepPoints& points, float sigma);
   /// Returns 1 − S_8.5 of (P10), and adds `weight` times its gradient with respect to the
-  /// pressures.
-  float add(float weight, std::span<const float> pressure, std::span<float> gradient);
+  /// pressures. @param rendering of the target in the cells.
+  float add(RenderLack<float>& rendering, float weight, std::span<const float> pressure,
+            std::span<float> gradient);
   /// Adds `weight` times the gradient of the last add() with respect to the points [1/mm].
   void add_slide(float weight, const StepPoints& points, std::span<const float> pressure,
                  std::span<float> gradient_x, std::span<float> gradient_y) const;
@@ -44,13 +43,11 @@ class EnvelopeLack {
   struct Nearest {
     std::uint32_t first = 0, second = 0;
     float a = 0.0F, b = 0.0F;
-    float along = 0.0F, dx = 0.0F,
-          dy = 0.0F;  // share of the segment, vector from there to the cell
+    float along = 0.0F;          // share of the segment
+    float dx = 0.0F, dy = 0.0F;  // vector from there to the cell [mm]
   };
-  RenderLack<float> lack_;
-  std::vector<FeltCells::Cell> cells_;
   std::vector<Nearest> nearest_;
-  float sigma_ = 1.0F;
+  float sigma_ = 1.0F;  // [mm]
   Eigen::VectorXf field_, pull_;
 };
 

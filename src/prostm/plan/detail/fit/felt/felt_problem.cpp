@@ -8,8 +8,7 @@
 namespace prostm::planning {
 namespace {
 
-constexpr double kSigmaStep = 0.2;  // σ of the skins' tables is rounded to this [mm]
-constexpr float kNorm = 16.0F;      // exponent of the norm that stands for the largest
+constexpr float kNorm = 16.0F;  // exponent of the norm that stands for the largest
 
 /// Points that move can make use of finer cells than pressures can.
 std::size_t most_cells(const PlanSettings& settings) {
@@ -32,42 +31,20 @@ std::size_t most_felt_points(const PlanSettings& settings) {
 FeltProblem::FeltProblem(const PlanSettings& settings)
     : weight_(static_cast<float>(settings.felt_weight)),
       cells_(most_cells(settings)),
-      loss_(kFeltSpeeds.size(), most_cells(settings), most_felt_points(settings), FeltWeights(),
+      loss_(kFeltSkins, most_cells(settings), most_felt_points(settings), FeltWeights(),
             settings.felt_points),
       envelope_(most_cells(settings)) {
   const std::size_t most = most_felt_points(settings);
-  for (Tables& t : tables_) t.skins.resize(kFeltSpeeds.size());
   sources_.reserve(most);
   paths_.reserve(kMaxPaths);
   for (auto* list : {&pressure_, &gradient_, &felt_gradient_, &by_time_, &by_share_})
     list->reserve(most);
 }
 
-/// Returns the tables for sigma_ and a period, which are made if they are not there.
-const FeltProblem::Tables& FeltProblem::tables(double period) {
-  for (const Tables& t : tables_) {
-    if (t.sigma == sigma_ && t.period == period) return t;
-  }
-  Tables& made = tables_[oldest_];
-  oldest_ = (oldest_ + 1) % tables_.size();
-  made.sigma = sigma_;
-  made.period = period;
-  for (std::size_t s = 0; s < kFeltSpeeds.size(); ++s) {
-    SkinSettings skin;
-    skin.slow_speed *= kFeltSpeeds[s];
-    skin.fast_speed *= kFeltSpeeds[s];
-    const double sigma = static_cast<double>(sigma_) / kMmPerMetre;
-    maker_.make(SkinModel(skin), sigma, period, made.skins[s]);
-  }
-  return made;
-}
-
 void FeltProblem::set_target(const TargetField& target, double maximum, double sigma) {
-  const double steps = std::max(1.0, std::round(kMmPerMetre * sigma / kSigmaStep));
-  sigma_ = static_cast<float>(kSigmaStep * steps);
+  sigma_ = sigma;
   cells_.set(target, maximum);
   loss_.set_target(cells_.cells());
-  envelope_.set_target(cells_.cells());
   double square = 0.0;
   for (const FeltCells::Cell& cell : cells_.cells())
     square += cell.area * cell.pressure * cell.pressure;
@@ -88,8 +65,9 @@ void FeltProblem::set_points(const StepPoints& points, const CommonLoop& loop) {
     paths_[k].set(points.x.subspan(k * n, n), points.y.subspan(k * n, n), loop.laps[k]);
     paths_[k].sources(first_, std::span(sources_).subspan(k * n, n));
   }
-  loss_.set_sources(tables(loop.period).skins, sources_);
-  if (weight_ < 1.0F) envelope_.set_points(points, sigma_);
+  loss_.set_sources(tables_.of(sigma_, loop.period), sources_);
+  if (weight_ < 1.0F)
+    envelope_.set_points(cells_.cells(), points, static_cast<float>(kMmPerMetre * sigma_));
 }
 
 /// Calls f(point, moment, share) for the points that are passed at each moment of a loop: one of
@@ -142,7 +120,8 @@ float FeltProblem::cost(std::span<const float> root, std::span<float> gradient) 
   float value = weight_ * loss_.evaluate(pressure_, felt_gradient_);
   for (std::size_t j = 0; j < root.size(); ++j) gradient_[j] = weight_ * felt_gradient_[j];
   if (weight_ < 1.0F)
-    value += (1.0F - weight_) * envelope_.add(1.0F - weight_, pressure_, gradient_);
+    value +=
+        (1.0F - weight_) * envelope_.add(loss_.rendering(), 1.0F - weight_, pressure_, gradient_);
   // more output changes nothing
   float along = 0.0F;
   for (std::size_t j = 0; j < root.size(); ++j) along += gradient_[j] * pressure_[j];

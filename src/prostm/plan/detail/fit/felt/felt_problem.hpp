@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "prostm/felt/felt_loss.hpp"
+#include "prostm/felt/felt_tables.hpp"
 #include "prostm/felt/step_path.hpp"
 #include "prostm/plan/detail/fit/felt/common_loop.hpp"
 #include "prostm/plan/detail/fit/felt/envelope.hpp"
@@ -15,8 +16,6 @@
 
 namespace prostm::planning {
 
-/// Speeds of the waves on the skins that a plan is fitted to, over the nominal ones.
-inline constexpr std::array kFeltSpeeds = {1.0, 0.7, 1.3};
 /// The most points that are chosen in a plan.
 std::size_t most_felt_points(const PlanSettings& settings);
 
@@ -47,24 +46,15 @@ class FeltProblem {
   float square() const { return square_; }
 
  private:
-  /// Tables of all skins, for one σ and one period.
-  struct Tables {
-    float sigma = 0.0F;   ///< [mm]
-    double period = 0.0;  ///< [s]
-    FeltSkins<float> skins;
-  };
-  const Tables& tables(double period);
   float normalise(std::span<const float> root);
   template <class F>
   void for_moments(F&& f) const;
 
   const float weight_;
   int first_ = 1;       // first harmonic that is felt
-  float sigma_ = 1.0F;  // rounded, as tables are made for [mm]
+  double sigma_ = 1.0;  // of a focus [m]
   float square_ = 1.0F;
-  FocusResponseMaker maker_;
-  std::array<Tables, 12> tables_;  // the last ones made
-  std::size_t oldest_ = 0;
+  FeltTables tables_;
   FeltCells cells_;
   FeltLoss<float> loss_;
   EnvelopeLack envelope_;

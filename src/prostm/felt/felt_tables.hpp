@@ -1,0 +1,39 @@
+#pragma once
+/// The skins that plans are fitted to, and their tables, made when they are first asked for.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "prostm/acoustics/skin_model.hpp"
+#include "prostm/felt/felt_loss.hpp"
+#include "prostm/felt/focus_response.hpp"
+
+namespace prostm {
+
+/// Number of skins that plans are fitted to.
+inline constexpr std::size_t kFeltSkins = 3;
+/// Returns them: waves as fast as the nominal ones, and 0.7 and 1.3 times as fast.
+std::vector<SkinSettings> felt_skins();
+
+/// Keeps the last few tables. Sized once; nothing else allocates.
+class FeltTables {
+ public:
+  FeltTables();
+
+  /// Returns the tables of felt_skins() for a focus and a period [s]. They stay valid until as many
+  /// others have been asked for. @param sigma of the focus [m], rounded to 0.2 mm.
+  const FeltSkins<float>& of(double sigma, double period);
+
+ private:
+  struct Entry {
+    double sigma = 0.0, period = 0.0;  // [m], [s]
+    FeltSkins<float> skins;
+  };
+  std::vector<SkinModel> models_;
+  FocusResponseMaker maker_;
+  std::array<Entry, 12> entries_;
+  std::size_t oldest_ = 0;
+};
+
+}  // namespace prostm
