@@ -7,7 +7,6 @@
 #include "common.hpp"
 #include "field_words.hpp"
 #include "plan_pictures.hpp"
-#include "prostm/acoustics/focus_width.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
@@ -254,25 +253,6 @@ bool counts_on_own_width(const PipelineSettings& settings) {
   if (is_am(settings)) return true;
   const Preset preset = settings.plan.preset;
   return preset == Preset::Best || preset == Preset::Fast;
-}
-
-/// σ of the array's focus at the middle of the pressure on the skin, and as the skin lies there;
-/// `otherwise` where there is no pressure.
-double sigma_on_skin(const TransducerArray& array, const TargetField& target, double otherwise) {
-  const SkinSurface skin = skin_surface(target);
-  Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < skin.cell.size(); ++i) {
-    const double p = target.pressure[skin.cell[i]];
-    middle += p * skin.points.p_D[i];
-    normal += p * skin.points.normal[i];
-    sum += p;
-  }
-  if (sum <= 0.0 || normal.norm() < 1e-3 * sum) return otherwise;
-  normal.normalize();
-  const Medium air;
-  const PackedArray packed(array, air);
-  return focus_width(packed, air, middle / sum, normal, normal.unitOrthogonal()).sigma();
 }
 
 /// Returns the felt skill of the plan as the array of the settings plays it.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 
-#include "prostm/acoustics/focus_width.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/plan/lifted_plan.hpp"
@@ -41,7 +40,7 @@ Way changed(const std::string& name, const Way& way, bool is_control, const Chan
 Way pro_stm(const std::string& name, const PlanSettings& base, const TransducerArray& array) {
   return {name, [base, array](const TargetField& first) {
             PlanSettings settings = base;
-            settings.sigma = array_width(array, first);
+            settings.sigma = sigma_on_skin(array, first, PlanSettings().sigma);
             return planning_with<Planner>(settings, first);
           }};
 }
@@ -52,7 +51,7 @@ Way am(const std::string& name, int foci, const TransducerArray& array, double s
   return {name, [=](const TargetField& first) {
             AmSettings settings;
             settings.foci = foci;
-            const double width = array_width(array, first);
+            const double width = sigma_on_skin(array, first, PlanSettings().sigma);
             settings.sigma = sigma > 0.0 ? sigma : width;
             settings.felt_weight = felt_weight;
             settings.widths = {{0.2}, {0.0}, {0.0}, {width}};
@@ -68,24 +67,6 @@ Plan with_shuffled_pressures(Plan plan) {
 }
 
 }  // namespace
-
-double array_width(const TransducerArray& array, const TargetField& target) {
-  const SkinSurface skin = skin_surface(target);
-  Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < skin.cell.size(); ++i) {
-    const double p = target.pressure[skin.cell[i]];
-    middle += p * skin.points.p_D[i];
-    normal += p * skin.points.normal[i];
-    sum += p;
-  }
-  normal.normalize();
-  const Vec3 x = target.X_DP.linear().col(0);
-  const Medium air;
-  return focus_width(PackedArray(array, air), air, middle / sum, normal,
-                     (x - x.dot(normal) * normal).normalized())
-      .sigma();
-}
 
 Plan in_step(Plan plan, const TargetField& target, double loop) {
   plan.loop = loop;

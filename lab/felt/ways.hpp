@@ -26,10 +26,6 @@ struct Way {
   Plan plan(const TargetField& target) const { return begin(target)(target); }
 };
 
-/// Returns σ of the array's focus at the middle of the target's pressure, as the skin lies there
-/// [m], as `prostm plan --array` does. @pre the target has pressure on skin.
-double array_width(const TransducerArray& array, const TargetField& target);
-
 /// Returns the plan with all its paths in step: each makes the whole number of laps in `loop` [s]
 /// that changes its speed least.
 Plan in_step(Plan plan, const TargetField& target, double loop);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "prostm/acoustics/focus_width.hpp"
 #include "prostm/target/skin_normal.hpp"
 
 namespace prostm {
@@ -209,6 +210,23 @@ SkinSurface skin_surface(const TargetField& raster) {
     }
   }
   return skin;
+}
+
+double sigma_on_skin(const TransducerArray& array, const TargetField& target, double otherwise) {
+  const SkinSurface skin = skin_surface(target);
+  Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < skin.cell.size(); ++i) {
+    const double p = target.pressure[skin.cell[i]];
+    middle += p * skin.points.p_D[i];
+    normal += p * skin.points.normal[i];
+    sum += p;
+  }
+  if (sum <= 0.0 || normal.norm() < 1e-3 * sum) return otherwise;
+  normal.normalize();
+  const Medium air;
+  const PackedArray packed(array, air);
+  return focus_width(packed, air, middle / sum, normal, normal.unitOrthogonal()).sigma();
 }
 
 FocusAccuracy focus_accuracy(const PackedArray& packed, const LoopSamples& loop,

@@ -19,6 +19,10 @@ struct SkinSurface {
 /// Returns the skin of a raster. @pre validate(raster) passes.
 SkinSurface skin_surface(const TargetField& raster);
 
+/// Returns σ of the array's focus [m] at the middle of a target's pressure on the skin, and as the
+/// skin lies there (A22); `otherwise` where there is no pressure.
+double sigma_on_skin(const TransducerArray& array, const TargetField& target, double otherwise);
+
 /// Errors of focal points' positions and levels over samples of a loop. The position is that of the
 /// largest acoustic pressure within 4.5 mm along the plane; the level is the acoustic pressure over
 /// that which the sample asks for.
