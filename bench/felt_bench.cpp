@@ -77,7 +77,7 @@ std::vector<FeltSource<Real>> sources() {
 /// The loss of one target on three skins.
 template <class Real>
 struct Evaluated {
-  explicit Evaluated(const std::vector<FeltCells::Cell>& cells)
+  explicit Evaluated(const FeltCells& cells)
       : loss(3, kFeltCells, 4 * 28, FeltWeights(), false),
         pressure(4 * 28, Real(0.5)),
         gradient(4 * 28) {
@@ -101,8 +101,8 @@ void measure_evaluations(std::vector<Row>& rows) {
   const TargetField field = fields::make(fields::Pattern::FourPlumes, 10);
   FeltCells cells(kFeltCells);
   cells.set(field, max_pressure(field));
-  Evaluated<float> fast(cells.cells());
-  Evaluated<double> plain(cells.cells());
+  Evaluated<float> fast(cells);
+  Evaluated<double> plain(cells);
   Distribution fast_time, plain_time;
   for (int round = 0; round < 200; ++round) {
     fast_time.add(fast.evaluate());

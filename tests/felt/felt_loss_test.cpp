@@ -26,11 +26,11 @@ FeltSkins<Real> skins() {
   return out;
 }
 
-std::vector<FeltCells::Cell> cells_of(fields::Pattern pattern) {
+FeltCells cells_of(fields::Pattern pattern) {
   const TargetField field = fields::make(pattern, 10);
   FeltCells cells(kFeltCells);
   cells.set(field, max_pressure(field));
-  return cells.cells();
+  return cells;
 }
 
 /// Sources anywhere on a raster of the generated fields, with spectra and amplitudes of any sign.
@@ -156,7 +156,7 @@ TEST(FeltLoss, AllocatesNothing) {
   FeltLoss<float> loss(2, kFeltCells, 64, kWeights, true);
   const FeltSkins<float> tables = skins<float>();
   const Sources<float> sources(5, 64);
-  const std::vector<FeltCells::Cell> small = cells_of(fields::Pattern::OnePlume);
+  const FeltCells small = cells_of(fields::Pattern::OnePlume);
   std::vector<float> gradient(64), x(64), y(64);
   const test::HeapGuard guard;
   loss.set_target(small);

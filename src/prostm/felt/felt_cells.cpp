@@ -8,12 +8,7 @@
 namespace prostm {
 namespace {
 
-constexpr double kMm = 1e3;            // per metre
-constexpr std::size_t kBlocks = 4096;  // with and without skin
-
-std::size_t blocks_along(int cells, int width) {
-  return static_cast<std::size_t>((cells + width - 1) / width);
-}
+constexpr double kMm = 1e3;  // per metre
 
 }  // namespace
 
@@ -24,8 +19,11 @@ FeltCells::FeltCells(std::size_t most) : most_(most) {
 
 /// Sums up the skin in blocks of so many cells along an edge. @return whether there is room.
 bool FeltCells::fill(const TargetField& target, double maximum, int width) {
-  const std::size_t across = blocks_along(target.cols, width);
-  const std::size_t count = blocks_along(target.rows, width) * across;
+  rows_ = (target.rows + width - 1) / width;
+  cols_ = (target.cols + width - 1) / width;
+  pitch_ = kMm * target.cell * width;
+  const auto across = static_cast<std::size_t>(cols_);
+  const std::size_t count = static_cast<std::size_t>(rows_) * across;
   if (count > kBlocks) return false;
   blocks_.assign(count, {});
   for (int row = 0; row < target.rows; ++row) {
@@ -35,6 +33,8 @@ bool FeltCells::fill(const TargetField& target, double maximum, int width) {
       const double weight = target.weight.empty() ? 1.0 : target.weight[i];
       Cell& block = blocks_[static_cast<std::size_t>(row / width) * across +
                             static_cast<std::size_t>(col / width)];
+      block.row = row / width;
+      block.col = col / width;
       block.area += weight;
       block.x += weight * kMm * target.cell * col;
       block.y += weight * kMm * target.cell * row;

@@ -15,6 +15,7 @@ inline constexpr std::size_t kFeltCells = 512, kFinerFeltCells = 800;
 class FeltCells {
  public:
   static constexpr double kWidth = 6e-3;  ///< of a block, unless a cell is wider [m]
+  static constexpr std::size_t kBlocks = 4096;  ///< at most, with and without skin
 
   /// @param most blocks with skin.
   explicit FeltCells(std::size_t most);
@@ -24,16 +25,22 @@ class FeltCells {
   void set(const TargetField& target, double maximum);
 
   struct Cell {
+    int row = 0, col = 0;     ///< of the block
     double x = 0.0, y = 0.0;  ///< mean place, from the middle of the target's cell (0, 0) [mm]
     double area = 0.0;        ///< share of the skin, with the target's weights if it has any
     double pressure = 0.0;    ///< mean p* over the maximum
   };
   const std::vector<Cell>& cells() const { return cells_; }
+  int rows() const { return rows_; }      ///< of blocks
+  int cols() const { return cols_; }      ///< of blocks
+  double pitch() const { return pitch_; }  ///< of the blocks [mm]
 
  private:
   bool fill(const TargetField& target, double maximum, int width);
 
   std::size_t most_;
+  int rows_ = 0, cols_ = 0;
+  double pitch_ = 0.0;
   std::vector<Cell> cells_, blocks_;
 };
 

@@ -88,8 +88,8 @@ template <class Real>
 FeltLoss<Real>& FeltLoss<Real>::operator=(FeltLoss&&) noexcept = default;
 
 template <class Real>
-void FeltLoss<Real>::set_target(const std::vector<FeltCells::Cell>& cells) {
-  impl_->cells = cells;
+void FeltLoss<Real>::set_target(const FeltCells& cells) {
+  impl_->cells = cells.cells();
   impl_->lack.set(cells);
 }
 

@@ -48,7 +48,7 @@ class FeltLoss {
   FeltLoss& operator=(FeltLoss&&) noexcept;
 
   /// Takes over the cells. @pre some pressure is above 0.
-  void set_target(const std::vector<FeltCells::Cell>& cells);
+  void set_target(const FeltCells& cells);
   /// Takes over the places where pressure acts. @pre as many skins as in the constructor.
   void set_sources(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources);
   /// Computes the loss (W4), and its gradient with respect to the amplitudes. @param amplitude of

@@ -6,8 +6,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kBlur = 8.5;  // of S_8.5 [mm]
-constexpr float kLeastExponent = -60.0F;
+constexpr double kBlur = 8.5;   // of S_8.5 [mm]
+constexpr double kReach = 4.0;  // standard deviations, (Q5)
 constexpr double kLeastVariance = 0.05;  // over the mean square: an even target has none
 
 }  // namespace
@@ -32,47 +32,71 @@ Real RenderLack<Real>::Measure::of(const Field& area, const Field& target, const
 template <class Real>
 RenderLack<Real>::RenderLack(std::size_t most_cells) {
   const auto most = static_cast<Eigen::Index>(most_cells);
-  for (Vector* v : {&area_, &target_, &blurred_target_, &smooth_, &pull_}) v->setZero(most);
-  blur_.setZero(most, most);
+  for (Vector* v : {&area_, &target_, &blurred_target_, &density_, &smooth_, &pull_})
+    v->setZero(most);
+  place_.reserve(most_cells);
+  // the largest raster with its margin is a long line of blocks
+  constexpr auto kBlocks = static_cast<Eigen::Index>(FeltCells::kBlocks);
+  for (Vector* v : {&plane_, &down_, &across_}) v->setZero((kBlocks + 2 * kMostReach) * (2 * kMostReach + 1));
 }
 
 template <class Real>
-void RenderLack<Real>::set(const std::vector<FeltCells::Cell>& cells) {
-  cells_ = static_cast<Eigen::Index>(cells.size());
-  auto x = smooth_.head(cells_), y = pull_.head(cells_);  // in units of the blur
-  for (Eigen::Index i = 0; i < cells_; ++i) {
-    const FeltCells::Cell& cell = cells[static_cast<std::size_t>(i)];
+void RenderLack<Real>::set(const FeltCells& cells) {
+  cells_ = static_cast<Eigen::Index>(cells.cells().size());
+  rows_ = cells.rows();
+  cols_ = cells.cols();
+  reach_ = std::clamp(static_cast<int>(std::ceil(kReach * kBlur / cells.pitch())), 1, kMostReach);
+  stride_ = cols_ + 2 * reach_;
+  for (Eigen::Index t = 0; t <= 2 * reach_; ++t) {
+    const double away = cells.pitch() / kBlur * static_cast<double>(t - reach_);
+    taps_[static_cast<std::size_t>(t)] = static_cast<Real>(std::exp(-0.5 * away * away));
+  }
+  plane_.head((rows_ + 2 * reach_) * stride_).setZero();
+  place_.clear();
+  for (const FeltCells::Cell& cell : cells.cells()) {
+    const auto i = static_cast<Eigen::Index>(place_.size());
     area_[i] = static_cast<Real>(cell.area);
     target_[i] = static_cast<Real>(cell.pressure);
-    x[i] = static_cast<Real>(cell.x / kBlur);
-    y[i] = static_cast<Real>(cell.y / kBlur);
+    place_.push_back((cell.row + reach_) * stride_ + cell.col + reach_);
   }
-  // column by column, then rows are brought to a sum of 1
-  auto blur = blur_.topLeftCorner(cells_, cells_);
-  for (Eigen::Index j = 0; j < cells_; ++j) {
-    blur.col(j) =
-        area_[j] * (Real(-0.5) * ((x.array() - x[j]).square() + (y.array() - y[j]).square()))
-                       .max(Real(kLeastExponent))
-                       .exp()
-                       .matrix();
-  }
-  auto sum = blurred_target_.head(cells_);
-  sum.noalias() = blur.rowwise().sum();
-  for (Eigen::Index j = 0; j < cells_; ++j) blur.col(j).array() /= sum.array();
-  blurred_target_.head(cells_).noalias() =
-      blur_.topLeftCorner(cells_, cells_) * target_.head(cells_);
+  blur(area(), density_.head(cells_));
+  auto blurred = blurred_target_.head(cells_);
+  blur(area().cwiseProduct(target_.head(cells_)), blurred);
+  blurred.array() /= density_.head(cells_).array();
   sharp_.set(area(), target_.head(cells_));
-  blurred_.set(area(), blurred_target_.head(cells_));
+  blurred_.set(area(), blurred);
+}
+
+/// Adds up what is around each cell, weighted by a Gaussian: along the columns, then the rows. It
+/// is its own transpose.
+template <class Real>
+void RenderLack<Real>::blur(const Field& field, Eigen::Ref<Vector> out) {
+  for (Eigen::Index i = 0; i < cells_; ++i) plane_[place_[static_cast<std::size_t>(i)]] = field[i];
+  const Eigen::Index count = rows_ * stride_;
+  const auto add_up = [&](const Vector& from, Eigen::Index step, Eigen::Index size, Vector& to) {
+    auto sums = to.head(size);
+    sums = taps_[0] * from.head(size);
+    for (Eigen::Index t = 1; t <= 2 * reach_; ++t)
+      sums += taps_[static_cast<std::size_t>(t)] * from.segment(t * step, size);
+  };
+  add_up(plane_, stride_, count, down_);
+  add_up(down_, 1, count - 2 * reach_, across_);
+  const Eigen::Index corner = reach_ * (stride_ + 1);
+  for (Eigen::Index i = 0; i < cells_; ++i)
+    out[i] = across_[place_[static_cast<std::size_t>(i)] - corner];
 }
 
 template <class Real>
 Real RenderLack<Real>::of(const Eigen::Ref<const Vector>& field, Real fine,
                           Eigen::Ref<Vector> pull) {
-  const auto blur = blur_.topLeftCorner(cells_, cells_);
-  auto smooth = smooth_.head(cells_), own = pull_.head(cells_);
-  smooth.noalias() = blur * field;
+  auto smooth = smooth_.head(cells_), own = pull_.head(cells_), density = density_.head(cells_);
+  own = area().cwiseProduct(field);
+  blur(own, smooth);
+  smooth.array() /= density.array();
   const Real blurred = blurred_.of(area(), blurred_target_.head(cells_), smooth, own);
-  pull.noalias() = blur.transpose() * own;
+  own.array() /= density.array();
+  blur(own, pull);
+  pull.array() *= area().array();
   if (fine == 0) return blurred;
   const Real sharp = sharp_.of(area(), target_.head(cells_), field, own);
   pull += fine * own;

@@ -2,6 +2,7 @@
 /// 1 − S of a field against its target, and the gradient of that.
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "prostm/felt/felt_cells.hpp"
@@ -18,7 +19,7 @@ class RenderLack {
   explicit RenderLack(std::size_t most_cells);
 
   /// Takes over a target. @pre some pressure is above 0.
-  void set(const std::vector<FeltCells::Cell>& cells);
+  void set(const FeltCells& cells);
   /// Returns 1 − S_8.5 + fine (1 − S_0). @param pull its gradient with respect to the field. @pre
   /// the field has a value above 0.
   Real of(const Eigen::Ref<const Vector>& field, Real fine, Eigen::Ref<Vector> pull);
@@ -36,11 +37,18 @@ class RenderLack {
             Eigen::Ref<Vector> pull) const;
   };
 
+  void blur(const Field& field, Eigen::Ref<Vector> out);
+
+  static constexpr int kMostReach = 16;  // blocks that the blur reaches
   Eigen::Index cells_ = 0;
-  // of the first cells_ entries
-  Vector area_, target_, blurred_target_, smooth_, pull_;
-  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> blur_;  // each row adds up to 1
+  // of the first cells_ entries; density_ is the blur of the area
+  Vector area_, target_, blurred_target_, density_, smooth_, pull_;
   Measure sharp_, blurred_;
+  // the raster of blocks, with a margin of reach_ without area
+  Eigen::Index rows_ = 0, cols_ = 0, reach_ = 0, stride_ = 0;
+  std::array<Real, 2 * kMostReach + 1> taps_{};
+  std::vector<Eigen::Index> place_;  // of each cell
+  Vector plane_, down_, across_;     // not blurred, along columns, along rows too
 };
 
 }  // namespace prostm

@@ -114,7 +114,7 @@ FeltPlan felt_plan(const Plan& plan, const TargetField& target, double sigma,
   const Sources of(plan, target.origin, largest);
   FeltLoss<double> loss(skins.size(), kFinerFeltCells, of.source.size(),
                         {.fine = 0.3, .energy = 0.0, .loudness = 0.0, .quiet = 0.0}, true);
-  loss.set_target(cells.cells());
+  loss.set_target(cells);
   loss.set_sources(tables(skins, sigma, plan.loop), of.source);
   std::vector<double> by_pressure(of.source.size());
   FeltPlan out;

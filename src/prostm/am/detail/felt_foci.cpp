@@ -156,7 +156,7 @@ float FeltFoci::loudness(std::span<const float> parts) {
 
 int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foci) {
   cells_.set(target, maximum);
-  loss_.set_target(cells_.cells());
+  loss_.set_target(cells_);
   set_foci(target, foci);
   Parts fitted{};
   for (std::size_t f = 0; f < foci_; ++f)

@@ -44,7 +44,7 @@ FeltProblem::FeltProblem(const PlanSettings& settings)
 void FeltProblem::set_target(const TargetField& target, double maximum, double sigma) {
   sigma_ = sigma;
   cells_.set(target, maximum);
-  loss_.set_target(cells_.cells());
+  loss_.set_target(cells_);
   double square = 0.0;
   for (const FeltCells::Cell& cell : cells_.cells())
     square += cell.area * cell.pressure * cell.pressure;
