@@ -14,7 +14,7 @@ inline constexpr std::size_t kFeltCells = 512, kFinerFeltCells = 800;
 /// The skin of a target, averaged over square blocks of its raster.
 class FeltCells {
  public:
-  static constexpr double kWidth = 6e-3;  ///< of a block, unless a cell is wider [m]
+  static constexpr double kWidth = 6e-3;        ///< of a block, unless a cell is wider [m]
   static constexpr std::size_t kBlocks = 4096;  ///< at most, with and without skin
 
   /// @param most blocks with skin.
@@ -31,8 +31,8 @@ class FeltCells {
     double pressure = 0.0;    ///< mean p* over the maximum
   };
   const std::vector<Cell>& cells() const { return cells_; }
-  int rows() const { return rows_; }      ///< of blocks
-  int cols() const { return cols_; }      ///< of blocks
+  int rows() const { return rows_; }       ///< of blocks
+  int cols() const { return cols_; }       ///< of blocks
   double pitch() const { return pitch_; }  ///< of the blocks [mm]
 
  private:

@@ -30,10 +30,7 @@ struct FeltLoss<Real>::Impl {
   using Vector = typename RenderLack<Real>::Vector;
   using Pair = FeltPair<Real>;
 
-  /// One skin.
   struct Skin {
-    std::vector<Pair> pairs, slopes;  // cells × sources
-    std::vector<Pair> felt, pull;     // v of (W2) in each cell, and ∂loss/∂v
     Vector percept;
     Real log_energy = 0, kept = 0;  // of this loop, and of the one whose loudness is kept
   };
@@ -46,34 +43,40 @@ struct FeltLoss<Real>::Impl {
         quiet(static_cast<Real>(w.quiet)),
         lack(most_cells),
         skin(skins) {
-    for (Skin& s : skin) {
-      s.pairs.resize(most_cells * sources);
-      if (with_slopes) s.slopes.resize(s.pairs.size());
-      s.felt.resize(most_cells);
-      s.pull.resize(most_cells);
-      s.percept.setZero(static_cast<Eigen::Index>(most_cells));
-    }
-    for (Vector* v : {&energy, &pull, &energy_pull})
+    const std::size_t rows = most_cells * skins;
+    pairs.resize(rows * sources);
+    if (with_slopes) slopes.resize(pairs.size());
+    for (auto* list : {&felt, &pull, &turned}) list->resize(rows);
+    for (Skin& s : skin) s.percept.setZero(static_cast<Eigen::Index>(most_cells));
+    for (Vector* v : {&energy, &by_root, &by_energy})
       v->setZero(static_cast<Eigen::Index>(most_cells));
     sums.resize(sources);
     line.resize(sources);
-    turned.resize(most_cells);
     places.reserve(sources);
+    turns.reserve(sources);
     cells.reserve(most_cells);
   }
 
-  Real evaluate(Skin& s);
+  /// Rows of felt, pull and pairs: cell by cell, skin by skin.
+  std::size_t rows() const { return cells.size() * skin.size(); }
+  std::size_t row(Eigen::Index cell, std::size_t s) const {
+    return static_cast<std::size_t>(cell) * skin.size() + s;
+  }
+  Real evaluate(std::size_t s);
 
   FeltKernels<Real> run = kernels<Real>();
   Real fine, energy_share, loudness, quiet;
   RenderLack<Real> lack;
   std::vector<FeltCells::Cell> cells;
   std::vector<FeltSource<Real>> places;
+  std::vector<FeltTurn<Real>> turns;
   std::vector<Skin> skin;
-  std::vector<Pair> sums;            // of each source
-  std::vector<Pair> turned;          // of each cell
-  std::vector<Real> line;            // of one cell
-  Vector energy, pull, energy_pull;  // e in each cell, ∂loss/∂√e, ∂loss/∂e
+  std::vector<Pair> pairs, slopes;    // rows × sources
+  std::vector<Pair> felt, pull;       // of each row: v of (W1), and ∂loss/∂v …
+  std::vector<Pair> turned;           // … turned by a quarter of each harmonic
+  std::vector<Pair> sums;             // of each source
+  std::vector<Real> line;             // of one row
+  Vector energy, by_root, by_energy;  // e in each cell, ∂loss/∂√e, ∂loss/∂e
 };
 
 template <class Real>
@@ -98,25 +101,33 @@ void FeltLoss<Real>::set_sources(const FeltSkins<Real>& skins,
                                  std::span<const FeltSource<Real>> sources) {
   Impl& d = *impl_;
   d.places.assign(sources.begin(), sources.end());
-  for (std::size_t s = 0; s < d.skin.size(); ++s) {
-    typename Impl::Skin& to = d.skin[s];
-    for (std::size_t x = 0; x < d.cells.size(); ++x) {
-      const std::size_t first = x * sources.size();
-      d.run.fill(skins[s], static_cast<Real>(d.cells[x].x), static_cast<Real>(d.cells[x].y),
-                 sources.data(), sources.size(), &to.pairs[first],
-                 to.slopes.empty() ? nullptr : &to.slopes[first]);
+  d.turns.resize(sources.size());
+  constexpr std::size_t kImaginary = kFeltParts / 2;
+  for (std::size_t j = 0; j < sources.size(); ++j) {
+    for (std::size_t n = 0; n < kImaginary; ++n) {
+      FeltTurn<Real>& turn = d.turns[j];
+      turn.straight[n] = turn.straight[n + kImaginary] = sources[j].spectrum[n];
+      turn.crossed[n + kImaginary] = sources[j].spectrum[n + kImaginary];
+      turn.crossed[n] = -turn.crossed[n + kImaginary];
     }
+  }
+  for (std::size_t x = 0; x < d.cells.size(); ++x) {
+    const std::size_t first = x * d.skin.size() * sources.size();
+    d.run.fill(skins, static_cast<Real>(d.cells[x].x), static_cast<Real>(d.cells[x].y), sources,
+               d.turns.data(), &d.pairs[first], d.slopes.empty() ? nullptr : &d.slopes[first]);
   }
 }
 
-/// Returns the loss of one skin from its `felt`, and sets its `pull`.
+/// Returns the loss of one skin from what is felt in its rows, and sets their pull.
 template <class Real>
-Real FeltLoss<Real>::Impl::evaluate(Skin& s) {
+Real FeltLoss<Real>::Impl::evaluate(std::size_t number) {
+  Skin& s = skin[number];
   const auto n = static_cast<Eigen::Index>(cells.size());
-  auto e = energy.head(n), root = s.percept.head(n);
+  auto e = energy.head(n), root = s.percept.head(n), d_root = by_root.head(n),
+       d_energy = by_energy.head(n);
   for (Eigen::Index x = 0; x < n; ++x) {
     e[x] = 0;
-    for (const Real part : s.felt[static_cast<std::size_t>(x)].part) e[x] += part * part;
+    for (const Real part : felt[row(x, number)].part) e[x] += part * part;
   }
   const Real whole = lack.area().dot(e);
   const auto least = static_cast<Real>(kLeastPercept * kLeastPercept);
@@ -125,16 +136,15 @@ Real FeltLoss<Real>::Impl::evaluate(Skin& s) {
   const Real louder = (s.log_energy - s.kept) / 2;
   const Real missing = std::max(-louder - static_cast<Real>(FeltWeights::kSlack), Real(0));
   const Real wanted = loudness + 2 * quiet * missing;
-  Real value = lack.of(root, fine, pull.head(n)) - loudness * louder + quiet * missing * missing;
-  energy_pull.head(n).setZero();
-  if (energy_share > 0) value += energy_share * lack.of(e, Real(0), energy_pull.head(n));
-  const Real by_whole = least * (pull.head(n).array() / root.array()).sum() - wanted / whole;
+  Real value = lack.of(root, fine, d_root) - loudness * louder + quiet * missing * missing;
+  d_energy.setZero();
+  if (energy_share > 0) value += energy_share * lack.of(e, Real(0), d_energy);
+  const Real by_whole = least * (d_root.array() / root.array()).sum() - wanted / whole;
   for (Eigen::Index x = 0; x < n; ++x) {
     const Real factor =
-        pull[x] / root[x] + 2 * energy_share * energy_pull[x] + by_whole * lack.area()[x];
-    const auto cell = static_cast<std::size_t>(x);
-    for (std::size_t i = 0; i < kFeltParts; ++i)
-      s.pull[cell].part[i] = factor * s.felt[cell].part[i];
+        d_root[x] / root[x] + 2 * energy_share * d_energy[x] + by_whole * lack.area()[x];
+    const std::size_t at = row(x, number);
+    for (std::size_t i = 0; i < kFeltParts; ++i) pull[at].part[i] = factor * felt[at].part[i];
   }
   return value;
 }
@@ -144,13 +154,11 @@ Real FeltLoss<Real>::evaluate(std::span<const Real> amplitude, std::span<Real> g
   Impl& d = *impl_;
   const std::size_t sources = d.places.size();
   const Real share = Real(1) / static_cast<Real>(d.skin.size());
+  d.run.forward(d.pairs.data(), d.rows(), sources, amplitude.data(), d.felt.data());
   Real loss = 0;
+  for (std::size_t s = 0; s < d.skin.size(); ++s) loss += share * d.evaluate(s);
   for (FeltPair<Real>& sum : d.sums) sum.part.fill(0);
-  for (typename Impl::Skin& s : d.skin) {
-    d.run.forward(s.pairs.data(), d.cells.size(), sources, amplitude.data(), s.felt.data());
-    loss += share * d.evaluate(s);
-    d.run.backward(s.pairs.data(), d.cells.size(), sources, s.pull.data(), d.sums.data());
-  }
+  d.run.backward(d.pairs.data(), d.rows(), sources, d.pull.data(), d.sums.data());
   for (std::size_t j = 0; j < sources; ++j) {
     const auto& part = d.sums[j].part;
     gradient[j] = share * std::accumulate(part.begin(), part.end(), Real(0));
@@ -171,17 +179,16 @@ void FeltLoss<Real>::slide(std::span<const Real> amplitude, std::span<Real> grad
   const Real share = Real(1) / static_cast<Real>(d.skin.size());
   std::fill(gradient_x.begin(), gradient_x.end(), Real(0));
   std::fill(gradient_y.begin(), gradient_y.end(), Real(0));
-  for (const typename Impl::Skin& s : d.skin) {
-    for (std::size_t x = 0; x < d.cells.size(); ++x) {
-      d.run.slide(&s.slopes[x * sources], sources, s.pull[x], d.line.data());
-      const auto cx = static_cast<Real>(d.cells[x].x), cy = static_cast<Real>(d.cells[x].y);
-      for (std::size_t j = 0; j < sources; ++j) {
-        const Real dx = d.places[j].x - cx, dy = d.places[j].y - cy;
-        const Real distance = std::max(std::sqrt(dx * dx + dy * dy), Real(kLeastDistance));
-        const Real each = share * d.line[j] * amplitude[j] / distance;
-        gradient_x[j] += each * dx;
-        gradient_y[j] += each * dy;
-      }
+  for (std::size_t row = 0; row < d.rows(); ++row) {
+    d.run.slide(&d.slopes[row * sources], sources, d.pull[row], d.line.data());
+    const FeltCells::Cell& cell = d.cells[row / d.skin.size()];
+    const auto cx = static_cast<Real>(cell.x), cy = static_cast<Real>(cell.y);
+    for (std::size_t j = 0; j < sources; ++j) {
+      const Real dx = d.places[j].x - cx, dy = d.places[j].y - cy;
+      const Real distance = std::max(std::sqrt(dx * dx + dy * dy), Real(kLeastDistance));
+      const Real each = share * d.line[j] * amplitude[j] / distance;
+      gradient_x[j] += each * dx;
+      gradient_y[j] += each * dy;
     }
   }
 }
@@ -191,16 +198,14 @@ void FeltLoss<Real>::turn(std::span<const Real> amplitude, int first, std::span<
   Impl& d = *impl_;
   constexpr std::size_t kImaginary = kFeltParts / 2;
   for (FeltPair<Real>& sum : d.sums) sum.part.fill(0);
-  for (typename Impl::Skin& s : d.skin) {
-    // a source that acts later turns its harmonic n by −i n
-    for (std::size_t x = 0; x < d.cells.size(); ++x) {
-      for (std::size_t n = 0; n < kImaginary; ++n) {
-        d.turned[x].part[n] = -s.pull[x].part[n + kImaginary];
-        d.turned[x].part[n + kImaginary] = s.pull[x].part[n];
-      }
+  // a source that acts later turns its harmonic n by −i n
+  for (std::size_t row = 0; row < d.rows(); ++row) {
+    for (std::size_t n = 0; n < kImaginary; ++n) {
+      d.turned[row].part[n] = -d.pull[row].part[n + kImaginary];
+      d.turned[row].part[n + kImaginary] = d.pull[row].part[n];
     }
-    d.run.backward(s.pairs.data(), d.cells.size(), d.places.size(), d.turned.data(), d.sums.data());
   }
+  d.run.backward(d.pairs.data(), d.rows(), d.places.size(), d.turned.data(), d.sums.data());
   const Real share = 2 * static_cast<Real>(kPi) / static_cast<Real>(d.skin.size());
   for (std::size_t j = 0; j < d.places.size(); ++j) {
     gradient[j] = 0;

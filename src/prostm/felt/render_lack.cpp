@@ -6,8 +6,8 @@
 namespace prostm {
 namespace {
 
-constexpr double kBlur = 8.5;   // of S_8.5 [mm]
-constexpr double kReach = 4.0;  // standard deviations, (Q5)
+constexpr double kBlur = 8.5;            // of S_8.5 [mm]
+constexpr double kReach = 4.0;           // standard deviations, (Q5)
 constexpr double kLeastVariance = 0.05;  // over the mean square: an even target has none
 
 }  // namespace
@@ -37,7 +37,8 @@ RenderLack<Real>::RenderLack(std::size_t most_cells) {
   place_.reserve(most_cells);
   // the largest raster with its margin is a long line of blocks
   constexpr auto kBlocks = static_cast<Eigen::Index>(FeltCells::kBlocks);
-  for (Vector* v : {&plane_, &down_, &across_}) v->setZero((kBlocks + 2 * kMostReach) * (2 * kMostReach + 1));
+  for (Vector* v : {&plane_, &down_, &across_})
+    v->setZero((kBlocks + 2 * kMostReach) * (2 * kMostReach + 1));
 }
 
 template <class Real>

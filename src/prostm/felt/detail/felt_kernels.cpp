@@ -5,46 +5,46 @@
 namespace prostm {
 namespace {
 
-/// The product of a complex value with a spectrum, harmonic by harmonic.
+/// The product of a table's values with a spectrum.
 template <class Real>
-void multiply(const std::array<Real, kFeltParts>& value, const std::array<Real, kFeltParts>& by,
+void multiply(const std::array<Real, kFeltParts>& value, const FeltTurn<Real>& by,
               std::array<Real, kFeltParts>& out) {
-  constexpr std::size_t kImaginary = kFeltParts / 2;
-  for (std::size_t n = 0; n < kImaginary; ++n) {
-    out[n] = value[n] * by[n] - value[n + kImaginary] * by[n + kImaginary];
-    out[n + kImaginary] = value[n] * by[n + kImaginary] + value[n + kImaginary] * by[n];
-  }
+  for (std::size_t i = 0; i < kFeltParts; ++i)
+    out[i] = value[i] * by.straight[i] + value[(i + kFeltParts / 2) % kFeltParts] * by.crossed[i];
 }
 
 template <class Real>
-void fill(const FocusResponse<Real>& response, Real x, Real y, const FeltSource<Real>* sources,
-          std::size_t count, FeltPair<Real>* pairs, FeltPair<Real>* slopes) {
-  for (std::size_t j = 0; j < count; ++j) {
-    const auto row = response.at(std::hypot(x - sources[j].x, y - sources[j].y));
-    multiply(row.value, sources[j].spectrum, pairs[j].part);
-    if (slopes != nullptr) multiply(row.slope, sources[j].spectrum, slopes[j].part);
-  }
-}
-
-template <class Real>
-void forward(const FeltPair<Real>* pairs, std::size_t cells, std::size_t sources,
-             const Real* pressure, FeltPair<Real>* out) {
-  for (std::size_t x = 0; x < cells; ++x) {
-    out[x].part.fill(0);
-    for (std::size_t j = 0; j < sources; ++j) {
-      for (std::size_t i = 0; i < kFeltParts; ++i)
-        out[x].part[i] += pairs[x * sources + j].part[i] * pressure[j];
+void fill(std::span<const FocusResponse<Real>> skins, Real x, Real y,
+          std::span<const FeltSource<Real>> sources, const FeltTurn<Real>* turns,
+          FeltPair<Real>* pairs, FeltPair<Real>* slopes) {
+  for (std::size_t s = 0; s < skins.size(); ++s) {
+    for (std::size_t j = 0; j < sources.size(); ++j) {
+      const auto row = skins[s].at(std::hypot(x - sources[j].x, y - sources[j].y));
+      multiply(row.value, turns[j], pairs[s * sources.size() + j].part);
+      if (slopes != nullptr) multiply(row.slope, turns[j], slopes[s * sources.size() + j].part);
     }
   }
 }
 
 template <class Real>
-void backward(const FeltPair<Real>* pairs, std::size_t cells, std::size_t sources,
-              const FeltPair<Real>* pull, FeltPair<Real>* sum) {
-  for (std::size_t x = 0; x < cells; ++x) {
+void forward(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
+             const Real* amplitude, FeltPair<Real>* out) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    out[row].part.fill(0);
     for (std::size_t j = 0; j < sources; ++j) {
       for (std::size_t i = 0; i < kFeltParts; ++i)
-        sum[j].part[i] += pairs[x * sources + j].part[i] * pull[x].part[i];
+        out[row].part[i] += pairs[row * sources + j].part[i] * amplitude[j];
+    }
+  }
+}
+
+template <class Real>
+void backward(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
+              const FeltPair<Real>* pull, FeltPair<Real>* sum) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t j = 0; j < sources; ++j) {
+      for (std::size_t i = 0; i < kFeltParts; ++i)
+        sum[j].part[i] += pairs[row * sources + j].part[i] * pull[row].part[i];
     }
   }
 }

@@ -15,19 +15,28 @@ struct alignas(64) FeltPair {
   std::array<Real, kFeltParts> part;
 };
 
-/// Functions for one skin. Pairs are cell by cell: [cell · sources + source].
+/// The spectrum of a source as it multiplies a table's row: the real parts twice, and the imaginary
+/// parts, first with a minus sign.
+template <class Real>
+struct alignas(64) FeltTurn {
+  std::array<Real, kFeltParts> straight, crossed;
+};
+
+/// Pairs are row by row, [row · sources + source]: a row is a cell on a skin.
 template <class Real>
 struct FeltKernels {
-  /// Fills the pairs of one cell at (x, y); and their slopes, if that is not null.
-  void (*fill)(const FocusResponse<Real>& response, Real x, Real y, const FeltSource<Real>* sources,
-               std::size_t count, FeltPair<Real>* pairs, FeltPair<Real>* slopes);
-  /// out[cell] = Σ_source pair · amplitude.
-  void (*forward)(const FeltPair<Real>* pairs, std::size_t cells, std::size_t sources,
+  /// Fills a row for each skin of the cell at (x, y); and their slopes, if that is not null.
+  /// @param turns of the sources.
+  void (*fill)(std::span<const FocusResponse<Real>> skins, Real x, Real y,
+               std::span<const FeltSource<Real>> sources, const FeltTurn<Real>* turns,
+               FeltPair<Real>* pairs, FeltPair<Real>* slopes);
+  /// out[row] = Σ_source pair · amplitude.
+  void (*forward)(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
                   const Real* amplitude, FeltPair<Real>* out);
-  /// sum[source] += Σ_cell pair · pull[cell], part by part.
-  void (*backward)(const FeltPair<Real>* pairs, std::size_t cells, std::size_t sources,
+  /// sum[source] += Σ_row pair · pull[row], part by part.
+  void (*backward)(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
                    const FeltPair<Real>* pull, FeltPair<Real>* sum);
-  /// out[source] = Σ_part slope · pull, for one cell.
+  /// out[source] = Σ_part slope · pull, for one row.
   void (*slide)(const FeltPair<Real>* slopes, std::size_t sources, const FeltPair<Real>& pull,
                 Real* out);
 };

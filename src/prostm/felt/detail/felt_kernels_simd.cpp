@@ -11,7 +11,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cmath>
 
 // All parts of a pair are one to four vectors, and stay in registers while sources go by.
 HWY_BEFORE_NAMESPACE();
@@ -22,101 +21,159 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, kFeltParts>;
 using V = hn::Vec<D>;
-using DH = hn::CappedTag<float, kFeltParts / 2>;
-using H = hn::Vec<DH>;
+using Response = FocusResponse<float>;
 using Pair = FeltPair<float>;
 using Source = FeltSource<float>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
 constexpr std::size_t kVectors = kFeltParts / kLanes;
-constexpr std::size_t kHalf = kFeltParts / 2;
-constexpr std::size_t kHalfLanes = hn::MaxLanes(DH());
+// sources whose places in the table are found at once; rows of pairs that are added up at once
+constexpr std::size_t kChunk = kFeltParts, kRows = kVectors == 1 ? 4 : 2;
 
-/// Writes the product of a·values + … of two rows of the table with a source's spectrum.
-template <class F>
-HWY_INLINE void Blend(const F& blended, const Source& source, Pair& out) {
-  const DH d;
-  for (std::size_t n = 0; n < kHalf; n += kHalfLanes) {
-    const H re = blended(n), im = blended(n + kHalf);
-    const H by_re = hn::LoadU(d, source.spectrum.data() + n);
-    const H by_im = hn::LoadU(d, source.spectrum.data() + n + kHalf);
-    hn::StoreU(hn::NegMulAdd(im, by_im, hn::Mul(re, by_re)), d, out.part.data() + n);
-    hn::StoreU(hn::MulAdd(re, by_im, hn::Mul(im, by_re)), d, out.part.data() + n + kHalf);
+HWY_INLINE V Load(const std::array<float, kFeltParts>& parts, std::size_t v) {
+  return hn::Load(D(), parts.data() + v * kLanes);
+}
+
+/// Where sources are in a table: rows low and low + 1, and what each entry of these counts for the
+/// value and for its slope.
+struct alignas(64) Places {
+  std::array<float, kChunk> distance, fraction;
+  std::array<std::array<float, kChunk>, 4> value, slope;
+  std::array<std::size_t, kChunk> low;
+
+  void Find(float x, float y, const Source* sources, std::size_t count) {
+    constexpr auto kPerStep = static_cast<float>(1.0 / Response::kStep);
+    constexpr auto kLast = static_cast<float>(Response::kDistances - 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const float dx = x - sources[i].x, dy = y - sources[i].y;
+      distance[i] = dx * dx + dy * dy;
+    }
+    const D d;
+    for (std::size_t i = 0; i < kChunk; i += kLanes) {
+      const V away = hn::Mul(hn::Sqrt(hn::Load(d, distance.data() + i)), hn::Set(d, kPerStep));
+      const V place = hn::Min(away, hn::Set(d, kLast));
+      const V below = hn::Min(hn::Floor(place), hn::Set(d, kLast - 1.0F));
+      hn::Store(below, d, distance.data() + i);
+      const V t = hn::Sub(place, below), u = hn::Sub(hn::Set(d, 1.0F), t);
+      const V tu = hn::Mul(t, u), tt = hn::Mul(t, t);
+      const V more = hn::Mul(tt, hn::NegMulAdd(hn::Set(d, 2.0F), t, hn::Set(d, 3.0F)));
+      const V rise = hn::Mul(tu, hn::Set(d, 6.0F * kPerStep));
+      const V three = hn::Mul(hn::Set(d, 3.0F), t);
+      const auto store = [&](V what, std::array<float, kChunk>& to)
+                             HWY_ATTR { hn::Store(what, d, to.data() + i); };
+      store(hn::Sub(hn::Set(d, 1.0F), more), value[0]);
+      store(hn::Mul(tu, u), value[1]);
+      store(more, value[2]);
+      store(hn::Neg(hn::Mul(tu, t)), value[3]);
+      store(hn::Neg(rise), slope[0]);
+      const V scaled = hn::Set(d, kPerStep);
+      store(hn::Mul(scaled, hn::Mul(u, hn::Sub(hn::Set(d, 1.0F), three))), slope[1]);
+      store(rise, slope[2]);
+      store(hn::Mul(scaled, hn::Mul(t, hn::Sub(three, hn::Set(d, 2.0F)))), slope[3]);
+    }
+    for (std::size_t i = 0; i < count; ++i) low[i] = static_cast<std::size_t>(distance[i]);
+  }
+};
+
+/// Returns imaginary parts where real ones are in part v of a row, and the other way round.
+template <std::size_t kCount>
+HWY_INLINE V Crossed(const V (&row)[kCount], std::size_t v) {
+  if constexpr (kCount == 1) {
+    return ConcatLowerUpper(D(), row[v],
+                            row[v]);  // found by its arguments: not all targets have it
+  } else {
+    return row[(v + kCount / 2) % kCount];
   }
 }
 
-void Fill(const FocusResponse<float>& response, float x, float y, const Source* sources,
-          std::size_t count, Pair* pairs, Pair* slopes) {
-  const DH d;
-  constexpr auto kStep = static_cast<float>(FocusResponse<float>::kStep);
-  constexpr auto kLast = static_cast<float>(FocusResponse<float>::kDistances - 1);
-  for (std::size_t j = 0; j < count; ++j) {
-    const float dx = x - sources[j].x, dy = y - sources[j].y;
-    const float place = std::min(std::sqrt(dx * dx + dy * dy) / kStep, kLast);
-    const auto low = std::min(static_cast<std::size_t>(place), response.row.size() - 2);
-    const auto &a = response.row[low], &b = response.row[low + 1];
-    const float t = place - static_cast<float>(low), u = 1.0F - t;
-    const auto value = [&](std::size_t n) HWY_ATTR {
-      H sum = hn::Mul(hn::Set(d, (1.0F + 2.0F * t) * u * u), hn::Load(d, a.value.data() + n));
-      sum = hn::MulAdd(hn::Set(d, t * u * u), hn::Load(d, a.slope.data() + n), sum);
-      sum = hn::MulAdd(hn::Set(d, t * t * (3.0F - 2.0F * t)), hn::Load(d, b.value.data() + n), sum);
-      return hn::MulAdd(hn::Set(d, -t * t * u), hn::Load(d, b.slope.data() + n), sum);
-    };
-    Blend(value, sources[j], pairs[j]);
-    if (slopes == nullptr) continue;
-    const auto slope = [&](std::size_t n) HWY_ATTR {
-      const H rise = hn::Sub(hn::Load(d, b.value.data() + n), hn::Load(d, a.value.data() + n));
-      H sum = hn::Mul(hn::Set(d, 6.0F * t * u / kStep), rise);
-      sum = hn::MulAdd(hn::Set(d, u * (1.0F - 3.0F * t) / kStep), hn::Load(d, a.slope.data() + n),
-                       sum);
-      return hn::MulAdd(hn::Set(d, t * (3.0F * t - 2.0F) / kStep), hn::Load(d, b.slope.data() + n),
-                        sum);
-    };
-    Blend(slope, sources[j], slopes[j]);
+/// Writes the product of a sum of four rows of the table and a source's spectrum.
+HWY_INLINE void Blend(const Response& response, std::size_t low,
+                      const std::array<std::array<float, kChunk>, 4>& by, std::size_t i,
+                      const FeltTurn<float>& turn, Pair& out) {
+  const D d;
+  const auto &a = response.row[low], &b = response.row[low + 1];
+  V sum[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    sum[v] = hn::Mul(hn::Set(d, by[0][i]), Load(a.value, v));
+    sum[v] = hn::MulAdd(hn::Set(d, by[1][i]), Load(a.slope, v), sum[v]);
+    sum[v] = hn::MulAdd(hn::Set(d, by[2][i]), Load(b.value, v), sum[v]);
+    sum[v] = hn::MulAdd(hn::Set(d, by[3][i]), Load(b.slope, v), sum[v]);
+  }
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    const V product =
+        hn::MulAdd(Crossed(sum, v), Load(turn.crossed, v), hn::Mul(sum[v], Load(turn.straight, v)));
+    hn::Store(product, d, out.part.data() + v * kLanes);
   }
 }
 
-void Forward(const Pair* pairs, std::size_t cells, std::size_t sources, const float* pressure,
+void Fill(std::span<const Response> skins, float x, float y, std::span<const Source> sources,
+          const FeltTurn<float>* turns, Pair* pairs, Pair* slopes) {
+  Places places = {};
+  const std::size_t all = sources.size();
+  for (std::size_t first = 0; first < all; first += kChunk) {
+    const std::size_t count = std::min(kChunk, all - first);
+    places.Find(x, y, &sources[first], count);
+    for (std::size_t s = 0; s < skins.size(); ++s) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t j = first + i, at = s * all + j;
+        Blend(skins[s], places.low[i], places.value, i, turns[j], pairs[at]);
+        if (slopes != nullptr)
+          Blend(skins[s], places.low[i], places.slope, i, turns[j], slopes[at]);
+      }
+    }
+  }
+}
+
+void Forward(const Pair* pairs, std::size_t rows, std::size_t sources, const float* amplitude,
              Pair* out) {
   const D d;
-  for (std::size_t x = 0; x < cells; ++x) {
-    const Pair* row = pairs + x * sources;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Pair* pair = pairs + row * sources;
     // two sums, so that one need not wait for the other
     V even[kVectors], odd[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) even[v] = odd[v] = hn::Zero(d);
     std::size_t j = 0;
     for (; j + 2 <= sources; j += 2) {
-      const V p = hn::Set(d, pressure[j]), q = hn::Set(d, pressure[j + 1]);
+      const V p = hn::Set(d, amplitude[j]), q = hn::Set(d, amplitude[j + 1]);
       for (std::size_t v = 0; v < kVectors; ++v) {
-        even[v] = hn::MulAdd(p, hn::Load(d, row[j].part.data() + v * kLanes), even[v]);
-        odd[v] = hn::MulAdd(q, hn::Load(d, row[j + 1].part.data() + v * kLanes), odd[v]);
+        even[v] = hn::MulAdd(p, Load(pair[j].part, v), even[v]);
+        odd[v] = hn::MulAdd(q, Load(pair[j + 1].part, v), odd[v]);
       }
     }
     for (; j < sources; ++j) {
-      const V p = hn::Set(d, pressure[j]);
+      const V p = hn::Set(d, amplitude[j]);
       for (std::size_t v = 0; v < kVectors; ++v)
-        even[v] = hn::MulAdd(p, hn::Load(d, row[j].part.data() + v * kLanes), even[v]);
+        even[v] = hn::MulAdd(p, Load(pair[j].part, v), even[v]);
     }
     for (std::size_t v = 0; v < kVectors; ++v)
-      hn::Store(hn::Add(even[v], odd[v]), d, out[x].part.data() + v * kLanes);
+      hn::Store(hn::Add(even[v], odd[v]), d, out[row].part.data() + v * kLanes);
   }
 }
 
-void Backward(const Pair* pairs, std::size_t cells, std::size_t sources, const Pair* pull,
-              Pair* sum) {
+/// So many rows at once: each sum is loaded and stored once for all of them.
+template <std::size_t kCount>
+HWY_INLINE void AddRows(const Pair* pairs, std::size_t sources, const Pair* pull, Pair* sum) {
   const D d;
-  for (std::size_t x = 0; x < cells; ++x) {
-    V by[kVectors];
-    for (std::size_t v = 0; v < kVectors; ++v)
-      by[v] = hn::Load(d, pull[x].part.data() + v * kLanes);
-    for (std::size_t j = 0; j < sources; ++j) {
-      for (std::size_t v = 0; v < kVectors; ++v) {
-        float* to = sum[j].part.data() + v * kLanes;
-        const V pair = hn::Load(d, pairs[x * sources + j].part.data() + v * kLanes);
-        hn::Store(hn::MulAdd(by[v], pair, hn::Load(d, to)), d, to);
-      }
+  V by[kCount][kVectors];
+  for (std::size_t r = 0; r < kCount; ++r) {
+    for (std::size_t v = 0; v < kVectors; ++v) by[r][v] = Load(pull[r].part, v);
+  }
+  for (std::size_t j = 0; j < sources; ++j) {
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      V to = Load(sum[j].part, v);
+      for (std::size_t r = 0; r < kCount; ++r)
+        to = hn::MulAdd(by[r][v], Load(pairs[r * sources + j].part, v), to);
+      hn::Store(to, d, sum[j].part.data() + v * kLanes);
     }
   }
+}
+
+void Backward(const Pair* pairs, std::size_t rows, std::size_t sources, const Pair* pull,
+              Pair* sum) {
+  std::size_t row = 0;
+  for (; row + kRows <= rows; row += kRows)
+    AddRows<kRows>(pairs + row * sources, sources, pull + row, sum);
+  for (; row < rows; ++row) AddRows<1>(pairs + row * sources, sources, pull + row, sum);
 }
 
 void Slide(const Pair* slopes, std::size_t sources, const Pair& pull, float* out) {
