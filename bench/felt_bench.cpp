@@ -90,7 +90,8 @@ struct Evaluated {
   }
   double evaluate() {
     StageTimer timer;
-    loss.evaluate(pressure, gradient);
+    loss.evaluate(pressure);
+    loss.gradient(gradient);
     return 1e3 * timer.lap();
   }
   FeltLoss<Real> loss;

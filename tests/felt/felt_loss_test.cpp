@@ -59,9 +59,8 @@ struct Judge {
     loss.set_target(cells_of(pattern));
   }
   double operator()(const Sources<double>& sources) {
-    std::vector<double> gradient(sources.all.size());
     loss.set_sources(tables, sources.all);
-    return loss.evaluate(sources.amplitude, gradient);
+    return loss.evaluate(sources.amplitude);
   }
   FeltSkins<double> tables = skins<double>();
   FeltLoss<double> loss;
@@ -72,10 +71,11 @@ TEST(FeltLoss, HasTheGradientOfItsValues) {
     Judge judge(pattern);
     Sources<double> sources(7, kSources);
     judge(sources);
-    judge.loss.keep_loudness();
+    judge.loss.keep_loudness(sources.amplitude);
     for (double& a : sources.amplitude) a *= 0.6;  // quieter than what is kept
     std::vector<double> by_amplitude(kSources), by_x(kSources), by_y(kSources), by_time(kSources);
-    judge.loss.evaluate(sources.amplitude, by_amplitude);
+    judge.loss.evaluate(sources.amplitude);
+    judge.loss.gradient(by_amplitude);
     judge.loss.slide(sources.amplitude, by_x, by_y);
     judge.loss.turn(sources.amplitude, 2, by_time);
     const auto expect = [&](double gradient, double step, const auto& change) {
@@ -117,9 +117,11 @@ TEST(FeltLoss, IsTheSameInSinglePrecision) {
       short_loss.set_sources(short_tables, short_sources.all);
       std::vector<double> gradient(count), x(count), y(count);
       std::vector<float> short_gradient(count), short_x(count), short_y(count);
-      const double value = loss.evaluate(sources.amplitude, gradient);
-      EXPECT_NEAR(static_cast<double>(short_loss.evaluate(short_sources.amplitude, short_gradient)),
-                  value, 1e-4 * std::abs(value));
+      const double value = loss.evaluate(sources.amplitude);
+      EXPECT_NEAR(static_cast<double>(short_loss.evaluate(short_sources.amplitude)), value,
+                  1e-4 * std::abs(value));
+      loss.gradient(gradient);
+      short_loss.gradient(short_gradient);
       loss.slide(sources.amplitude, x, y);
       short_loss.slide(short_sources.amplitude, short_x, short_y);
       const auto expect_near = [](const std::vector<float>& a, const std::vector<double>& b) {
@@ -144,11 +146,10 @@ TEST(FeltLoss, CountsALackAndNotTheUnit) {
   lack.set_target(cells_of(fields::Pattern::FourPlumes));
   Sources<double> sources(3, kSources);
   lack.set_sources(judge.tables, sources.all);
-  std::vector<double> gradient(kSources);
-  const double value = lack.evaluate(sources.amplitude, gradient), loudness = lack.loudness();
+  const double value = lack.evaluate(sources.amplitude), loudness = lack.loudness();
   EXPECT_GT(value, 0.0);
   for (double& a : sources.amplitude) a *= 1000.0;
-  EXPECT_NEAR(lack.evaluate(sources.amplitude, gradient), value, 1e-12);
+  EXPECT_NEAR(lack.evaluate(sources.amplitude), value, 1e-12);
   EXPECT_NEAR(lack.loudness(), 1000.0 * loudness, 1e-9 * loudness);
 }
 
@@ -161,8 +162,9 @@ TEST(FeltLoss, AllocatesNothing) {
   const test::HeapGuard guard;
   loss.set_target(small);
   loss.set_sources(tables, sources.all);
-  loss.evaluate(sources.amplitude, gradient);
-  loss.keep_loudness();
+  loss.keep_loudness(sources.amplitude);
+  loss.evaluate(sources.amplitude);
+  loss.gradient(gradient);
   loss.slide(sources.amplitude, x, y);
   loss.turn(sources.amplitude, 2, x);
   EXPECT_EQ(guard.allocations(), 0U);

@@ -31,6 +31,7 @@ TEST(QuasiNewton, FindsTheMinimumOfAQuadraticForm) {
       }
       return sum;
     };
+    descent.begin(cost, x);
     EXPECT_LE(descent.run(cost, 0.1F, 80, x), 80);
     for (std::size_t i = 0; i < n; ++i) ASSERT_NEAR(x[i], middle[i], 1e-2F);
   }
@@ -59,6 +60,7 @@ TEST(QuasiNewton, NeverEndsHigherAndKeepsItsCount) {
     const float before = cost(x, gradient);
     calls = 0;
     const int most = 1 + random.below(12);
+    descent.begin(cost, x);
     const int used = descent.run(cost, 0.5F, most, x);
     ASSERT_EQ(used, calls);
     ASSERT_LE(used, most);
@@ -75,6 +77,7 @@ TEST(QuasiNewton, StaysWhereNothingPullsAndAllocatesNothing) {
     return 3.0F;
   };
   const test::HeapGuard guard;
+  EXPECT_EQ(descent.begin(flat, x), 3.0F);
   EXPECT_EQ(descent.run(flat, 0.5F, 10, x), 1);
   EXPECT_EQ(guard.allocations(), 0U);
   EXPECT_EQ(x, (std::vector<float>{1.0F, 2.0F}));

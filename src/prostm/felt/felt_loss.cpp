@@ -62,7 +62,8 @@ struct FeltLoss<Real>::Impl {
   std::size_t row(Eigen::Index cell, std::size_t s) const {
     return static_cast<std::size_t>(cell) * skin.size() + s;
   }
-  Real evaluate(std::size_t s);
+  Real evaluate(std::span<const Real> amplitude, bool keep);
+  Real evaluate(std::size_t s, bool keep);
 
   FeltKernels<Real> run = kernels<Real>();
   Real fine, energy_share, loudness, quiet;
@@ -118,9 +119,10 @@ void FeltLoss<Real>::set_sources(const FeltSkins<Real>& skins,
   }
 }
 
-/// Returns the loss of one skin from what is felt in its rows, and sets their pull.
+/// Returns the loss of one skin from what is felt in its rows, and sets their pull. @param keep
+/// whether its loudness is that to keep from now on.
 template <class Real>
-Real FeltLoss<Real>::Impl::evaluate(std::size_t number) {
+Real FeltLoss<Real>::Impl::evaluate(std::size_t number, bool keep) {
   Skin& s = skin[number];
   const auto n = static_cast<Eigen::Index>(cells.size());
   auto e = energy.head(n), root = s.percept.head(n), d_root = by_root.head(n),
@@ -133,6 +135,7 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number) {
   const auto least = static_cast<Real>(kLeastPercept * kLeastPercept);
   root.array() = (e.array() + least * whole).sqrt();
   s.log_energy = std::log(whole);
+  if (keep) s.kept = s.log_energy;
   const Real louder = (s.log_energy - s.kept) / 2;
   const Real missing = std::max(-louder - static_cast<Real>(FeltWeights::kSlack), Real(0));
   const Real wanted = loudness + 2 * quiet * missing;
@@ -150,25 +153,34 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number) {
 }
 
 template <class Real>
-Real FeltLoss<Real>::evaluate(std::span<const Real> amplitude, std::span<Real> gradient) {
+Real FeltLoss<Real>::Impl::evaluate(std::span<const Real> amplitude, bool keep) {
+  run.forward(pairs.data(), rows(), places.size(), amplitude.data(), felt.data());
+  Real loss = 0;
+  for (std::size_t s = 0; s < skin.size(); ++s) loss += evaluate(s, keep);
+  return loss / static_cast<Real>(skin.size());
+}
+
+template <class Real>
+Real FeltLoss<Real>::evaluate(std::span<const Real> amplitude) {
+  return impl_->evaluate(amplitude, false);
+}
+
+template <class Real>
+Real FeltLoss<Real>::keep_loudness(std::span<const Real> amplitude) {
+  return impl_->evaluate(amplitude, true);
+}
+
+template <class Real>
+void FeltLoss<Real>::gradient(std::span<Real> gradient) {
   Impl& d = *impl_;
   const std::size_t sources = d.places.size();
   const Real share = Real(1) / static_cast<Real>(d.skin.size());
-  d.run.forward(d.pairs.data(), d.rows(), sources, amplitude.data(), d.felt.data());
-  Real loss = 0;
-  for (std::size_t s = 0; s < d.skin.size(); ++s) loss += share * d.evaluate(s);
   for (FeltPair<Real>& sum : d.sums) sum.part.fill(0);
   d.run.backward(d.pairs.data(), d.rows(), sources, d.pull.data(), d.sums.data());
   for (std::size_t j = 0; j < sources; ++j) {
     const auto& part = d.sums[j].part;
     gradient[j] = share * std::accumulate(part.begin(), part.end(), Real(0));
   }
-  return loss;
-}
-
-template <class Real>
-void FeltLoss<Real>::keep_loudness() {
-  for (auto& s : impl_->skin) s.kept = s.log_energy;
 }
 
 template <class Real>

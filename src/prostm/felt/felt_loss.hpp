@@ -51,11 +51,12 @@ class FeltLoss {
   void set_target(const FeltCells& cells);
   /// Takes over the places where pressure acts. @pre as many skins as in the constructor.
   void set_sources(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources);
-  /// Computes the loss (W4), and its gradient with respect to the amplitudes. @param amplitude of
-  /// each source, of either sign; not all 0.
-  Real evaluate(std::span<const Real> amplitude, std::span<Real> gradient);
-  /// Takes the loudness of the last evaluate() on each skin as that to keep.
-  void keep_loudness();
+  /// Computes the loss (W4). @param amplitude of each source, of either sign; not all 0.
+  Real evaluate(std::span<const Real> amplitude);
+  /// Does the same, and takes the loudness of that on each skin as the one to keep.
+  Real keep_loudness(std::span<const Real> amplitude);
+  /// Computes the gradient of the last evaluate() with respect to the amplitudes.
+  void gradient(std::span<Real> gradient);
   /// Computes the gradient of the last evaluate() with respect to the places [1/mm].
   void slide(std::span<const Real> amplitude, std::span<Real> gradient_x,
              std::span<Real> gradient_y);

@@ -73,11 +73,14 @@ bool QuasiNewton::advance(const Cost& cost, float share, int evaluations, int& u
   return false;
 }
 
-int QuasiNewton::run(const Cost& cost, float first_step, int evaluations, std::span<float> x) {
+float QuasiNewton::begin(const Cost& cost, std::span<const float> x) {
   variables_ = static_cast<Eigen::Index>(x.size());
   remembered_ = 0;
   std::copy(x.begin(), x.end(), x_.begin());
-  value_ = evaluate(cost, x_, gradient_);
+  return value_ = evaluate(cost, x_, gradient_);
+}
+
+int QuasiNewton::run(const Cost& cost, float first_step, int evaluations, std::span<float> x) {
   int used = 1;
   do {
     find_direction();

@@ -8,7 +8,7 @@
 
 namespace prostm {
 
-/// Sized once; run() allocates nothing.
+/// Sized once; nothing else allocates.
 class QuasiNewton {
  public:
   /// Returns the cost at x, and writes its gradient.
@@ -16,9 +16,11 @@ class QuasiNewton {
 
   explicit QuasiNewton(std::size_t most_variables);
 
-  /// Lowers the cost from x on, which is left at the lowest place found.
-  /// @param first_step length of the first step [unit of x]. @param evaluations at most, ≥ 1.
-  /// @return the number of evaluations.
+  /// Begins at x. @return the cost there.
+  float begin(const Cost& cost, std::span<const float> x);
+  /// Lowers the cost from there on, and sets x to the lowest place found.
+  /// @param first_step length of the first step [unit of x]. @param evaluations at most, with that
+  /// of begin(), ≥ 1. @return the number of evaluations.
   int run(const Cost& cost, float first_step, int evaluations, std::span<float> x);
 
   float lowest() const { return value_; }  ///< cost at the place found

@@ -118,7 +118,8 @@ FeltPlan felt_plan(const Plan& plan, const TargetField& target, double sigma,
   loss.set_sources(tables(skins, sigma, plan.loop), of.source);
   std::vector<double> by_pressure(of.source.size());
   FeltPlan out;
-  out.lack = loss.evaluate(of.pressure, by_pressure);
+  out.lack = loss.evaluate(of.pressure);
+  loss.gradient(by_pressure);
   for (const FeltCells::Cell& cell : cells.cells()) {
     out.blocks.push_back({target.origin + Vec2(cell.x, cell.y) / kMm, cell.area, cell.pressure});
   }

@@ -124,8 +124,8 @@ float FeltFoci::cost(std::span<const float> parts, std::span<float> gradient) {
   const float output = normalise(parts);
   const auto weight = static_cast<float>(settings_.felt_weight);
   const std::size_t all = 2 * foci_;
-  float value =
-      weight * loss_.evaluate(std::span(unit_).first(all), std::span(by_part_).first(all));
+  float value = weight * loss_.evaluate(std::span(unit_).first(all));
+  loss_.gradient(std::span(by_part_).first(all));
   std::array<float, kMost> by_pressure{};
   if (weight < 1.0F) value += (1.0F - weight) * add_field(by_pressure);
   for (std::size_t i = 0; i < all; ++i) {
@@ -146,14 +146,6 @@ float FeltFoci::cost(std::span<const float> parts, std::span<float> gradient) {
   return value;
 }
 
-/// Returns the loudness of given parts at an output of 1.
-float FeltFoci::loudness(std::span<const float> parts) {
-  normalise(parts);
-  const std::size_t all = 2 * foci_;
-  loss_.evaluate(std::span(unit_).first(all), std::span(by_part_).first(all));
-  return loss_.loudness();
-}
-
 int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foci) {
   cells_.set(target, maximum);
   loss_.set_target(cells_);
@@ -162,8 +154,9 @@ int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foc
   for (std::size_t f = 0; f < foci_; ++f)
     fitted[2 * f] = static_cast<float>(foci[f].pressure / maximum) + kTiny;
   const std::span<const float> fit = std::span(fitted).first(2 * foci_);
-  const float fitted_output = normalise(fit), wanted = loudness(fit);
-  loss_.keep_loudness();
+  const float fitted_output = normalise(fit);
+  loss_.keep_loudness(std::span(unit_).first(fit.size()));
+  const float wanted = loss_.loudness();
 
   Random random(1);
   Parts best{};
@@ -176,10 +169,12 @@ int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foc
       at_[2 * f] = fitted[2 * f] * static_cast<float>(std::cos(angle));
       at_[2 * f + 1] = fitted[2 * f] * static_cast<float>(std::sin(angle));
     }
-    evaluations +=
-        descent_.run([this](std::span<const float> parts,
-                            std::span<float> gradient) { return cost(parts, gradient); },
-                     kFirstStep * largest, kEvaluations, std::span(at_).first(2 * foci_));
+    const auto cost_of = [this](std::span<const float> parts, std::span<float> gradient) {
+      return cost(parts, gradient);
+    };
+    const std::span<float> at = std::span(at_).first(2 * foci_);
+    descent_.begin(cost_of, at);
+    evaluations += descent_.run(cost_of, kFirstStep * largest, kEvaluations, at);
     if (start > 0 && descent_.lowest() >= lowest) continue;
     lowest = descent_.lowest();
     best = at_;
@@ -187,7 +182,8 @@ int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foc
   // as loud as the fit, if its output suffices
   const std::span<const float> found = std::span(best).first(2 * foci_);
   const float output = normalise(found);
-  const float scale = std::min(wanted / loudness(found), 1.0F) * fitted_output / output;
+  loss_.evaluate(std::span(unit_).first(found.size()));
+  const float scale = std::min(wanted / loss_.loudness(), 1.0F) * fitted_output / output;
   // the strongest focus has phase 0: a delay of all does not matter
   std::size_t strongest = 0;
   for (std::size_t f = 1; f < foci_; ++f)

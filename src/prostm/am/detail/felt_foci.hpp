@@ -32,7 +32,6 @@ class FeltFoci {
   float normalise(std::span<const float> parts);
   float cost(std::span<const float> parts, std::span<float> gradient);
   float add_field(std::span<float> by_pressure);
-  float loudness(std::span<const float> parts);
 
   const AmSettings settings_;
   FeltTables tables_;

@@ -42,21 +42,23 @@ void EnvelopeLack::set_points(const std::vector<FeltCells::Cell>& cells, const S
   }
 }
 
-float EnvelopeLack::add(RenderLack<float>& rendering, float weight, std::span<const float> pressure,
-                        std::span<float> gradient) {
+float EnvelopeLack::evaluate(RenderLack<float>& rendering, std::span<const float> pressure) {
   const auto n = static_cast<Eigen::Index>(nearest_.size());
-  auto field = field_.head(n), pull = pull_.head(n);
+  auto field = field_.head(n);
   for (Eigen::Index c = 0; c < n; ++c) {
     const Nearest& at = nearest_[static_cast<std::size_t>(c)];
     field[c] = kLeastField + at.a * pressure[at.first] + at.b * pressure[at.second];
   }
-  const float value = rendering.of(field, 0.0F, pull);
-  for (Eigen::Index c = 0; c < n; ++c) {
-    const Nearest& at = nearest_[static_cast<std::size_t>(c)];
-    gradient[at.first] += weight * pull[c] * at.a;
-    gradient[at.second] += weight * pull[c] * at.b;
+  return rendering.of(field, 0.0F, pull_.head(n));
+}
+
+void EnvelopeLack::add_gradient(float weight, std::span<float> gradient) const {
+  for (std::size_t c = 0; c < nearest_.size(); ++c) {
+    const Nearest& at = nearest_[c];
+    const float pull = weight * pull_[static_cast<Eigen::Index>(c)];
+    gradient[at.first] += pull * at.a;
+    gradient[at.second] += pull * at.b;
   }
-  return value;
 }
 
 void EnvelopeLack::add_slide(float weight, const StepPoints& points,

@@ -30,11 +30,11 @@ class EnvelopeLack {
 
   /// Takes over the points. @param sigma of a focus [mm].
   void set_points(const std::vector<FeltCells::Cell>& cells, const StepPoints& points, float sigma);
-  /// Returns 1 − S_8.5 of (P10), and adds `weight` times its gradient with respect to the
-  /// pressures. @param rendering of the target in the cells.
-  float add(RenderLack<float>& rendering, float weight, std::span<const float> pressure,
-            std::span<float> gradient);
-  /// Adds `weight` times the gradient of the last add() with respect to the points [1/mm].
+  /// Returns 1 − S_8.5 of (P10). @param rendering of the target in the cells.
+  float evaluate(RenderLack<float>& rendering, std::span<const float> pressure);
+  /// Adds `weight` times the gradient of the last evaluate() with respect to the pressures.
+  void add_gradient(float weight, std::span<float> gradient) const;
+  /// Adds `weight` times the gradient of the last evaluate() with respect to the points [1/mm].
   void add_slide(float weight, const StepPoints& points, std::span<const float> pressure,
                  std::span<float> gradient_x, std::span<float> gradient_y) const;
 

@@ -85,8 +85,8 @@ void FeltProblem::for_moments(F&& f) const {
 }
 
 /// Sets pressure_ from √p, and demand_: at each moment the pressure of all paths, which is what an
-/// array must hold. Both are for an output of 1. @return the output, (P20).
-float FeltProblem::normalise(std::span<const float> root) {
+/// array must hold. Both are for an output of 1; output_ is the output that it was, (P20).
+void FeltProblem::normalise(std::span<const float> root) {
   const auto n = static_cast<std::size_t>(points_.samples);
   const std::span<float> demand = std::span(demand_).first(n);
   std::fill(demand.begin(), demand.end(), 0.0F);
@@ -97,31 +97,31 @@ float FeltProblem::normalise(std::span<const float> root) {
   const float most = *std::max_element(demand.begin(), demand.end());
   float sum = 0.0F;
   for (const float d : demand) sum += almost_norm(d / most) * d / most;
-  const float output = most * std::pow(sum, 1.0F / kNorm);
-  for (float& p : pressure_) p /= output;
-  for (float& d : demand) d /= output;
-  return output;
+  output_ = most * std::pow(sum, 1.0F / kNorm);
+  for (float& p : pressure_) p /= output_;
+  for (float& d : demand) d /= output_;
 }
 
-FeltProblem::Loudness FeltProblem::loudness(std::span<const float> root) {
-  const float output = normalise(root);
-  loss_.evaluate(pressure_, gradient_);
-  return {loss_.loudness() * output, output};
+/// Blends what is felt with the field of Eq. (1).
+float FeltProblem::add_envelope(float felt) {
+  if (weight_ >= 1.0F) return felt;
+  return weight_ * felt + (1.0F - weight_) * envelope_.evaluate(loss_.rendering(), pressure_);
 }
 
-FeltProblem::Loudness FeltProblem::keep_loudness(std::span<const float> root) {
-  const Loudness kept = loudness(root);
-  loss_.keep_loudness();
-  return kept;
+float FeltProblem::evaluate(std::span<const float> root) {
+  normalise(root);
+  return add_envelope(loss_.evaluate(pressure_));
 }
 
-float FeltProblem::cost(std::span<const float> root, std::span<float> gradient) {
-  const float output = normalise(root);
-  float value = weight_ * loss_.evaluate(pressure_, felt_gradient_);
+float FeltProblem::keep_loudness(std::span<const float> root) {
+  normalise(root);
+  return add_envelope(loss_.keep_loudness(pressure_));
+}
+
+void FeltProblem::gradient(std::span<const float> root, std::span<float> gradient) {
+  loss_.gradient(felt_gradient_);
   for (std::size_t j = 0; j < root.size(); ++j) gradient_[j] = weight_ * felt_gradient_[j];
-  if (weight_ < 1.0F)
-    value +=
-        (1.0F - weight_) * envelope_.add(loss_.rendering(), 1.0F - weight_, pressure_, gradient_);
+  if (weight_ < 1.0F) envelope_.add_gradient(1.0F - weight_, gradient_);
   // more output changes nothing
   float along = 0.0F;
   for (std::size_t j = 0; j < root.size(); ++j) along += gradient_[j] * pressure_[j];
@@ -129,8 +129,7 @@ float FeltProblem::cost(std::span<const float> root, std::span<float> gradient) 
     gradient_[point] -= along * share * almost_norm(demand_[moment]);
   });
   for (std::size_t j = 0; j < root.size(); ++j)
-    gradient[j] = 2.0F * root[j] * gradient_[j] / output;
-  return value;
+    gradient[j] = 2.0F * root[j] * gradient_[j] / output_;
 }
 
 void FeltProblem::slide(std::span<float> gradient_x, std::span<float> gradient_y) {

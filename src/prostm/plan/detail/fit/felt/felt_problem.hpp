@@ -28,32 +28,35 @@ class FeltProblem {
   void set_target(const TargetField& target, double maximum, double sigma);
   /// Takes over points: each path begins at its first.
   void set_points(const StepPoints& points, const CommonLoop& loop);
-  /// Keeps the loudness of these pressures, from now on, as the one that must not be lost. @return
-  /// that loudness, and the output that it takes.
+  /// Returns (P19) as a function of the roots of the pressures.
+  float evaluate(std::span<const float> root);
+  /// Does the same, and keeps the loudness of that as the one that must not be lost.
+  float keep_loudness(std::span<const float> root);
+  /// Computes the gradient of the last evaluate() with respect to the roots.
+  void gradient(std::span<const float> root, std::span<float> gradient);
+  /// Computes the gradient of the last evaluate() with respect to the points [1/mm], after
+  /// gradient().
+  void slide(std::span<float> gradient_x, std::span<float> gradient_y);
+
+  /// Of the last evaluate().
   struct Loudness {
     float felt = 0.0F;    ///< rms percept [µm per unit of pressure]
     float output = 0.0F;  ///< (P20)
   };
-  Loudness keep_loudness(std::span<const float> root);
-  /// Returns loudness and output of other pressures.
-  Loudness loudness(std::span<const float> root);
-  /// Returns (P19), and its gradient with respect to the roots of the pressures.
-  float cost(std::span<const float> root, std::span<float> gradient);
-  /// Computes the gradient of the last cost() with respect to the points [1/mm].
-  void slide(std::span<float> gradient_x, std::span<float> gradient_y);
-
+  Loudness loudness() const { return {loss_.loudness() * output_, output_}; }
   /// Area of the skin times mean p*² [mm²]: the scale of (P11).
   float square() const { return square_; }
 
  private:
-  float normalise(std::span<const float> root);
+  void normalise(std::span<const float> root);
+  float add_envelope(float felt);
   template <class F>
   void for_moments(F&& f) const;
 
   const float weight_;
   int first_ = 1;       // first harmonic that is felt
   double sigma_ = 1.0;  // of a focus [m]
-  float square_ = 1.0F;
+  float square_ = 1.0F, output_ = 1.0F;
   FeltTables tables_;
   FeltCells cells_;
   FeltLoss<float> loss_;

@@ -23,7 +23,7 @@ FeltStep::FeltStep(const PlanSettings& settings)
   const std::size_t most = most_felt_points(settings);
   last_.reserve(most);
   node_.reserve(most);
-  for (auto* list : {&x_, &y_, &root_, &fitted_, &gradient_}) list->reserve(most);
+  for (auto* list : {&x_, &y_, &root_, &fitted_}) list->reserve(most);
   if (settings.felt_points) variables_.reserve(3 * most);
 }
 
@@ -88,17 +88,6 @@ void FeltStep::begin() {
   }
 }
 
-/// Begins at the fit where that is better: a path that has changed is not what the last plan's
-/// changes were for. @return evaluations used.
-int FeltStep::begin_lower() {
-  gradient_.resize(root_.size());
-  if (problem_.cost(fitted_, gradient_) < problem_.cost(root_, gradient_)) {
-    last_.clear();
-    begin();
-  }
-  return 2;
-}
-
 void FeltStep::remember(From from) {
   last_.clear();
   for (std::size_t j = 0; j < node_.size(); ++j)
@@ -128,17 +117,27 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
   take_points(loops, starts, pieces);
   fit(pressure);
   begin();
-  const FeltProblem::Loudness wanted = problem_.keep_loudness(fitted_);
+  const float fit_cost = problem_.keep_loudness(fitted_);
+  const FeltProblem::Loudness wanted = problem_.loudness();
+  const auto cost = [this](std::span<const float> root, std::span<float> gradient) {
+    const float value = problem_.evaluate(root);
+    problem_.gradient(root, gradient);
+    return value;
+  };
   int evaluations = 2;
-  if (from_ == From::LastPlan) evaluations += begin_lower();
+  if (descent_.begin(cost, root_) > fit_cost && from_ == From::LastPlan) {
+    // a path that has changed is not what the last plan's changes were for
+    last_.clear();
+    begin();
+    descent_.begin(cost, root_);
+    ++evaluations;
+  }
   const std::array most_evaluations = {kEvaluations, kWarmEvaluations, kAfterMoved};
-  evaluations +=
-      descent_.run([this](std::span<const float> root,
-                          std::span<float> gradient) { return problem_.cost(root, gradient); },
-                   from_ == From::LastPlan ? kWarmFirstStep : kFirstStep,
-                   most_evaluations[static_cast<std::size_t>(from_)], root_);
+  evaluations += descent_.run(cost, from_ == From::LastPlan ? kWarmFirstStep : kFirstStep,
+                              most_evaluations[static_cast<std::size_t>(from_)], root_);
   // as loud as the fit, if its output suffices
-  const FeltProblem::Loudness found = problem_.loudness(root_);
+  problem_.evaluate(root_);
+  const FeltProblem::Loudness found = problem_.loudness();
   const float highest = *std::max_element(root_.begin(), root_.end());
   const float scale = std::min(
       {wanted.felt / found.felt, wanted.output / found.output, most / (highest * highest)});
@@ -158,7 +157,8 @@ float FeltStep::moved_cost(const ShapeSettings& shape, std::span<const float> x,
     y_[j] = loops_.y[node_[j]] = kPerUnit * x[2 * n + j];
   }
   problem_.set_points(points(), loop_);
-  float value = problem_.cost(x.first(n), gradient.first(n));
+  float value = problem_.evaluate(x.first(n));
+  problem_.gradient(x.first(n), gradient.first(n));
   problem_.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
   pairs_.update(loops_, shape);
   shape_x_.fill(0.0F);
@@ -188,10 +188,11 @@ int FeltStep::move_points(const LapStarts& starts, const CommonLoop& loop,
     variables_[n + j] = x_[j] / kPerUnit;
     variables_[2 * n + j] = y_[j] / kPerUnit;
   }
-  const int evaluations =
-      descent_.run([&](std::span<const float> x,
-                       std::span<float> gradient) { return moved_cost(shape, x, gradient); },
-                   kFirstStep, kMovedEvaluations, variables_);
+  const auto cost = [&](std::span<const float> x, std::span<float> gradient) {
+    return moved_cost(shape, x, gradient);
+  };
+  descent_.begin(cost, variables_);
+  const int evaluations = descent_.run(cost, kFirstStep, kMovedEvaluations, variables_);
   for (std::size_t j = 0; j < n; ++j) {
     root_[j] = variables_[j];
     x_[j] = loops.x[node_[j]] = kPerUnit * variables_[n + j];

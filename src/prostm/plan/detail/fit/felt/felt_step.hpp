@@ -47,7 +47,6 @@ class FeltStep {
   void take_points(const Loops& loops, const LapStarts& starts, int pieces);
   void fit(const NodeArray& pressure);
   void begin();
-  int begin_lower();
   void remember(From from);
   void join(const Loops& loops, const LapStarts& starts, int pieces, NodeArray& pressure) const;
   float moved_cost(const ShapeSettings& shape, std::span<const float> x, std::span<float> gradient);
@@ -60,7 +59,7 @@ class FeltStep {
   CommonLoop loop_;
   std::vector<Chosen> last_;
   // of each chosen point: its place [mm], √p, that of the fit, and its node
-  std::vector<float> x_, y_, root_, fitted_, gradient_;
+  std::vector<float> x_, y_, root_, fitted_;
   std::vector<std::size_t> node_;
   // for moved points
   Loops loops_;
