@@ -13,6 +13,22 @@ namespace {
 
 constexpr double kLeastPercept = 1e-3;   // smooths √e at 0, over its rms
 constexpr double kLeastDistance = 1e-6;  // [mm]
+constexpr double kLargest = 1024.0;      // kept pair, so that half precision holds small ones too
+
+/// Returns the largest that a pair can be.
+template <class Real>
+Real largest(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources) {
+  Real table = 0, source = 0;
+  for (const FocusResponse<Real>& skin : skins) {
+    for (const auto& row : skin.row) {
+      for (const Real value : row.value) table = std::max(table, std::abs(value));
+    }
+  }
+  for (const FeltSource<Real>& at : sources) {
+    for (const Real part : at.spectrum) source = std::max(source, std::abs(part));
+  }
+  return table * source;
+}
 
 template <class Real>
 FeltKernels<Real> kernels() {
@@ -29,6 +45,7 @@ template <class Real>
 struct FeltLoss<Real>::Impl {
   using Vector = typename RenderLack<Real>::Vector;
   using Pair = FeltPair<Real>;
+  using Kept = FeltKept<Real>;
 
   struct Skin {
     Vector percept;
@@ -64,15 +81,23 @@ struct FeltLoss<Real>::Impl {
   }
   Real evaluate(std::span<const Real> amplitude, bool keep);
   Real evaluate(std::size_t s, bool keep);
+  /// Returns Σ_row pair · by of each source.
+  std::span<Pair> add_up(const std::vector<Pair>& by) {
+    const std::span<Pair> all = std::span(sums).first(places.size());
+    for (Pair& sum : all) sum.part.fill(0);
+    run.backward(pairs.data(), rows(), by.data(), all);
+    return all;
+  }
 
   FeltKernels<Real> run = kernels<Real>();
   Real fine, energy_share, loudness, quiet;
+  Real per_square = 1;  // pairs, felt and pull are multiples of their units; 1 over their square
   RenderLack<Real> lack;
   std::vector<FeltCells::Cell> cells;
   std::vector<FeltSource<Real>> places;
   std::vector<FeltTurn<Real>> turns;
   std::vector<Skin> skin;
-  std::vector<Pair> pairs, slopes;    // rows × sources
+  std::vector<Kept> pairs, slopes;    // rows × sources
   std::vector<Pair> felt, pull;       // of each row: v of (W1), and ∂loss/∂v …
   std::vector<Pair> turned;           // … turned by a quarter of each harmonic
   std::vector<Pair> sums;             // of each source
@@ -102,13 +127,16 @@ void FeltLoss<Real>::set_sources(const FeltSkins<Real>& skins,
                                  std::span<const FeltSource<Real>> sources) {
   Impl& d = *impl_;
   d.places.assign(sources.begin(), sources.end());
+  const Real most = largest(skins, sources);
+  const Real unit = most > 0 ? static_cast<Real>(kLargest) / most : Real(1);
+  d.per_square = 1 / (unit * unit);
   d.turns.resize(sources.size());
   constexpr std::size_t kImaginary = kFeltParts / 2;
   for (std::size_t j = 0; j < sources.size(); ++j) {
     for (std::size_t n = 0; n < kImaginary; ++n) {
       FeltTurn<Real>& turn = d.turns[j];
-      turn.straight[n] = turn.straight[n + kImaginary] = sources[j].spectrum[n];
-      turn.crossed[n + kImaginary] = sources[j].spectrum[n + kImaginary];
+      turn.straight[n] = turn.straight[n + kImaginary] = unit * sources[j].spectrum[n];
+      turn.crossed[n + kImaginary] = unit * sources[j].spectrum[n + kImaginary];
       turn.crossed[n] = -turn.crossed[n + kImaginary];
     }
   }
@@ -129,7 +157,7 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number, bool keep) {
        d_energy = by_energy.head(n);
   for (Eigen::Index x = 0; x < n; ++x) {
     e[x] = 0;
-    for (const Real part : felt[row(x, number)].part) e[x] += part * part;
+    for (const Real part : felt[row(x, number)].part) e[x] += per_square * part * part;
   }
   const Real whole = lack.area().dot(e);
   const auto least = static_cast<Real>(kLeastPercept * kLeastPercept);
@@ -154,7 +182,7 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number, bool keep) {
 
 template <class Real>
 Real FeltLoss<Real>::Impl::evaluate(std::span<const Real> amplitude, bool keep) {
-  run.forward(pairs.data(), rows(), places.size(), amplitude.data(), felt.data());
+  run.forward(pairs.data(), rows(), amplitude, felt.data());
   Real loss = 0;
   for (std::size_t s = 0; s < skin.size(); ++s) loss += evaluate(s, keep);
   return loss / static_cast<Real>(skin.size());
@@ -173,12 +201,10 @@ Real FeltLoss<Real>::keep_loudness(std::span<const Real> amplitude) {
 template <class Real>
 void FeltLoss<Real>::gradient(std::span<Real> gradient) {
   Impl& d = *impl_;
-  const std::size_t sources = d.places.size();
-  const Real share = Real(1) / static_cast<Real>(d.skin.size());
-  for (FeltPair<Real>& sum : d.sums) sum.part.fill(0);
-  d.run.backward(d.pairs.data(), d.rows(), sources, d.pull.data(), d.sums.data());
-  for (std::size_t j = 0; j < sources; ++j) {
-    const auto& part = d.sums[j].part;
+  const Real share = d.per_square / static_cast<Real>(d.skin.size());
+  const std::span<FeltPair<Real>> sums = d.add_up(d.pull);
+  for (std::size_t j = 0; j < sums.size(); ++j) {
+    const auto& part = sums[j].part;
     gradient[j] = share * std::accumulate(part.begin(), part.end(), Real(0));
   }
 }
@@ -188,11 +214,11 @@ void FeltLoss<Real>::slide(std::span<const Real> amplitude, std::span<Real> grad
                            std::span<Real> gradient_y) {
   Impl& d = *impl_;
   const std::size_t sources = d.places.size();
-  const Real share = Real(1) / static_cast<Real>(d.skin.size());
+  const Real share = d.per_square / static_cast<Real>(d.skin.size());
   std::fill(gradient_x.begin(), gradient_x.end(), Real(0));
   std::fill(gradient_y.begin(), gradient_y.end(), Real(0));
   for (std::size_t row = 0; row < d.rows(); ++row) {
-    d.run.slide(&d.slopes[row * sources], sources, d.pull[row], d.line.data());
+    d.run.slide(&d.slopes[row * sources], d.pull[row], std::span(d.line).first(sources));
     const FeltCells::Cell& cell = d.cells[row / d.skin.size()];
     const auto cx = static_cast<Real>(cell.x), cy = static_cast<Real>(cell.y);
     for (std::size_t j = 0; j < sources; ++j) {
@@ -209,7 +235,6 @@ template <class Real>
 void FeltLoss<Real>::turn(std::span<const Real> amplitude, int first, std::span<Real> gradient) {
   Impl& d = *impl_;
   constexpr std::size_t kImaginary = kFeltParts / 2;
-  for (FeltPair<Real>& sum : d.sums) sum.part.fill(0);
   // a source that acts later turns its harmonic n by −i n
   for (std::size_t row = 0; row < d.rows(); ++row) {
     for (std::size_t n = 0; n < kImaginary; ++n) {
@@ -217,13 +242,13 @@ void FeltLoss<Real>::turn(std::span<const Real> amplitude, int first, std::span<
       d.turned[row].part[n + kImaginary] = d.pull[row].part[n];
     }
   }
-  d.run.backward(d.pairs.data(), d.rows(), d.places.size(), d.turned.data(), d.sums.data());
-  const Real share = 2 * static_cast<Real>(kPi) / static_cast<Real>(d.skin.size());
-  for (std::size_t j = 0; j < d.places.size(); ++j) {
+  const std::span<FeltPair<Real>> sums = d.add_up(d.turned);
+  const Real share = 2 * static_cast<Real>(kPi) * d.per_square / static_cast<Real>(d.skin.size());
+  for (std::size_t j = 0; j < sums.size(); ++j) {
     gradient[j] = 0;
     for (std::size_t n = 0; n < kImaginary; ++n) {
       gradient[j] += share * amplitude[j] * static_cast<Real>(static_cast<std::size_t>(first) + n) *
-                     (d.sums[j].part[n] + d.sums[j].part[n + kImaginary]);
+                     (sums[j].part[n] + sums[j].part[n + kImaginary]);
     }
   }
 }

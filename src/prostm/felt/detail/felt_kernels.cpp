@@ -27,34 +27,35 @@ void fill(std::span<const FocusResponse<Real>> skins, Real x, Real y,
 }
 
 template <class Real>
-void forward(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
-             const Real* amplitude, FeltPair<Real>* out) {
+void forward(const FeltPair<Real>* pairs, std::size_t rows, std::span<const Real> amplitude,
+             FeltPair<Real>* out) {
   for (std::size_t row = 0; row < rows; ++row) {
     out[row].part.fill(0);
-    for (std::size_t j = 0; j < sources; ++j) {
-      for (std::size_t i = 0; i < kFeltParts; ++i)
-        out[row].part[i] += pairs[row * sources + j].part[i] * amplitude[j];
+    for (const Real a : amplitude) {
+      for (std::size_t i = 0; i < kFeltParts; ++i) out[row].part[i] += pairs->part[i] * a;
+      ++pairs;
     }
   }
 }
 
 template <class Real>
-void backward(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
-              const FeltPair<Real>* pull, FeltPair<Real>* sum) {
+void backward(const FeltPair<Real>* pairs, std::size_t rows, const FeltPair<Real>* pull,
+              std::span<FeltPair<Real>> sums) {
   for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t j = 0; j < sources; ++j) {
+    for (FeltPair<Real>& sum : sums) {
       for (std::size_t i = 0; i < kFeltParts; ++i)
-        sum[j].part[i] += pairs[row * sources + j].part[i] * pull[row].part[i];
+        sum.part[i] += pairs->part[i] * pull[row].part[i];
+      ++pairs;
     }
   }
 }
 
 template <class Real>
-void slide(const FeltPair<Real>* slopes, std::size_t sources, const FeltPair<Real>& pull,
-           Real* out) {
-  for (std::size_t j = 0; j < sources; ++j) {
-    out[j] = 0;
-    for (std::size_t i = 0; i < kFeltParts; ++i) out[j] += slopes[j].part[i] * pull.part[i];
+void slide(const FeltPair<Real>* slopes, const FeltPair<Real>& pull, std::span<Real> out) {
+  for (Real& sum : out) {
+    sum = 0;
+    for (std::size_t i = 0; i < kFeltParts; ++i) sum += slopes->part[i] * pull.part[i];
+    ++slopes;
   }
 }
 
@@ -64,7 +65,6 @@ template <class Real>
 FeltKernels<Real> plain_felt_kernels() {
   return {fill<Real>, forward<Real>, backward<Real>, slide<Real>};
 }
-template FeltKernels<float> plain_felt_kernels();
 template FeltKernels<double> plain_felt_kernels();
 
 }  // namespace prostm

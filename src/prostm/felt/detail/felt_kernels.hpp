@@ -1,8 +1,11 @@
 #pragma once
 /// The products that take most of the time of a felt loss. Private to felt.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <type_traits>
 
 #include "prostm/felt/felt_loss.hpp"
 #include "prostm/felt/focus_response.hpp"
@@ -15,6 +18,16 @@ struct alignas(64) FeltPair {
   std::array<Real, kFeltParts> part;
 };
 
+/// The same in half precision (IEEE binary16, as bits): pairs are read again and again, so their
+/// bytes are what takes time.
+struct alignas(32) FeltHalf {
+  std::array<std::uint16_t, kFeltParts> part;
+};
+
+/// What is kept of pairs.
+template <class Real>
+using FeltKept = std::conditional_t<std::is_same_v<Real, float>, FeltHalf, FeltPair<Real>>;
+
 /// The spectrum of a source as it multiplies a table's row: the real parts twice, and the imaginary
 /// parts, first with a minus sign.
 template <class Real>
@@ -22,23 +35,22 @@ struct alignas(64) FeltTurn {
   std::array<Real, kFeltParts> straight, crossed;
 };
 
-/// Pairs are row by row, [row · sources + source]: a row is a cell on a skin.
+/// Kept pairs lie row by row: a row is a cell on a skin.
 template <class Real>
 struct FeltKernels {
   /// Fills a row for each skin of the cell at (x, y); and their slopes, if that is not null.
   /// @param turns of the sources.
   void (*fill)(std::span<const FocusResponse<Real>> skins, Real x, Real y,
                std::span<const FeltSource<Real>> sources, const FeltTurn<Real>* turns,
-               FeltPair<Real>* pairs, FeltPair<Real>* slopes);
+               FeltKept<Real>* pairs, FeltKept<Real>* slopes);
   /// out[row] = Σ_source pair · amplitude.
-  void (*forward)(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
-                  const Real* amplitude, FeltPair<Real>* out);
+  void (*forward)(const FeltKept<Real>* pairs, std::size_t rows, std::span<const Real> amplitude,
+                  FeltPair<Real>* out);
   /// sum[source] += Σ_row pair · pull[row], part by part.
-  void (*backward)(const FeltPair<Real>* pairs, std::size_t rows, std::size_t sources,
-                   const FeltPair<Real>* pull, FeltPair<Real>* sum);
+  void (*backward)(const FeltKept<Real>* pairs, std::size_t rows, const FeltPair<Real>* pull,
+                   std::span<FeltPair<Real>> sum);
   /// out[source] = Σ_part slope · pull, for one row.
-  void (*slide)(const FeltPair<Real>* slopes, std::size_t sources, const FeltPair<Real>& pull,
-                Real* out);
+  void (*slide)(const FeltKept<Real>* slopes, const FeltPair<Real>& pull, std::span<Real> out);
 };
 
 /// Returns plain loops.

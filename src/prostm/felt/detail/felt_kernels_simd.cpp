@@ -21,8 +21,11 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, kFeltParts>;
 using V = hn::Vec<D>;
+using DH = hn::Rebind<hwy::float16_t, D>;
+using DB = hn::Rebind<std::uint16_t, D>;
 using Response = FocusResponse<float>;
 using Pair = FeltPair<float>;
+using Half = FeltHalf;
 using Source = FeltSource<float>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
@@ -32,6 +35,9 @@ constexpr std::size_t kChunk = kFeltParts, kRows = kVectors == 1 ? 4 : 2;
 
 HWY_INLINE V Load(const std::array<float, kFeltParts>& parts, std::size_t v) {
   return hn::Load(D(), parts.data() + v * kLanes);
+}
+HWY_INLINE V Load(const Half& pair, std::size_t v) {
+  return hn::PromoteTo(D(), hn::BitCast(DH(), hn::Load(DB(), pair.part.data() + v * kLanes)));
 }
 
 /// Where sources are in a table: rows low and low + 1, and what each entry of these counts for the
@@ -89,7 +95,7 @@ HWY_INLINE V Crossed(const V (&row)[kCount], std::size_t v) {
 /// Writes the product of a sum of four rows of the table and a source's spectrum.
 HWY_INLINE void Blend(const Response& response, std::size_t low,
                       const std::array<std::array<float, kChunk>, 4>& by, std::size_t i,
-                      const FeltTurn<float>& turn, Pair& out) {
+                      const FeltTurn<float>& turn, Half& out) {
   const D d;
   const auto &a = response.row[low], &b = response.row[low + 1];
   V sum[kVectors];
@@ -102,12 +108,12 @@ HWY_INLINE void Blend(const Response& response, std::size_t low,
   for (std::size_t v = 0; v < kVectors; ++v) {
     const V product =
         hn::MulAdd(Crossed(sum, v), Load(turn.crossed, v), hn::Mul(sum[v], Load(turn.straight, v)));
-    hn::Store(product, d, out.part.data() + v * kLanes);
+    hn::Store(hn::BitCast(DB(), hn::DemoteTo(DH(), product)), DB(), out.part.data() + v * kLanes);
   }
 }
 
 void Fill(std::span<const Response> skins, float x, float y, std::span<const Source> sources,
-          const FeltTurn<float>* turns, Pair* pairs, Pair* slopes) {
+          const FeltTurn<float>* turns, Half* pairs, Half* slopes) {
   Places places = {};
   const std::size_t all = sources.size();
   for (std::size_t first = 0; first < all; first += kChunk) {
@@ -124,11 +130,11 @@ void Fill(std::span<const Response> skins, float x, float y, std::span<const Sou
   }
 }
 
-void Forward(const Pair* pairs, std::size_t rows, std::size_t sources, const float* amplitude,
-             Pair* out) {
+void Forward(const Half* pairs, std::size_t rows, std::span<const float> amplitude, Pair* out) {
   const D d;
+  const std::size_t sources = amplitude.size();
   for (std::size_t row = 0; row < rows; ++row) {
-    const Pair* pair = pairs + row * sources;
+    const Half* pair = pairs + row * sources;
     // two sums, so that one need not wait for the other
     V even[kVectors], odd[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) even[v] = odd[v] = hn::Zero(d);
@@ -136,14 +142,13 @@ void Forward(const Pair* pairs, std::size_t rows, std::size_t sources, const flo
     for (; j + 2 <= sources; j += 2) {
       const V p = hn::Set(d, amplitude[j]), q = hn::Set(d, amplitude[j + 1]);
       for (std::size_t v = 0; v < kVectors; ++v) {
-        even[v] = hn::MulAdd(p, Load(pair[j].part, v), even[v]);
-        odd[v] = hn::MulAdd(q, Load(pair[j + 1].part, v), odd[v]);
+        even[v] = hn::MulAdd(p, Load(pair[j], v), even[v]);
+        odd[v] = hn::MulAdd(q, Load(pair[j + 1], v), odd[v]);
       }
     }
     for (; j < sources; ++j) {
       const V p = hn::Set(d, amplitude[j]);
-      for (std::size_t v = 0; v < kVectors; ++v)
-        even[v] = hn::MulAdd(p, Load(pair[j].part, v), even[v]);
+      for (std::size_t v = 0; v < kVectors; ++v) even[v] = hn::MulAdd(p, Load(pair[j], v), even[v]);
     }
     for (std::size_t v = 0; v < kVectors; ++v)
       hn::Store(hn::Add(even[v], odd[v]), d, out[row].part.data() + v * kLanes);
@@ -152,38 +157,35 @@ void Forward(const Pair* pairs, std::size_t rows, std::size_t sources, const flo
 
 /// So many rows at once: each sum is loaded and stored once for all of them.
 template <std::size_t kCount>
-HWY_INLINE void AddRows(const Pair* pairs, std::size_t sources, const Pair* pull, Pair* sum) {
+HWY_INLINE void AddRows(const Half* pairs, const Pair* pull, std::span<Pair> sums) {
   const D d;
   V by[kCount][kVectors];
   for (std::size_t r = 0; r < kCount; ++r) {
     for (std::size_t v = 0; v < kVectors; ++v) by[r][v] = Load(pull[r].part, v);
   }
-  for (std::size_t j = 0; j < sources; ++j) {
+  for (std::size_t j = 0; j < sums.size(); ++j) {
     for (std::size_t v = 0; v < kVectors; ++v) {
-      V to = Load(sum[j].part, v);
+      V sum = Load(sums[j].part, v);
       for (std::size_t r = 0; r < kCount; ++r)
-        to = hn::MulAdd(by[r][v], Load(pairs[r * sources + j].part, v), to);
-      hn::Store(to, d, sum[j].part.data() + v * kLanes);
+        sum = hn::MulAdd(by[r][v], Load(pairs[r * sums.size() + j], v), sum);
+      hn::Store(sum, d, sums[j].part.data() + v * kLanes);
     }
   }
 }
 
-void Backward(const Pair* pairs, std::size_t rows, std::size_t sources, const Pair* pull,
-              Pair* sum) {
+void Backward(const Half* pairs, std::size_t rows, const Pair* pull, std::span<Pair> sums) {
   std::size_t row = 0;
   for (; row + kRows <= rows; row += kRows)
-    AddRows<kRows>(pairs + row * sources, sources, pull + row, sum);
-  for (; row < rows; ++row) AddRows<1>(pairs + row * sources, sources, pull + row, sum);
+    AddRows<kRows>(pairs + row * sums.size(), pull + row, sums);
+  for (; row < rows; ++row) AddRows<1>(pairs + row * sums.size(), pull + row, sums);
 }
 
-void Slide(const Pair* slopes, std::size_t sources, const Pair& pull, float* out) {
+void Slide(const Half* slopes, const Pair& pull, std::span<float> out) {
   const D d;
-  for (std::size_t j = 0; j < sources; ++j) {
+  for (std::size_t j = 0; j < out.size(); ++j) {
     V sum = hn::Zero(d);
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      sum = hn::MulAdd(hn::Load(d, slopes[j].part.data() + v * kLanes),
-                       hn::Load(d, pull.part.data() + v * kLanes), sum);
-    }
+    for (std::size_t v = 0; v < kVectors; ++v)
+      sum = hn::MulAdd(Load(slopes[j], v), Load(pull.part, v), sum);
     out[j] = hn::GetLane(hn::SumOfLanes(d, sum));
   }
 }

@@ -9,36 +9,73 @@ namespace {
 
 constexpr float kLeastField = 1e-6F;  // keeps a field without pressure in reach from being all 0
 
+/// From one point to the next.
+struct Segment {
+  Segment(const StepPoints& points, std::size_t i)
+      : x(points.x[i]),
+        y(points.y[i]),
+        ex(points.x[points.next(i)] - x),
+        ey(points.y[points.next(i)] - y),
+        per_square(1.0F / std::max(ex * ex + ey * ey, 1e-12F)) {}
+
+  /// Returns the share of the way at which it is closest to a place this far from its beginning.
+  float share(float dx, float dy) const {
+    const float along = (dx * ex + dy * ey) * per_square, forward = along < 0.0F ? 0.0F : along;
+    return forward > 1.0F ? 1.0F : forward;
+  }
+
+  float x, y, ex, ey, per_square;
+};
+
 }  // namespace
 
 EnvelopeLack::EnvelopeLack(std::size_t most_cells) {
   nearest_.reserve(most_cells);
+  segment_.reserve(most_cells);
+  for (auto* list : {&x_, &y_, &least_}) list->reserve(most_cells);
   for (Eigen::VectorXf* v : {&field_, &pull_}) v->setZero(static_cast<Eigen::Index>(most_cells));
+}
+
+/// Sets segment_ and least_ of each cell. The loop over cells is inside, since that one is a
+/// vector's.
+void EnvelopeLack::find_nearest(const StepPoints& points) {
+  const std::size_t cells = x_.size();
+  least_.assign(cells, std::numeric_limits<float>::max());
+  segment_.assign(cells, 0);
+  const float *x = x_.data(), *y = y_.data();
+  float* least = least_.data();
+  std::int32_t* segment = segment_.data();
+  for (std::size_t i = 0; i < points.x.size(); ++i) {
+    const Segment s(points, i);
+    const auto number = static_cast<std::int32_t>(i);
+    for (std::size_t c = 0; c < cells; ++c) {
+      const float dx = x[c] - s.x, dy = y[c] - s.y;
+      const float t = s.share(dx, dy);
+      const float rx = dx - t * s.ex, ry = dy - t * s.ey, square = rx * rx + ry * ry;
+      segment[c] = square < least[c] ? number : segment[c];
+      least[c] = square < least[c] ? square : least[c];
+    }
+  }
 }
 
 void EnvelopeLack::set_points(const std::vector<FeltCells::Cell>& cells, const StepPoints& points,
                               float sigma) {
-  nearest_.clear();
   sigma_ = sigma;
+  x_.clear();
+  y_.clear();
   for (const FeltCells::Cell& cell : cells) {
-    const auto x = static_cast<float>(cell.x), y = static_cast<float>(cell.y);
-    Nearest best;
-    float least = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < points.x.size(); ++i) {
-      const std::size_t j = points.next(i);
-      const float ex = points.x[j] - points.x[i], ey = points.y[j] - points.y[i];
-      const float dx = x - points.x[i], dy = y - points.y[i];
-      const float along = (dx * ex + dy * ey) / std::max(ex * ex + ey * ey, 1e-12F);
-      const float t = std::clamp(along, 0.0F, 1.0F);
-      const float rx = dx - t * ex, ry = dy - t * ey, square = rx * rx + ry * ry;
-      if (square >= least) continue;
-      least = square;
-      best = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), 1.0F - t, t, t, rx, ry};
-    }
-    const float phi = std::exp(std::max(-0.5F * least / (sigma * sigma), -80.0F));
-    best.a *= phi;
-    best.b *= phi;
-    nearest_.push_back(best);
+    x_.push_back(static_cast<float>(cell.x));
+    y_.push_back(static_cast<float>(cell.y));
+  }
+  find_nearest(points);
+  nearest_.clear();
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const auto i = static_cast<std::size_t>(segment_[c]);
+    const Segment s(points, i);
+    const float dx = x_[c] - s.x, dy = y_[c] - s.y, t = s.share(dx, dy);
+    const float phi = std::exp(std::max(-0.5F * least_[c] / (sigma * sigma), -80.0F));
+    nearest_.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(points.next(i)),
+                        (1.0F - t) * phi, t * phi, t, dx - t * s.ex, dy - t * s.ey});
   }
 }
 

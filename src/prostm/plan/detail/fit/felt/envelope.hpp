@@ -46,7 +46,12 @@ class EnvelopeLack {
     float along = 0.0F;          // share of the segment
     float dx = 0.0F, dy = 0.0F;  // vector from there to the cell [mm]
   };
+  void find_nearest(const StepPoints& points);
+
   std::vector<Nearest> nearest_;
+  // of each cell: its place [mm], the segment that is closest, and its distance squared
+  std::vector<float> x_, y_, least_;
+  std::vector<std::int32_t> segment_;
   float sigma_ = 1.0F;  // [mm]
   Eigen::VectorXf field_, pull_;
 };
