@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <type_traits>
 
 #include "prostm/core/units.hpp"
 #include "prostm/felt/detail/felt_kernels.hpp"
@@ -28,15 +27,6 @@ Real largest(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sou
     for (const Real part : at.spectrum) source = std::max(source, std::abs(part));
   }
   return table * source;
-}
-
-template <class Real>
-FeltKernels<Real> kernels() {
-  if constexpr (std::is_same_v<Real, float>) {
-    return fast_felt_kernels();
-  } else {
-    return plain_felt_kernels<Real>();
-  }
 }
 
 }  // namespace
@@ -89,7 +79,7 @@ struct FeltLoss<Real>::Impl {
     return all;
   }
 
-  FeltKernels<Real> run = kernels<Real>();
+  FeltKernels<Real> run = felt_kernels<Real>();
   Real fine, energy_share, loudness, quiet;
   Real per_square = 1;  // pairs, felt and pull are multiples of their units; 1 over their square
   RenderLack<Real> lack;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "prostm/felt/detail/felt_kernels.hpp"
 
 namespace prostm {
 namespace {
@@ -36,9 +39,10 @@ RenderLack<Real>::RenderLack(std::size_t most_cells) {
     v->setZero(most);
   place_.reserve(most_cells);
   // the largest raster with its margin is a long line of blocks
-  constexpr auto kBlocks = static_cast<Eigen::Index>(FeltCells::kBlocks);
-  for (Vector* v : {&plane_, &down_, &across_})
-    v->setZero((kBlocks + 2 * kMostReach) * (2 * kMostReach + 1));
+  constexpr auto kMost =
+      (Eigen::Index{FeltCells::kBlocks} + 2 * kMostReach) * (2 * kMostReach + 1) +
+      Eigen::Index{kConvolveMargin};
+  for (Vector* v : {&plane_, &down_, &across_}) v->setZero(kMost);
 }
 
 template <class Real>
@@ -73,15 +77,12 @@ void RenderLack<Real>::set(const FeltCells& cells) {
 template <class Real>
 void RenderLack<Real>::blur(const Field& field, Eigen::Ref<Vector> out) {
   for (Eigen::Index i = 0; i < cells_; ++i) plane_[place_[static_cast<std::size_t>(i)]] = field[i];
-  const Eigen::Index count = rows_ * stride_;
-  const auto add_up = [&](const Vector& from, Eigen::Index step, Eigen::Index size, Vector& to) {
-    auto sums = to.head(size);
-    sums = taps_[0] * from.head(size);
-    for (Eigen::Index t = 1; t <= 2 * reach_; ++t)
-      sums += taps_[static_cast<std::size_t>(t)] * from.segment(t * step, size);
-  };
-  add_up(plane_, stride_, count, down_);
-  add_up(down_, 1, count - 2 * reach_, across_);
+  const auto stride = static_cast<std::size_t>(stride_), reach = static_cast<std::size_t>(reach_);
+  const std::span<const Real> taps = std::span(taps_).first(2 * reach + 1);
+  const std::size_t count = static_cast<std::size_t>(rows_) * stride;
+  const auto convolve = felt_kernels<Real>().convolve;
+  convolve(plane_.data(), stride, taps, count, down_.data());
+  convolve(down_.data(), 1, taps, count - 2 * reach, across_.data());
   const Eigen::Index corner = reach_ * (stride_ + 1);
   for (Eigen::Index i = 0; i < cells_; ++i)
     out[i] = across_[place_[static_cast<std::size_t>(i)] - corner];

@@ -6,17 +6,15 @@ namespace prostm {
 namespace {
 
 /// The product of a table's values with a spectrum.
-template <class Real>
-void multiply(const std::array<Real, kFeltParts>& value, const FeltTurn<Real>& by,
-              std::array<Real, kFeltParts>& out) {
+void multiply(const std::array<double, kFeltParts>& value, const FeltTurn<double>& by,
+              std::array<double, kFeltParts>& out) {
   for (std::size_t i = 0; i < kFeltParts; ++i)
     out[i] = value[i] * by.straight[i] + value[(i + kFeltParts / 2) % kFeltParts] * by.crossed[i];
 }
 
-template <class Real>
-void fill(std::span<const FocusResponse<Real>> skins, Real x, Real y,
-          std::span<const FeltSource<Real>> sources, const FeltTurn<Real>* turns,
-          FeltPair<Real>* pairs, FeltPair<Real>* slopes) {
+void fill(std::span<const FocusResponse<double>> skins, double x, double y,
+          std::span<const FeltSource<double>> sources, const FeltTurn<double>* turns,
+          FeltPair<double>* pairs, FeltPair<double>* slopes) {
   for (std::size_t s = 0; s < skins.size(); ++s) {
     for (std::size_t j = 0; j < sources.size(); ++j) {
       const auto row = skins[s].at(std::hypot(x - sources[j].x, y - sources[j].y));
@@ -26,23 +24,21 @@ void fill(std::span<const FocusResponse<Real>> skins, Real x, Real y,
   }
 }
 
-template <class Real>
-void forward(const FeltPair<Real>* pairs, std::size_t rows, std::span<const Real> amplitude,
-             FeltPair<Real>* out) {
+void forward(const FeltPair<double>* pairs, std::size_t rows, std::span<const double> amplitude,
+             FeltPair<double>* out) {
   for (std::size_t row = 0; row < rows; ++row) {
     out[row].part.fill(0);
-    for (const Real a : amplitude) {
+    for (const double a : amplitude) {
       for (std::size_t i = 0; i < kFeltParts; ++i) out[row].part[i] += pairs->part[i] * a;
       ++pairs;
     }
   }
 }
 
-template <class Real>
-void backward(const FeltPair<Real>* pairs, std::size_t rows, const FeltPair<Real>* pull,
-              std::span<FeltPair<Real>> sums) {
+void backward(const FeltPair<double>* pairs, std::size_t rows, const FeltPair<double>* pull,
+              std::span<FeltPair<double>> sums) {
   for (std::size_t row = 0; row < rows; ++row) {
-    for (FeltPair<Real>& sum : sums) {
+    for (FeltPair<double>& sum : sums) {
       for (std::size_t i = 0; i < kFeltParts; ++i)
         sum.part[i] += pairs->part[i] * pull[row].part[i];
       ++pairs;
@@ -50,21 +46,26 @@ void backward(const FeltPair<Real>* pairs, std::size_t rows, const FeltPair<Real
   }
 }
 
-template <class Real>
-void slide(const FeltPair<Real>* slopes, const FeltPair<Real>& pull, std::span<Real> out) {
-  for (Real& sum : out) {
+void slide(const FeltPair<double>* slopes, const FeltPair<double>& pull, std::span<double> out) {
+  for (double& sum : out) {
     sum = 0;
     for (std::size_t i = 0; i < kFeltParts; ++i) sum += slopes->part[i] * pull.part[i];
     ++slopes;
   }
 }
 
+void convolve(const double* in, std::size_t step, std::span<const double> taps, std::size_t size,
+              double* out) {
+  for (std::size_t i = 0; i < size; ++i) {
+    out[i] = 0.0;
+    for (std::size_t t = 0; t < taps.size(); ++t) out[i] += taps[t] * in[i + t * step];
+  }
+}
+
 }  // namespace
 
-template <class Real>
-FeltKernels<Real> plain_felt_kernels() {
-  return {fill<Real>, forward<Real>, backward<Real>, slide<Real>};
+FeltKernels<double> plain_felt_kernels() {
+  return {fill, forward, backward, slide, convolve};
 }
-template FeltKernels<double> plain_felt_kernels();
 
 }  // namespace prostm

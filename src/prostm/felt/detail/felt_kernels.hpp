@@ -35,6 +35,9 @@ struct alignas(64) FeltTurn {
   std::array<Real, kFeltParts> straight, crossed;
 };
 
+/// How far an output of convolve() may go beyond its size, and what it reads beyond that.
+inline constexpr std::size_t kConvolveMargin = kFeltParts;
+
 /// Kept pairs lie row by row: a row is a cell on a skin.
 template <class Real>
 struct FeltKernels {
@@ -51,12 +54,24 @@ struct FeltKernels {
                    std::span<FeltPair<Real>> sum);
   /// out[source] = Σ_part slope · pull, for one row.
   void (*slide)(const FeltKept<Real>* slopes, const FeltPair<Real>& pull, std::span<Real> out);
+  /// out[i] = Σ_t taps[t] · in[i + t · step].
+  void (*convolve)(const Real* in, std::size_t step, std::span<const Real> taps, std::size_t size,
+                   Real* out);
 };
 
 /// Returns plain loops.
-template <class Real>
-FeltKernels<Real> plain_felt_kernels();
-/// Returns the vector kernels for this processor, in single precision.
+FeltKernels<double> plain_felt_kernels();
+/// Returns the vector kernels for this processor.
 FeltKernels<float> fast_felt_kernels();
+
+/// Returns those of this precision.
+template <class Real>
+FeltKernels<Real> felt_kernels() {
+  if constexpr (std::is_same_v<Real, float>) {
+    return fast_felt_kernels();
+  } else {
+    return plain_felt_kernels();
+  }
+}
 
 }  // namespace prostm

@@ -190,8 +190,19 @@ void Slide(const Half* slopes, const Pair& pull, std::span<float> out) {
   }
 }
 
+void Convolve(const float* in, std::size_t step, std::span<const float> taps, std::size_t size,
+              float* out) {
+  const D d;
+  for (std::size_t i = 0; i < size; i += kLanes) {
+    V sum = hn::Zero(d);
+    for (std::size_t t = 0; t < taps.size(); ++t)
+      sum = hn::MulAdd(hn::Set(d, taps[t]), hn::LoadU(d, in + i + t * step), sum);
+    hn::StoreU(sum, d, out + i);
+  }
+}
+
 FeltKernels<float> Kernels() {
-  return {Fill, Forward, Backward, Slide};
+  return {Fill, Forward, Backward, Slide, Convolve};
 }
 
 }  // namespace
