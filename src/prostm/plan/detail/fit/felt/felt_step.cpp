@@ -9,12 +9,19 @@ namespace prostm::planning {
 namespace {
 
 constexpr float kLeastRoot = 0.03F;  // √p at the beginning, over the largest: at 0 it would stick
-constexpr float kFirstStep = 0.5F, kWarmFirstStep = 0.3F;  // length of the first step in √p …
-constexpr float kPerUnit = 5.0F;                           // … and that of this many mm
+constexpr float kPerUnit = 5.0F;     // [mm] that a step of points is as long as a step of 1 in √p
 // a point goes on from one of the last plan, or of moved points, this near [mm]
 constexpr float kNear = 2.0F, kMovedNear = 6.0F;
-constexpr int kEvaluations = 12, kWarmEvaluations = 6;   // of pressures
-constexpr int kMovedEvaluations = 90, kAfterMoved = 20;  // of points, and of pressures after that
+
+/// How far a descent goes: evaluations at most, and the length of its first step in √p.
+struct Effort {
+  int evaluations;
+  float first_step;
+};
+constexpr Effort kMoving = {90, 0.5F};  // of points
+// of pressures, by where it begins: From::Fit, FitAgain, LastPlan, MovedPoints
+constexpr std::array kChoosing = {Effort{12, 0.5F}, Effort{8, 0.5F}, Effort{6, 0.3F},
+                                  Effort{20, 0.5F}};
 
 }  // namespace
 
@@ -128,13 +135,13 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
   if (descent_.begin(cost, root_) > fit_cost && from_ == From::LastPlan) {
     // a path that has changed is not what the last plan's changes were for
     last_.clear();
+    from_ = From::FitAgain;
     begin();
     descent_.begin(cost, root_);
     ++evaluations;
   }
-  const std::array most_evaluations = {kEvaluations, kWarmEvaluations, kAfterMoved};
-  evaluations += descent_.run(cost, from_ == From::LastPlan ? kWarmFirstStep : kFirstStep,
-                              most_evaluations[static_cast<std::size_t>(from_)], root_);
+  const Effort& effort = kChoosing[static_cast<std::size_t>(from_)];
+  evaluations += descent_.run(cost, effort.first_step, effort.evaluations, root_);
   // as loud as the fit, if its output suffices
   problem_.evaluate(root_);
   const FeltProblem::Loudness found = problem_.loudness();
@@ -192,7 +199,7 @@ int FeltStep::move_points(const LapStarts& starts, const CommonLoop& loop,
     return moved_cost(shape, x, gradient);
   };
   descent_.begin(cost, variables_);
-  const int evaluations = descent_.run(cost, kFirstStep, kMovedEvaluations, variables_);
+  const int evaluations = descent_.run(cost, kMoving.first_step, kMoving.evaluations, variables_);
   for (std::size_t j = 0; j < n; ++j) {
     root_[j] = variables_[j];
     x_[j] = loops.x[node_[j]] = kPerUnit * variables_[n + j];

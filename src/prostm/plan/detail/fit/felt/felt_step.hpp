@@ -42,7 +42,9 @@ class FeltStep {
     float x, y, root;
     float more;  ///< how much its √p is above the fit's
   };
-  enum class From { Fit, LastPlan, MovedPoints };
+  /// Where the pressures begin: at the fit's; there after all, since the last plan's were worse; at
+  /// those of the last plan, or of moved points.
+  enum class From { Fit, FitAgain, LastPlan, MovedPoints };
 
   void take_points(const Loops& loops, const LapStarts& starts, int pieces);
   void fit(const NodeArray& pressure);
