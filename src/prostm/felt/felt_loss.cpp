@@ -12,9 +12,8 @@ namespace {
 
 constexpr double kLeastPercept = 1e-3;   // smooths √e at 0, over its rms
 constexpr double kLeastDistance = 1e-6;  // [mm]
-constexpr double kLargest = 1024.0;      // kept pair, so that half precision holds small ones too
 
-/// Returns the largest that a pair can be.
+/// Returns the largest that a part of a pair can be: the sum of two products.
 template <class Real>
 Real largest(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources) {
   Real table = 0, source = 0;
@@ -26,7 +25,7 @@ Real largest(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sou
   for (const FeltSource<Real>& at : sources) {
     for (const Real part : at.spectrum) source = std::max(source, std::abs(part));
   }
-  return table * source;
+  return 2 * table * source;
 }
 
 }  // namespace
@@ -118,7 +117,7 @@ void FeltLoss<Real>::set_sources(const FeltSkins<Real>& skins,
   Impl& d = *impl_;
   d.places.assign(sources.begin(), sources.end());
   const Real most = largest(skins, sources);
-  const Real unit = most > 0 ? static_cast<Real>(kLargest) / most : Real(1);
+  const Real unit = most > 0 ? static_cast<Real>(kMostFixed) / most : Real(1);
   d.per_square = 1 / (unit * unit);
   d.turns.resize(sources.size());
   constexpr std::size_t kImaginary = kFeltParts / 2;

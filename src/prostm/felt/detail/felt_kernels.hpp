@@ -18,15 +18,16 @@ struct alignas(64) FeltPair {
   std::array<Real, kFeltParts> part;
 };
 
-/// The same in half precision (IEEE binary16, as bits): pairs are read again and again, so their
-/// bytes are what takes time.
-struct alignas(32) FeltHalf {
-  std::array<std::uint16_t, kFeltParts> part;
+/// The same as whole numbers: pairs are read again and again, so their bytes are what takes time.
+/// Larger ones than kMostFixed become that.
+struct alignas(32) FeltFixed {
+  std::array<std::int16_t, kFeltParts> part;
 };
+inline constexpr double kMostFixed = 32767.0;
 
-/// What is kept of pairs.
+/// A pair as it is kept.
 template <class Real>
-using FeltKept = std::conditional_t<std::is_same_v<Real, float>, FeltHalf, FeltPair<Real>>;
+using FeltKept = std::conditional_t<std::is_same_v<Real, float>, FeltFixed, FeltPair<Real>>;
 
 /// The spectrum of a source as it multiplies a table's row: the real parts twice, and the imaginary
 /// parts, first with a minus sign.

@@ -21,11 +21,11 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, kFeltParts>;
 using V = hn::Vec<D>;
-using DH = hn::Rebind<hwy::float16_t, D>;
-using DB = hn::Rebind<std::uint16_t, D>;
+using DI = hn::RebindToSigned<D>;
+using DS = hn::Rebind<std::int16_t, D>;
 using Response = FocusResponse<float>;
 using Pair = FeltPair<float>;
-using Half = FeltHalf;
+using Fixed = FeltFixed;
 using Source = FeltSource<float>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
@@ -36,8 +36,8 @@ constexpr std::size_t kChunk = kFeltParts, kRows = kVectors == 1 ? 4 : 2;
 HWY_INLINE V Load(const std::array<float, kFeltParts>& parts, std::size_t v) {
   return hn::Load(D(), parts.data() + v * kLanes);
 }
-HWY_INLINE V Load(const Half& pair, std::size_t v) {
-  return hn::PromoteTo(D(), hn::BitCast(DH(), hn::Load(DB(), pair.part.data() + v * kLanes)));
+HWY_INLINE V Load(const Fixed& pair, std::size_t v) {
+  return hn::ConvertTo(D(), hn::PromoteTo(DI(), hn::Load(DS(), pair.part.data() + v * kLanes)));
 }
 
 /// Where sources are in a table: rows low and low + 1, and what each entry of these counts for the
@@ -95,7 +95,7 @@ HWY_INLINE V Crossed(const V (&row)[kCount], std::size_t v) {
 /// Writes the product of a sum of four rows of the table and a source's spectrum.
 HWY_INLINE void Blend(const Response& response, std::size_t low,
                       const std::array<std::array<float, kChunk>, 4>& by, std::size_t i,
-                      const FeltTurn<float>& turn, Half& out) {
+                      const FeltTurn<float>& turn, Fixed& out) {
   const D d;
   const auto &a = response.row[low], &b = response.row[low + 1];
   V sum[kVectors];
@@ -108,12 +108,12 @@ HWY_INLINE void Blend(const Response& response, std::size_t low,
   for (std::size_t v = 0; v < kVectors; ++v) {
     const V product =
         hn::MulAdd(Crossed(sum, v), Load(turn.crossed, v), hn::Mul(sum[v], Load(turn.straight, v)));
-    hn::Store(hn::BitCast(DB(), hn::DemoteTo(DH(), product)), DB(), out.part.data() + v * kLanes);
+    hn::Store(hn::DemoteTo(DS(), hn::NearestInt(product)), DS(), out.part.data() + v * kLanes);
   }
 }
 
 void Fill(std::span<const Response> skins, float x, float y, std::span<const Source> sources,
-          const FeltTurn<float>* turns, Half* pairs, Half* slopes) {
+          const FeltTurn<float>* turns, Fixed* pairs, Fixed* slopes) {
   Places places = {};
   const std::size_t all = sources.size();
   for (std::size_t first = 0; first < all; first += kChunk) {
@@ -130,11 +130,11 @@ void Fill(std::span<const Response> skins, float x, float y, std::span<const Sou
   }
 }
 
-void Forward(const Half* pairs, std::size_t rows, std::span<const float> amplitude, Pair* out) {
+void Forward(const Fixed* pairs, std::size_t rows, std::span<const float> amplitude, Pair* out) {
   const D d;
   const std::size_t sources = amplitude.size();
   for (std::size_t row = 0; row < rows; ++row) {
-    const Half* pair = pairs + row * sources;
+    const Fixed* pair = pairs + row * sources;
     // two sums, so that one need not wait for the other
     V even[kVectors], odd[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) even[v] = odd[v] = hn::Zero(d);
@@ -157,7 +157,7 @@ void Forward(const Half* pairs, std::size_t rows, std::span<const float> amplitu
 
 /// So many rows at once: each sum is loaded and stored once for all of them.
 template <std::size_t kCount>
-HWY_INLINE void AddRows(const Half* pairs, const Pair* pull, std::span<Pair> sums) {
+HWY_INLINE void AddRows(const Fixed* pairs, const Pair* pull, std::span<Pair> sums) {
   const D d;
   V by[kCount][kVectors];
   for (std::size_t r = 0; r < kCount; ++r) {
@@ -173,14 +173,14 @@ HWY_INLINE void AddRows(const Half* pairs, const Pair* pull, std::span<Pair> sum
   }
 }
 
-void Backward(const Half* pairs, std::size_t rows, const Pair* pull, std::span<Pair> sums) {
+void Backward(const Fixed* pairs, std::size_t rows, const Pair* pull, std::span<Pair> sums) {
   std::size_t row = 0;
   for (; row + kRows <= rows; row += kRows)
     AddRows<kRows>(pairs + row * sums.size(), pull + row, sums);
   for (; row < rows; ++row) AddRows<1>(pairs + row * sums.size(), pull + row, sums);
 }
 
-void Slide(const Half* slopes, const Pair& pull, std::span<float> out) {
+void Slide(const Fixed* slopes, const Pair& pull, std::span<float> out) {
   const D d;
   for (std::size_t j = 0; j < out.size(); ++j) {
     V sum = hn::Zero(d);

@@ -38,7 +38,7 @@ class FeltProblem {
   /// gradient().
   void slide(std::span<float> gradient_x, std::span<float> gradient_y);
 
-  /// Of the last evaluate().
+  /// Loudness and output of the last evaluate().
   struct Loudness {
     float felt = 0.0F;    ///< rms percept [µm per unit of pressure]
     float output = 0.0F;  ///< (P20)
