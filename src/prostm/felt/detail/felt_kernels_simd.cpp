@@ -43,7 +43,7 @@ HWY_INLINE V Load(const Fixed& pair, std::size_t v) {
 /// Where sources are in a table: rows low and low + 1, and what each entry of these counts for the
 /// value and for its slope.
 struct alignas(64) Places {
-  std::array<float, kChunk> distance, fraction;
+  std::array<float, kChunk> distance;  // squared at first, in the end that of row low
   std::array<std::array<float, kChunk>, 4> value, slope;
   std::array<std::size_t, kChunk> low;
 
@@ -55,27 +55,27 @@ struct alignas(64) Places {
       distance[i] = dx * dx + dy * dy;
     }
     const D d;
+    const V one = hn::Set(d, 1.0F), scale = hn::Set(d, kPerStep);
     for (std::size_t i = 0; i < kChunk; i += kLanes) {
-      const V away = hn::Mul(hn::Sqrt(hn::Load(d, distance.data() + i)), hn::Set(d, kPerStep));
+      const V away = hn::Mul(hn::Sqrt(hn::Load(d, distance.data() + i)), scale);
       const V place = hn::Min(away, hn::Set(d, kLast));
       const V below = hn::Min(hn::Floor(place), hn::Set(d, kLast - 1.0F));
       hn::Store(below, d, distance.data() + i);
-      const V t = hn::Sub(place, below), u = hn::Sub(hn::Set(d, 1.0F), t);
+      const V t = hn::Sub(place, below), u = hn::Sub(one, t);
       const V tu = hn::Mul(t, u), tt = hn::Mul(t, t);
       const V more = hn::Mul(tt, hn::NegMulAdd(hn::Set(d, 2.0F), t, hn::Set(d, 3.0F)));
       const V rise = hn::Mul(tu, hn::Set(d, 6.0F * kPerStep));
       const V three = hn::Mul(hn::Set(d, 3.0F), t);
       const auto store = [&](V what, std::array<float, kChunk>& to)
                              HWY_ATTR { hn::Store(what, d, to.data() + i); };
-      store(hn::Sub(hn::Set(d, 1.0F), more), value[0]);
+      store(hn::Sub(one, more), value[0]);
       store(hn::Mul(tu, u), value[1]);
       store(more, value[2]);
       store(hn::Neg(hn::Mul(tu, t)), value[3]);
       store(hn::Neg(rise), slope[0]);
-      const V scaled = hn::Set(d, kPerStep);
-      store(hn::Mul(scaled, hn::Mul(u, hn::Sub(hn::Set(d, 1.0F), three))), slope[1]);
+      store(hn::Mul(scale, hn::Mul(u, hn::Sub(one, three))), slope[1]);
       store(rise, slope[2]);
-      store(hn::Mul(scaled, hn::Mul(t, hn::Sub(three, hn::Set(d, 2.0F)))), slope[3]);
+      store(hn::Mul(scale, hn::Mul(t, hn::Sub(three, hn::Set(d, 2.0F)))), slope[3]);
     }
     for (std::size_t i = 0; i < count; ++i) low[i] = static_cast<std::size_t>(distance[i]);
   }
@@ -85,8 +85,8 @@ struct alignas(64) Places {
 template <std::size_t kCount>
 HWY_INLINE V Crossed(const V (&row)[kCount], std::size_t v) {
   if constexpr (kCount == 1) {
-    return ConcatLowerUpper(D(), row[v],
-                            row[v]);  // found by its arguments: not all targets have it
+    // found by its arguments, since not all targets have it
+    return ConcatLowerUpper(D(), row[v], row[v]);
   } else {
     return row[(v + kCount / 2) % kCount];
   }
