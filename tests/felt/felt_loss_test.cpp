@@ -72,7 +72,7 @@ TEST(FeltLoss, HasTheGradientOfItsValues) {
     Judge judge(pattern);
     Sources<double> sources(7, kSources);
     judge(sources);
-    judge.loss.keep_loudness(sources.amplitude);
+    judge.loss.keep_loudness(sources.amplitude, 1.1);
     for (double& a : sources.amplitude) a *= 0.6;  // quieter than what is kept
     std::vector<double> by_amplitude(kSources), by_x(kSources), by_y(kSources), by_time(kSources);
     judge.loss.evaluate(sources.amplitude);
@@ -172,7 +172,7 @@ TEST(FeltLoss, AllocatesNothing) {
   const test::HeapGuard guard;
   loss.set_target(small);
   loss.set_sources(tables, sources.all);
-  loss.keep_loudness(sources.amplitude);
+  loss.keep_loudness(sources.amplitude, 1.0F);
   loss.evaluate(sources.amplitude);
   loss.gradient(gradient);
   loss.slide(sources.amplitude, x, y);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "prostm/core/units.hpp"
 #include "prostm/felt/detail/felt_kernels.hpp"
@@ -68,8 +69,8 @@ struct FeltLoss<Real>::Impl {
   std::size_t row(Eigen::Index cell, std::size_t s) const {
     return static_cast<std::size_t>(cell) * skin.size() + s;
   }
-  Real evaluate(std::span<const Real> amplitude, bool keep);
-  Real evaluate(std::size_t s, bool keep);
+  Real evaluate(std::span<const Real> amplitude, std::optional<Real> keep);
+  Real evaluate(std::size_t s, std::optional<Real> keep);
   /// Returns Σ_row pair · by of each source.
   std::span<Pair> add_up(const std::vector<Pair>& by) {
     const std::span<Pair> all = std::span(sums).first(places.size());
@@ -137,9 +138,9 @@ void FeltLoss<Real>::set_sources(const FeltSkins<Real>& skins,
 }
 
 /// Returns the loss of one skin from what is felt in its rows, and sets their pull. @param keep
-/// whether its loudness is that to keep from now on.
+/// that many times its loudness is to be kept from now on.
 template <class Real>
-Real FeltLoss<Real>::Impl::evaluate(std::size_t number, bool keep) {
+Real FeltLoss<Real>::Impl::evaluate(std::size_t number, std::optional<Real> keep) {
   Skin& s = skin[number];
   const auto n = static_cast<Eigen::Index>(cells.size());
   auto e = energy.head(n), root = s.percept.head(n), d_root = by_root.head(n),
@@ -152,7 +153,7 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number, bool keep) {
   const auto least = static_cast<Real>(kLeastPercept * kLeastPercept);
   root.array() = (e.array() + least * whole).sqrt();
   s.log_energy = std::log(whole);
-  if (keep) s.kept = s.log_energy;
+  if (keep) s.kept = s.log_energy + 2 * std::log(*keep);
   const Real louder = (s.log_energy - s.kept) / 2;
   const Real missing = std::max(-louder - static_cast<Real>(FeltWeights::kSlack), Real(0));
   const Real wanted = loudness + 2 * quiet * missing;
@@ -170,7 +171,7 @@ Real FeltLoss<Real>::Impl::evaluate(std::size_t number, bool keep) {
 }
 
 template <class Real>
-Real FeltLoss<Real>::Impl::evaluate(std::span<const Real> amplitude, bool keep) {
+Real FeltLoss<Real>::Impl::evaluate(std::span<const Real> amplitude, std::optional<Real> keep) {
   run.forward(pairs.data(), rows(), amplitude, felt.data());
   Real loss = 0;
   for (std::size_t s = 0; s < skin.size(); ++s) loss += evaluate(s, keep);
@@ -179,12 +180,12 @@ Real FeltLoss<Real>::Impl::evaluate(std::span<const Real> amplitude, bool keep) 
 
 template <class Real>
 Real FeltLoss<Real>::evaluate(std::span<const Real> amplitude) {
-  return impl_->evaluate(amplitude, false);
+  return impl_->evaluate(amplitude, std::nullopt);
 }
 
 template <class Real>
-Real FeltLoss<Real>::keep_loudness(std::span<const Real> amplitude) {
-  return impl_->evaluate(amplitude, true);
+Real FeltLoss<Real>::keep_loudness(std::span<const Real> amplitude, Real times) {
+  return impl_->evaluate(amplitude, times);
 }
 
 template <class Real>

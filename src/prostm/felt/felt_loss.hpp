@@ -53,8 +53,8 @@ class FeltLoss {
   void set_sources(const FeltSkins<Real>& skins, std::span<const FeltSource<Real>> sources);
   /// Computes the loss (W4). @param amplitude of each source, of either sign; not all 0.
   Real evaluate(std::span<const Real> amplitude);
-  /// Does the same, and takes the loudness of that on each skin as the one to keep.
-  Real keep_loudness(std::span<const Real> amplitude);
+  /// Does the same, and takes so many times the loudness of that on each skin as the one to keep.
+  Real keep_loudness(std::span<const Real> amplitude, Real times);
   /// Computes the gradient of the last evaluate() with respect to the amplitudes.
   void gradient(std::span<Real> gradient);
   /// Computes the gradient of the last evaluate() with respect to the places [1/mm].

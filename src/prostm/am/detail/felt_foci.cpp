@@ -155,7 +155,7 @@ int FeltFoci::choose(const TargetField& target, double maximum, FocalPoints& foc
     fitted[2 * f] = static_cast<float>(foci[f].pressure / maximum) + kTiny;
   const std::span<const float> fit = std::span(fitted).first(2 * foci_);
   const float fitted_output = normalise(fit);
-  loss_.keep_loudness(std::span(unit_).first(fit.size()));
+  loss_.keep_loudness(std::span(unit_).first(fit.size()), 1.0F);
   const float wanted = loss_.loudness();
 
   Random random(1);

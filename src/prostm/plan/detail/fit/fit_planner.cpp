@@ -26,7 +26,9 @@ constexpr int kMostHalvings = 60;   // halvings of a circle until it is short en
 // Output that is this many times the wanted pressure bounds nothing, and wanted pressure above this
 // many times the output is cut to that: single precision resolves the range between.
 constexpr double kAmple = 1e4;
-constexpr int kPieces = 2;  // pieces of a segment once preset best has found its paths
+constexpr int kMoveRounds = 4;         // rounds of points that are moved and then mended
+constexpr float kMovedBending = 0.1F;  // share of the weight of (P15) that they have
+constexpr int kPieces = 2;             // pieces of a segment once preset best has found its paths
 
 SearchSettings search_settings(const PlanSettings& s, Preset preset) {
   SearchSettings search;
@@ -340,26 +342,31 @@ ShapeSettings FitPlanner::shape_of(const TargetField& target) {
   return shape;
 }
 
-/// Moves the points of the plan by what is felt, and mends it again.
+/// Moves the points of the plan by what is felt, and mends it again, a few times.
 void FitPlanner::move_felt(const TargetField& target, PlanStats& stats) {
-  LapStarts starts = starts_;
-  for (LapStart& start : starts) start.first /= pieces_;
-  for (int k = 0; k < fit_.loops.paths; ++k) {
-    for (int i = 0; i < fit_.loops.samples; ++i) {
-      fit_.reconstruction.pressure[fit_.loops.node(i, k)] =
-          plan_.reconstruction.pressure[plan_.loops.node(i * pieces_, k)];
+  for (int round = 0; round < kMoveRounds; ++round) {
+    LapStarts starts = starts_;
+    for (LapStart& start : starts) start.first /= pieces_;
+    for (int k = 0; k < fit_.loops.paths; ++k) {
+      for (int i = 0; i < fit_.loops.samples; ++i) {
+        fit_.reconstruction.pressure[fit_.loops.node(i, k)] =
+            plan_.reconstruction.pressure[plan_.loops.node(i * pieces_, k)];
+      }
     }
+    ShapeSettings shape = shape_of(target);
+    shape.weight_bending *= kMovedBending;
+    stats.cost_evaluations += felt_->move_points(starts, loop_, shape, bounds_, pieces_,
+                                                 fit_.reconstruction.pressure, fit_.loops);
+    mend(target, stats);
+    choose_starts();
   }
-  stats.cost_evaluations +=
-      felt_->move_points(starts, loop_, shape_of(target), fit_.reconstruction.pressure, fit_.loops);
-  mend(target, stats);
-  choose_starts();
 }
 
 /// Chooses the pressures of plan_ anew by what is felt, as they can be played.
 void FitPlanner::choose_felt(PlanStats& stats) {
-  stats.cost_evaluations += felt_->choose_pressures(plan_.loops, starts_, loop_, pieces_,
-                                                    bounds_.most[0], plan_.reconstruction.pressure);
+  stats.cost_evaluations +=
+      felt_->choose_pressures(plan_.loops, starts_, loop_, settings_.felt_points ? 1 : pieces_,
+                              bounds_, plan_.reconstruction.pressure);
   make_playable(plan_.loops, bounds_, plan_.reconstruction.pressure);
 }
 

@@ -8,32 +8,33 @@
 namespace prostm::planning {
 namespace {
 
-constexpr float kNorm = 16.0F;  // exponent of the norm that stands for the largest
+// Pressures of moved points are to be felt this much more than the fit's: an array reaches less at
+// some places and moments than (P20) expects.
+constexpr float kSpare = 1.05F;
+constexpr float kLeastShare = 1e-6F;  // of a lap that a point stands for, in a divisor
 
 /// Points that move can make use of finer cells than pressures can.
 std::size_t most_cells(const PlanSettings& settings) {
   return settings.felt_points ? kFinerFeltCells : kFeltCells;
 }
 
-/// x to the power of kNorm − 1.
-float almost_norm(float x) {
-  const float second = x * x, fourth = second * second, eighth = fourth * fourth;
-  return eighth * fourth * second * x;
-}
-
 }  // namespace
 
 std::size_t most_felt_points(const PlanSettings& settings) {
   const int samples = settings.preset == Preset::Best ? settings.fit_samples : settings.samples;
-  return static_cast<std::size_t>(settings.paths) * static_cast<std::size_t>(samples);
+  const bool halved = settings.felt_points && 2 * samples <= kMaxPathPoints;
+  return static_cast<std::size_t>(settings.paths) *
+         static_cast<std::size_t>(halved ? 2 * samples : samples);
 }
 
 FeltProblem::FeltProblem(const PlanSettings& settings)
     : weight_(static_cast<float>(settings.felt_weight)),
+      moves_(settings.felt_points),
       cells_(most_cells(settings)),
       loss_(kFeltSkins, most_cells(settings), most_felt_points(settings), FeltWeights(),
             settings.felt_points),
-      envelope_(most_cells(settings)) {
+      envelope_(most_cells(settings)),
+      demand_(settings.felt_points ? Passed::InTime : Passed::Evenly) {
   const std::size_t most = most_felt_points(settings);
   sources_.reserve(most);
   paths_.reserve(kMaxPaths);
@@ -65,41 +66,16 @@ void FeltProblem::set_points(const StepPoints& points, const CommonLoop& loop) {
     paths_[k].set(points.x.subspan(k * n, n), points.y.subspan(k * n, n), loop.laps[k]);
     paths_[k].sources(first_, std::span(sources_).subspan(k * n, n));
   }
+  demand_.set(paths_, n);
   loss_.set_sources(tables_.of(sigma_, loop.period), sources_);
   if (weight_ < 1.0F)
     envelope_.set_points(cells_.cells(), points, static_cast<float>(kMmPerMetre * sigma_));
 }
 
-/// Calls f(point, moment, share) for the points that are passed at each moment of a loop: one of
-/// each path, or several of a path with laps, which share the moment.
-template <class F>
-void FeltProblem::for_moments(F&& f) const {
-  const auto n = static_cast<std::size_t>(points_.samples);
-  for (std::size_t k = 0; k < paths_.size(); ++k) {
-    const auto laps = static_cast<std::size_t>(paths_[k].laps());
-    const float share = 1.0F / static_cast<float>(laps);
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = laps * i; j < laps * (i + 1); ++j) f(k * n + j % n, i, share);
-    }
-  }
-}
-
-/// Sets pressure_ from √p, and demand_: at each moment the pressure of all paths, which is what an
-/// array must hold. Both are for an output of 1; output_ is the output that it was, (P20).
+/// Sets pressure_ from √p, for an output of 1. output_ is the output that it was, (P20).
 void FeltProblem::normalise(std::span<const float> root) {
-  const auto n = static_cast<std::size_t>(points_.samples);
-  const std::span<float> demand = std::span(demand_).first(n);
-  std::fill(demand.begin(), demand.end(), 0.0F);
   for (std::size_t j = 0; j < root.size(); ++j) pressure_[j] = root[j] * root[j];
-  for_moments([&](std::size_t point, std::size_t moment, float share) {
-    demand[moment] += share * pressure_[point];
-  });
-  const float most = *std::max_element(demand.begin(), demand.end());
-  float sum = 0.0F;
-  for (const float d : demand) sum += almost_norm(d / most) * d / most;
-  output_ = most * std::pow(sum, 1.0F / kNorm);
-  for (float& p : pressure_) p /= output_;
-  for (float& d : demand) d /= output_;
+  output_ = demand_.normalise(pressure_);
 }
 
 /// Blends what is felt with the field of Eq. (1).
@@ -115,7 +91,7 @@ float FeltProblem::evaluate(std::span<const float> root) {
 
 float FeltProblem::keep_loudness(std::span<const float> root) {
   normalise(root);
-  return add_envelope(loss_.keep_loudness(pressure_));
+  return add_envelope(loss_.keep_loudness(pressure_, moves_ ? kSpare : 1.0F));
 }
 
 void FeltProblem::gradient(std::span<const float> root, std::span<float> gradient) {
@@ -123,33 +99,31 @@ void FeltProblem::gradient(std::span<const float> root, std::span<float> gradien
   for (std::size_t j = 0; j < root.size(); ++j) gradient_[j] = weight_ * felt_gradient_[j];
   if (weight_ < 1.0F) envelope_.add_gradient(1.0F - weight_, gradient_);
   // more output changes nothing
-  float along = 0.0F;
-  for (std::size_t j = 0; j < root.size(); ++j) along += gradient_[j] * pressure_[j];
-  for_moments([&](std::size_t point, std::size_t moment, float share) {
-    gradient_[point] -= along * share * almost_norm(demand_[moment]);
-  });
+  along_ = 0.0F;
+  for (std::size_t j = 0; j < root.size(); ++j) along_ += gradient_[j] * pressure_[j];
+  demand_.add_gradient(along_, gradient_);
   for (std::size_t j = 0; j < root.size(); ++j)
     gradient[j] = 2.0F * root[j] * gradient_[j] / output_;
 }
 
 void FeltProblem::slide(std::span<float> gradient_x, std::span<float> gradient_y) {
-  // how much a point stands for scales its pressure
   loss_.turn(pressure_, first_, by_time_);
   loss_.slide(pressure_, gradient_x, gradient_y);
   const auto n = static_cast<std::size_t>(points_.samples);
+  for (std::size_t j = 0; j < by_time_.size(); ++j) {
+    const StepPath<float>& path = paths_[j / n];
+    gradient_x[j] *= weight_;
+    gradient_y[j] *= weight_;
+    by_time_[j] *= weight_ / static_cast<float>(path.laps());
+    // how much a point stands for scales its pressure
+    by_share_[j] =
+        weight_ * felt_gradient_[j] * pressure_[j] / std::max(path.share(j % n), kLeastShare);
+  }
+  demand_.add_by_time(along_, pressure_, by_time_);
   for (std::size_t k = 0; k < paths_.size(); ++k) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t j = k * n + i;
-      by_time_[j] /= static_cast<float>(paths_[k].laps());
-      by_share_[j] = felt_gradient_[j] * pressure_[j] / std::max(paths_[k].share(i), 1e-6F);
-    }
     paths_[k].add_gradient(std::span(by_time_).subspan(k * n, n),
                            std::span(by_share_).subspan(k * n, n), gradient_x.subspan(k * n, n),
                            gradient_y.subspan(k * n, n));
-  }
-  for (std::size_t j = 0; j < gradient_x.size(); ++j) {
-    gradient_x[j] *= weight_;
-    gradient_y[j] *= weight_;
   }
   if (weight_ < 1.0F)
     envelope_.add_slide(1.0F - weight_, points_, pressure_, gradient_x, gradient_y);

@@ -2,7 +2,6 @@
 /// How badly closed paths in step render a target, by what is felt and by the field of Eq. (1), as
 /// a function of their pressures and points: (P19) and (P20).
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "prostm/felt/felt_tables.hpp"
 #include "prostm/felt/step_path.hpp"
 #include "prostm/plan/detail/fit/felt/common_loop.hpp"
+#include "prostm/plan/detail/fit/felt/demand.hpp"
 #include "prostm/plan/detail/fit/felt/envelope.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/plan/plan_settings.hpp"
@@ -30,7 +30,8 @@ class FeltProblem {
   void set_points(const StepPoints& points, const CommonLoop& loop);
   /// Returns (P19) as a function of the roots of the pressures.
   float evaluate(std::span<const float> root);
-  /// Does the same, and keeps the loudness of that as the one that must not be lost.
+  /// Does the same, and keeps the loudness of that as the one that must not be lost; if points
+  /// move, a little more.
   float keep_loudness(std::span<const float> root);
   /// Computes the gradient of the last evaluate() with respect to the roots.
   void gradient(std::span<const float> root, std::span<float> gradient);
@@ -50,10 +51,9 @@ class FeltProblem {
  private:
   void normalise(std::span<const float> root);
   float add_envelope(float felt);
-  template <class F>
-  void for_moments(F&& f) const;
 
   const float weight_;
+  const bool moves_;    // whether points move
   int first_ = 1;       // first harmonic that is felt
   double sigma_ = 1.0;  // of a focus [m]
   float square_ = 1.0F, output_ = 1.0F;
@@ -66,7 +66,8 @@ class FeltProblem {
   std::vector<FeltSource<float>> sources_;
   // of each point; gradients with respect to its pressure, moment and share
   std::vector<float> pressure_, gradient_, felt_gradient_, by_time_, by_share_;
-  std::array<float, kMaxPathPoints> demand_{};  // at each of as many moments as a path has points
+  Demand demand_;
+  float along_ = 0.0F;  // Σ pressure · gradient of the last cost()
 };
 
 }  // namespace prostm::planning

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "prostm/plan/detail/fit/cell_tiles.hpp"
+#include "prostm/plan/detail/fit/felt/rise_cost.hpp"
 
 namespace prostm::planning {
 namespace {
@@ -18,10 +20,10 @@ struct Effort {
   int evaluations;
   float first_step;
 };
-constexpr Effort kMoving = {90, 0.5F};  // of points
+constexpr Effort kMoving = {50, 0.5F}, kMovingAgain = {25, 0.5F};  // of points, in later rounds
 // of pressures, by where it begins: From::Fit, FitAgain, LastPlan, MovedPoints
 constexpr std::array kChoosing = {Effort{12, 0.5F}, Effort{8, 0.5F}, Effort{6, 0.3F},
-                                  Effort{20, 0.5F}};
+                                  Effort{30, 0.5F}};
 
 }  // namespace
 
@@ -119,35 +121,43 @@ void FeltStep::join(const Loops& loops, const LapStarts& starts, int pieces,
 }
 
 int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
-                               int pieces, float most, NodeArray& pressure) {
+                               int pieces, const PlayBounds& bounds, NodeArray& pressure) {
   loop_ = loop;
   take_points(loops, starts, pieces);
   fit(pressure);
   begin();
-  const float fit_cost = problem_.keep_loudness(fitted_);
-  const FeltProblem::Loudness wanted = problem_.loudness();
-  const auto cost = [this](std::span<const float> root, std::span<float> gradient) {
+  const bool moved = from_ == From::MovedPoints;
+  float fit_cost = 0.0F;
+  if (!moved) {
+    fit_cost = problem_.keep_loudness(fitted_);
+    wanted_ = problem_.loudness();
+  }
+  const auto cost = [&](std::span<const float> root, std::span<float> gradient) {
     const float value = problem_.evaluate(root);
     problem_.gradient(root, gradient);
-    return value;
+    return moved ? value + rise_cost(points(), bounds, pieces, root, gradient, {}, {}) : value;
   };
-  int evaluations = 2;
-  if (descent_.begin(cost, root_) > fit_cost && from_ == From::LastPlan) {
+  int evaluations = moved ? 1 : 2;
+  // std::function holds a reference without allocating
+  if (descent_.begin(std::ref(cost), root_) > fit_cost && from_ == From::LastPlan) {
     // a path that has changed is not what the last plan's changes were for
     last_.clear();
     from_ = From::FitAgain;
     begin();
-    descent_.begin(cost, root_);
+    descent_.begin(std::ref(cost), root_);
     ++evaluations;
   }
   const Effort& effort = kChoosing[static_cast<std::size_t>(from_)];
-  evaluations += descent_.run(cost, effort.first_step, effort.evaluations, root_);
+  evaluations += descent_.run(std::ref(cost), effort.first_step, effort.evaluations, root_);
+  if (moved) {
+    for (float& root : root_) root = std::abs(root);
+  }
   // as loud as the fit, if its output suffices
   problem_.evaluate(root_);
   const FeltProblem::Loudness found = problem_.loudness();
   const float highest = *std::max_element(root_.begin(), root_.end());
-  const float scale = std::min(
-      {wanted.felt / found.felt, wanted.output / found.output, most / (highest * highest)});
+  const float scale = std::min({wanted_.felt / found.felt, wanted_.output / found.output,
+                                bounds.most[0] / (highest * highest)});
   for (float& root : root_) root *= std::sqrt(scale);
   for (std::size_t j = 0; j < node_.size(); ++j) pressure[node_[j]] = root_[j] * root_[j];
   remember(From::LastPlan);
@@ -156,8 +166,8 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
 }
 
 /// (P21): the variables are √p, then x and y of all points in units of kPerUnit.
-float FeltStep::moved_cost(const ShapeSettings& shape, std::span<const float> x,
-                           std::span<float> gradient) {
+float FeltStep::moved_cost(const ShapeSettings& shape, const PlayBounds& bounds, int pieces,
+                           std::span<const float> x, std::span<float> gradient) {
   const std::size_t n = node_.size();
   for (std::size_t j = 0; j < n; ++j) {
     x_[j] = loops_.x[node_[j]] = kPerUnit * x[n + j];
@@ -167,6 +177,8 @@ float FeltStep::moved_cost(const ShapeSettings& shape, std::span<const float> x,
   float value = problem_.evaluate(x.first(n));
   problem_.gradient(x.first(n), gradient.first(n));
   problem_.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
+  value += rise_cost(points(), bounds, pieces, x.first(n), gradient.first(n),
+                     gradient.subspan(n, n), gradient.subspan(2 * n, n));
   pairs_.update(loops_, shape);
   shape_x_.fill(0.0F);
   shape_y_.fill(0.0F);
@@ -180,12 +192,17 @@ float FeltStep::moved_cost(const ShapeSettings& shape, std::span<const float> x,
 }
 
 int FeltStep::move_points(const LapStarts& starts, const CommonLoop& loop,
-                          const ShapeSettings& shape, const NodeArray& pressure, Loops& loops) {
+                          const ShapeSettings& shape, const PlayBounds& bounds, int pieces,
+                          const NodeArray& pressure, Loops& loops) {
   loop_ = loop;
   take_points(loops, starts, 1);
   fit(pressure);
   begin();
-  problem_.keep_loudness(fitted_);
+  const bool again = from_ == From::MovedPoints;
+  if (!again) {
+    problem_.keep_loudness(fitted_);
+    wanted_ = problem_.loudness();
+  }
   loops_ = loops;
   pairs_.clear();
   const std::size_t n = node_.size();
@@ -196,17 +213,19 @@ int FeltStep::move_points(const LapStarts& starts, const CommonLoop& loop,
     variables_[2 * n + j] = y_[j] / kPerUnit;
   }
   const auto cost = [&](std::span<const float> x, std::span<float> gradient) {
-    return moved_cost(shape, x, gradient);
+    return moved_cost(shape, bounds, pieces, x, gradient);
   };
-  descent_.begin(cost, variables_);
-  const int evaluations = descent_.run(cost, kMoving.first_step, kMoving.evaluations, variables_);
+  const Effort& effort = again ? kMovingAgain : kMoving;
+  descent_.begin(std::ref(cost), variables_);
+  const int evaluations =
+      descent_.run(std::ref(cost), effort.first_step, effort.evaluations, variables_);
   for (std::size_t j = 0; j < n; ++j) {
-    root_[j] = variables_[j];
+    root_[j] = std::abs(variables_[j]);
     x_[j] = loops.x[node_[j]] = kPerUnit * variables_[n + j];
     y_[j] = loops.y[node_[j]] = kPerUnit * variables_[2 * n + j];
   }
   remember(From::MovedPoints);
-  return evaluations + 1;
+  return again ? evaluations : evaluations + 1;
 }
 
 }  // namespace prostm::planning

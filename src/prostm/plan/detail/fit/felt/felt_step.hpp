@@ -11,6 +11,7 @@
 #include "prostm/plan/detail/fit/loop_shape.hpp"
 #include "prostm/plan/detail/fit/loops.hpp"
 #include "prostm/plan/detail/fit/phases.hpp"
+#include "prostm/plan/detail/fit/playable.hpp"
 
 namespace prostm::planning {
 
@@ -27,14 +28,15 @@ class FeltStep {
   void set_target(const TargetField& target, double maximum, double sigma);
   /// Chooses the pressures of paths in step: those given are where it begins. The points stay.
   /// @param pieces only each so many-th point is chosen, counted from its path's start; pressures
-  /// are linear between. @param most highest pressure. @return evaluations used.
+  /// are linear between. @param bounds of what can be played. @return evaluations used.
   int choose_pressures(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
-                       int pieces, float most, NodeArray& pressure);
-  /// Moves the points of paths in step, while their pressures follow; choose_pressures() goes on
-  /// from there. @param shape of the paths, (P13)–(P15). @param pressure where it begins.
-  /// @return evaluations used.
+                       int pieces, const PlayBounds& bounds, NodeArray& pressure);
+  /// Moves the points of paths in step, while their pressures follow; choose_pressures(), or
+  /// another call with mended paths, goes on from there. @param shape of the paths, (P13)–(P15).
+  /// @param bounds of what can be played, with `pieces` per segment. @param pressure where it
+  /// begins. @return evaluations used.
   int move_points(const LapStarts& starts, const CommonLoop& loop, const ShapeSettings& shape,
-                  const NodeArray& pressure, Loops& loops);
+                  const PlayBounds& bounds, int pieces, const NodeArray& pressure, Loops& loops);
 
  private:
   /// A chosen point of the last plan or of move_points().
@@ -51,7 +53,8 @@ class FeltStep {
   void begin();
   void remember(From from);
   void join(const Loops& loops, const LapStarts& starts, int pieces, NodeArray& pressure) const;
-  float moved_cost(const ShapeSettings& shape, std::span<const float> x, std::span<float> gradient);
+  float moved_cost(const ShapeSettings& shape, const PlayBounds& bounds, int pieces,
+                   std::span<const float> x, std::span<float> gradient);
   StepPoints points() const { return {samples_, x_, y_}; }
 
   FeltProblem problem_;
@@ -59,6 +62,7 @@ class FeltStep {
   From from_ = From::Fit;
   int samples_ = 0;
   CommonLoop loop_;
+  FeltProblem::Loudness wanted_;  // of the fit
   std::vector<Chosen> last_;
   // of each chosen point: its place [mm], √p, that of the fit, and its node
   std::vector<float> x_, y_, root_, fitted_;

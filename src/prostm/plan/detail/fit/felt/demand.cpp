@@ -1,0 +1,107 @@
+#include "prostm/plan/detail/fit/felt/demand.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prostm::planning {
+namespace {
+
+constexpr int kNorm = 16, kNormInTime = 64;
+constexpr float kLeastDuration = 1e-6F;
+
+/// x to the power of n − 1. @pre n is a power of 2, ≥ 2.
+float power_below(float x, int n) {
+  return n == 2 ? x : power_below(x * x, n / 2) * x;
+}
+
+}  // namespace
+
+Demand::Demand(Passed passed)
+    : passed_(passed), norm_(passed == Passed::InTime ? kNormInTime : kNorm) {
+  passings_.reserve(kMaxPaths * kMoments);
+}
+
+/// A path with laps passes several points at a moment.
+void Demand::pass_evenly(const StepPath<float>& path, std::size_t begin, std::size_t samples) {
+  const auto laps = static_cast<std::size_t>(path.laps());
+  for (std::size_t i = 0; i < samples; ++i) {
+    for (std::size_t j = laps * i; j < laps * (i + 1); ++j) {
+      Passing& at = passings_.emplace_back();
+      at.moment = static_cast<std::uint16_t>(i);
+      at.first = at.second = static_cast<std::uint16_t>(begin + j % samples);
+      at.weight = 1.0F / static_cast<float>(laps);
+    }
+  }
+}
+
+void Demand::pass_in_time(const StepPath<float>& path, std::size_t begin, std::size_t samples) {
+  const auto laps = static_cast<std::size_t>(path.laps());
+  std::size_t next = 1, before = 0;
+  for (std::size_t i = 0; i < kMoments; ++i) {
+    const std::size_t in_lap = i * laps % kMoments;
+    if (in_lap < before) next = 1;
+    before = in_lap;
+    const float time = static_cast<float>(in_lap) / static_cast<float>(kMoments);
+    while (next < samples && path.time(next) <= time) ++next;
+    Passing& at = passings_.emplace_back();
+    at.moment = static_cast<std::uint16_t>(i);
+    at.first = static_cast<std::uint16_t>(begin + next - 1);
+    at.second = static_cast<std::uint16_t>(begin + next % samples);
+    at.ends_lap = next == samples;
+    const float from = path.time(next - 1), to = at.ends_lap ? 1.0F : path.time(next);
+    at.duration = std::max(to - from, kLeastDuration);
+    at.share = std::min((time - from) / at.duration, 1.0F);
+  }
+}
+
+void Demand::set(std::span<const StepPath<float>> paths, std::size_t samples) {
+  passings_.clear();
+  moments_ = passed_ == Passed::InTime ? kMoments : samples;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    if (passed_ == Passed::InTime) {
+      pass_in_time(paths[k], k * samples, samples);
+    } else {
+      pass_evenly(paths[k], k * samples, samples);
+    }
+  }
+}
+
+float Demand::almost_norm(float demand) const {
+  return power_below(demand, norm_);
+}
+
+float Demand::normalise(std::span<float> pressure) {
+  const std::span<float> demand = std::span(demand_).first(moments_);
+  std::fill(demand.begin(), demand.end(), 0.0F);
+  for (const Passing& at : passings_) {
+    demand[at.moment] +=
+        at.weight * ((1.0F - at.share) * pressure[at.first] + at.share * pressure[at.second]);
+  }
+  const float most = *std::max_element(demand.begin(), demand.end());
+  float sum = 0.0F;
+  for (const float d : demand) sum += almost_norm(d / most) * d / most;
+  const float output = most * std::pow(sum, 1.0F / static_cast<float>(norm_));
+  for (float& p : pressure) p /= output;
+  for (float& d : demand) d /= output;
+  return output;
+}
+
+void Demand::add_gradient(float along, std::span<float> gradient) const {
+  for (const Passing& at : passings_) {
+    const float pull = along * at.weight * almost_norm(demand_[at.moment]);
+    gradient[at.first] -= (1.0F - at.share) * pull;
+    gradient[at.second] -= at.share * pull;
+  }
+}
+
+void Demand::add_by_time(float along, std::span<const float> pressure,
+                         std::span<float> by_time) const {
+  for (const Passing& at : passings_) {
+    const float rise = (pressure[at.second] - pressure[at.first]) / at.duration;
+    const float pull = along * almost_norm(demand_[at.moment]) * rise;
+    by_time[at.first] += (1.0F - at.share) * pull;
+    if (!at.ends_lap) by_time[at.second] += at.share * pull;
+  }
+}
+
+}  // namespace prostm::planning

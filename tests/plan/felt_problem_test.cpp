@@ -1,0 +1,161 @@
+#include "prostm/plan/detail/fit/felt/felt_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fields/fields.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/plan/detail/fit/felt/rise_cost.hpp"
+
+namespace prostm {
+namespace {
+
+using namespace planning;
+
+constexpr std::size_t kPoints = 28, kPaths = 3;
+
+/// Uneven loops in a field of 162 mm, the second with two laps, and their √p: all in one row.
+std::vector<float> uneven_loops(Random& random) {
+  std::vector<float> out(3 * kPaths * kPoints);
+  for (std::size_t k = 0; k < kPaths; ++k) {
+    const double radius = k == 1 ? 10.0 : 20.0, x = 45.0 + 35.0 * static_cast<double>(k);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const double angle =
+          2.0 * kPi * (static_cast<double>(i) + random.uniform(-0.35, 0.35)) / kPoints;
+      const std::size_t j = k * kPoints + i;
+      out[j] = static_cast<float>(random.uniform(0.1, 1.0));
+      out[kPaths * kPoints + j] = static_cast<float>(x + radius * std::cos(angle));
+      out[2 * kPaths * kPoints + j] = static_cast<float>(80.0 + radius * std::sin(angle));
+    }
+  }
+  return out;
+}
+
+/// Compares slopes in random directions, of all variables and of points alone, with differences.
+/// @param cost of variables; writes its gradient. @param share by which they may differ.
+template <class Cost>
+void expect_gradient(const Cost& cost, std::vector<float> at, Random& random, double share) {
+  constexpr float kStep = 1e-2F;
+  const std::size_t all = at.size();
+  std::vector<float> gradient(all), unused(all), direction(all), moved(all);
+  cost(at, gradient);
+  double apart = 0.0, whole = 0.0;
+  for (int draw = 0; draw < 40; ++draw) {
+    double slope = 0.0;
+    for (std::size_t j = 0; j < all; ++j) {
+      const bool counts = draw % 2 == 0 || j >= all / 3;
+      direction[j] = counts ? static_cast<float>(random.uniform(-1.0, 1.0)) : 0.0F;
+      slope += static_cast<double>(direction[j]) * static_cast<double>(gradient[j]);
+    }
+    const auto value = [&](float step) {
+      for (std::size_t j = 0; j < all; ++j) moved[j] = at[j] + step * direction[j];
+      return static_cast<double>(cost(moved, unused));
+    };
+    const double difference = (value(kStep) - value(-kStep)) / (2.0 * static_cast<double>(kStep));
+    apart += std::pow(difference - slope, 2);
+    whole += difference * difference;
+  }
+  EXPECT_GT(whole, 0.0);
+  EXPECT_LT(std::sqrt(apart / whole), share);
+}
+
+TEST(FeltProblem, HasTheGradientOfItsCost) {
+  PlanSettings settings;
+  settings.paths = static_cast<int>(kPaths);
+  settings.felt_weight = 0.9;
+  settings.felt_points = true;
+  FeltProblem problem(settings);
+  const TargetField field = fields::make(fields::Pattern::FourPlumes, 10);
+  problem.set_target(field, max_pressure(field), 4.3e-3);
+  Random random(3);
+  const std::vector<float> at = uneven_loops(random);
+  constexpr std::size_t n = kPaths * kPoints;
+  const CommonLoop loop{0.02, {1, 2, 1}};
+  const auto cost = [&](std::span<const float> v, std::span<float> gradient) {
+    problem.set_points({static_cast<int>(kPoints), v.subspan(n, n), v.subspan(2 * n, n)}, loop);
+    const float value = problem.evaluate(v.first(n));
+    problem.gradient(v.first(n), gradient.first(n));
+    problem.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
+    return value;
+  };
+  problem.set_points(
+      {static_cast<int>(kPoints), std::span(at).subspan(n, n), std::span(at).subspan(2 * n, n)},
+      loop);
+  problem.keep_loudness(std::span(at).first(n));
+  expect_gradient(cost, at, random, 0.02);
+}
+
+TEST(RiseCost, HasTheGradientOfItself) {
+  Random random(5);
+  std::vector<float> at = uneven_loops(random);
+  for (std::size_t j = 0; j < at.size() / 3; j += 5) at[j] = -at[j];  // as good a root
+  constexpr std::size_t n = kPaths * kPoints;
+  const PlayBounds bounds = PlayBounds::all(0.5F, 0.08F);
+  for (const int pieces : {1, 2}) {
+    expect_gradient(
+        [&](std::span<const float> v, std::span<float> gradient) {
+          std::fill(gradient.begin(), gradient.end(), 0.0F);
+          return rise_cost({static_cast<int>(kPoints), v.subspan(n, n), v.subspan(2 * n, n)},
+                           bounds, pieces, v.first(n), gradient.first(n), gradient.subspan(n, n),
+                           gradient.subspan(2 * n, n));
+        },
+        at, random, 0.02);
+  }
+}
+
+/// A circle whose √p is `low` but at one point, where it is 1.
+struct Peak {
+  static constexpr std::size_t kAt = 5;
+  std::vector<float> x, y, root, gradient;
+
+  explicit Peak(float low) : root(kPoints, low), gradient(kPoints) {
+    root[kAt] = 1.0F;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const double angle = 2.0 * kPi * static_cast<double>(i) / kPoints;
+      x.push_back(static_cast<float>(20.0 * std::cos(angle)));
+      y.push_back(static_cast<float>(20.0 * std::sin(angle)));
+    }
+  }
+  StepPoints points() const { return {static_cast<int>(kPoints), x, y}; }
+  /// Whether make_playable() leaves the pressures as they are, linear in `pieces` between points.
+  bool can_be_played(const PlayBounds& bounds, int pieces) const {
+    Loops loops;
+    loops.reset(static_cast<int>(kPoints) * pieces, 1);
+    NodeArray pressure{};
+    for (int a = 0; a < loops.samples; ++a) {
+      const auto i = static_cast<std::size_t>(a / pieces), j = points().next(i);
+      const float t = static_cast<float>(a % pieces) / static_cast<float>(pieces), u = 1.0F - t;
+      loops.set_point(a, 0, {u * x[i] + t * x[j], u * y[i] + t * y[j]});
+      pressure[loops.node(a, 0)] = u * root[i] * root[i] + t * root[j] * root[j];
+    }
+    const NodeArray before = pressure;
+    make_playable(loops, bounds, pressure);
+    float most = 0.0F;
+    for (int a = 0; a < loops.samples; ++a) {
+      const std::size_t node = loops.node(a, 0);
+      most = std::max(most, std::abs(pressure[node] - before[node]));
+    }
+    return most < 1e-5F;
+  }
+};
+
+TEST(RiseCost, BeginsWherePressuresCanNoLongerBePlayed) {
+  const PlayBounds bounds = PlayBounds::all(1.0F, 0.1F);
+  for (const int pieces : {1, 2}) {
+    int playable = 0, free = 0;
+    for (float low = 0.3F; low < 0.9F; low += 0.01F) {
+      Peak peak(low);
+      const float cost = rise_cost(peak.points(), bounds, pieces, peak.root, peak.gradient, {}, {});
+      playable += peak.can_be_played(bounds, pieces) ? 1 : 0;
+      free += cost <= 0.0F ? 1 : 0;
+    }
+    EXPECT_GT(playable, 10) << pieces;
+    EXPECT_LT(playable, 50) << pieces;
+    EXPECT_NEAR(playable, free, 1) << pieces;
+  }
+}
+
+}  // namespace
+}  // namespace prostm
