@@ -130,32 +130,28 @@ void Fill(std::span<const Response> skins, float x, float y, std::span<const Sou
   }
 }
 
-void Forward(const Fixed* pairs, std::size_t rows, std::span<const float> amplitude, Pair* out) {
+/// Sums up so many rows at once, since one sum would have to wait for itself.
+template <std::size_t kCount>
+HWY_INLINE void SumRows(const Fixed* pairs, std::span<const float> amplitude, Pair* out) {
   const D d;
-  const std::size_t sources = amplitude.size();
-  for (std::size_t row = 0; row < rows; ++row) {
-    const Fixed* pair = pairs + row * sources;
-    // two sums, so that one need not wait for the other
-    V even[kVectors], odd[kVectors];
-    for (std::size_t v = 0; v < kVectors; ++v) even[v] = odd[v] = hn::Zero(d);
-    std::size_t j = 0;
-    for (; j + 2 <= sources; j += 2) {
-      const V p = hn::Set(d, amplitude[j]), q = hn::Set(d, amplitude[j + 1]);
-      for (std::size_t v = 0; v < kVectors; ++v) {
-        even[v] = hn::MulAdd(p, Load(pair[j], v), even[v]);
-        odd[v] = hn::MulAdd(q, Load(pair[j + 1], v), odd[v]);
-      }
+  V sum[kCount][kVectors];
+  for (std::size_t r = 0; r < kCount; ++r) {
+    for (std::size_t v = 0; v < kVectors; ++v) sum[r][v] = hn::Zero(d);
+  }
+  for (std::size_t j = 0; j < amplitude.size(); ++j) {
+    const V by = hn::Set(d, amplitude[j]);
+    for (std::size_t r = 0; r < kCount; ++r) {
+      for (std::size_t v = 0; v < kVectors; ++v)
+        sum[r][v] = hn::MulAdd(by, Load(pairs[r * amplitude.size() + j], v), sum[r][v]);
     }
-    for (; j < sources; ++j) {
-      const V p = hn::Set(d, amplitude[j]);
-      for (std::size_t v = 0; v < kVectors; ++v) even[v] = hn::MulAdd(p, Load(pair[j], v), even[v]);
-    }
+  }
+  for (std::size_t r = 0; r < kCount; ++r) {
     for (std::size_t v = 0; v < kVectors; ++v)
-      hn::Store(hn::Add(even[v], odd[v]), d, out[row].part.data() + v * kLanes);
+      hn::Store(sum[r][v], d, out[r].part.data() + v * kLanes);
   }
 }
 
-/// So many rows at once: each sum is loaded and stored once for all of them.
+/// Adds so many rows at once: each sum is loaded and stored once for all of them.
 template <std::size_t kCount>
 HWY_INLINE void AddRows(const Fixed* pairs, const Pair* pull, std::span<Pair> sums) {
   const D d;
@@ -171,6 +167,14 @@ HWY_INLINE void AddRows(const Fixed* pairs, const Pair* pull, std::span<Pair> su
       hn::Store(sum, d, sums[j].part.data() + v * kLanes);
     }
   }
+}
+
+void Forward(const Fixed* pairs, std::size_t rows, std::span<const float> amplitude, Pair* out) {
+  const std::size_t sources = amplitude.size();
+  std::size_t row = 0;
+  for (; row + kRows <= rows; row += kRows)
+    SumRows<kRows>(pairs + row * sources, amplitude, out + row);
+  for (; row < rows; ++row) SumRows<1>(pairs + row * sources, amplitude, out + row);
 }
 
 void Backward(const Fixed* pairs, std::size_t rows, const Pair* pull, std::span<Pair> sums) {

@@ -6,35 +6,27 @@
 namespace prostm::planning {
 namespace {
 
-constexpr int kNorm = 16, kNormInTime = 64;
+constexpr int kNorm = 64;          // exponent of the norm that stands for the largest
+constexpr float kNoMatter = 0.3F;  // its power is 1e-33; those of lower ones are slow to compute
 constexpr float kLeastDuration = 1e-6F;
 
-/// x to the power of n − 1. @pre n is a power of 2, ≥ 2.
-float power_below(float x, int n) {
-  return n == 2 ? x : power_below(x * x, n / 2) * x;
+/// x to the power of kNorm − 1.
+float almost_norm(float x) {
+  float square = std::max(x, kNoMatter), power = square;
+  for (int n = 2; n < kNorm; n *= 2) {
+    square *= square;
+    power *= square;
+  }
+  return power;
 }
 
 }  // namespace
 
-Demand::Demand(Passed passed)
-    : passed_(passed), norm_(passed == Passed::InTime ? kNormInTime : kNorm) {
+Demand::Demand() {
   passings_.reserve(kMaxPaths * kMoments);
 }
 
-/// A path with laps passes several points at a moment.
-void Demand::pass_evenly(const StepPath<float>& path, std::size_t begin, std::size_t samples) {
-  const auto laps = static_cast<std::size_t>(path.laps());
-  for (std::size_t i = 0; i < samples; ++i) {
-    for (std::size_t j = laps * i; j < laps * (i + 1); ++j) {
-      Passing& at = passings_.emplace_back();
-      at.moment = static_cast<std::uint16_t>(i);
-      at.first = at.second = static_cast<std::uint16_t>(begin + j % samples);
-      at.weight = 1.0F / static_cast<float>(laps);
-    }
-  }
-}
-
-void Demand::pass_in_time(const StepPath<float>& path, std::size_t begin, std::size_t samples) {
+void Demand::pass(const StepPath<float>& path, std::size_t begin, std::size_t samples) {
   const auto laps = static_cast<std::size_t>(path.laps());
   std::size_t next = 1, before = 0;
   for (std::size_t i = 0; i < kMoments; ++i) {
@@ -56,39 +48,25 @@ void Demand::pass_in_time(const StepPath<float>& path, std::size_t begin, std::s
 
 void Demand::set(std::span<const StepPath<float>> paths, std::size_t samples) {
   passings_.clear();
-  moments_ = passed_ == Passed::InTime ? kMoments : samples;
-  for (std::size_t k = 0; k < paths.size(); ++k) {
-    if (passed_ == Passed::InTime) {
-      pass_in_time(paths[k], k * samples, samples);
-    } else {
-      pass_evenly(paths[k], k * samples, samples);
-    }
-  }
-}
-
-float Demand::almost_norm(float demand) const {
-  return power_below(demand, norm_);
+  for (std::size_t k = 0; k < paths.size(); ++k) pass(paths[k], k * samples, samples);
 }
 
 float Demand::normalise(std::span<float> pressure) {
-  const std::span<float> demand = std::span(demand_).first(moments_);
-  std::fill(demand.begin(), demand.end(), 0.0F);
-  for (const Passing& at : passings_) {
-    demand[at.moment] +=
-        at.weight * ((1.0F - at.share) * pressure[at.first] + at.share * pressure[at.second]);
-  }
+  std::array<float, kMoments> demand{};
+  for (const Passing& at : passings_)
+    demand[at.moment] += (1.0F - at.share) * pressure[at.first] + at.share * pressure[at.second];
   const float most = *std::max_element(demand.begin(), demand.end());
   float sum = 0.0F;
   for (const float d : demand) sum += almost_norm(d / most) * d / most;
-  const float output = most * std::pow(sum, 1.0F / static_cast<float>(norm_));
+  const float output = most * std::pow(sum, 1.0F / static_cast<float>(kNorm));
   for (float& p : pressure) p /= output;
-  for (float& d : demand) d /= output;
+  for (std::size_t i = 0; i < kMoments; ++i) by_demand_[i] = almost_norm(demand[i] / output);
   return output;
 }
 
 void Demand::add_gradient(float along, std::span<float> gradient) const {
   for (const Passing& at : passings_) {
-    const float pull = along * at.weight * almost_norm(demand_[at.moment]);
+    const float pull = along * by_demand_[at.moment];
     gradient[at.first] -= (1.0F - at.share) * pull;
     gradient[at.second] -= at.share * pull;
   }
@@ -98,7 +76,7 @@ void Demand::add_by_time(float along, std::span<const float> pressure,
                          std::span<float> by_time) const {
   for (const Passing& at : passings_) {
     const float rise = (pressure[at.second] - pressure[at.first]) / at.duration;
-    const float pull = along * almost_norm(demand_[at.moment]) * rise;
+    const float pull = along * by_demand_[at.moment] * rise;
     by_time[at.first] += (1.0F - at.share) * pull;
     if (!at.ends_lap) by_time[at.second] += at.share * pull;
   }

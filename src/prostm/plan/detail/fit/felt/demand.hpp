@@ -11,16 +11,10 @@
 
 namespace prostm::planning {
 
-/// When the points of a path are taken to be passed.
-enum class Passed : std::uint8_t {
-  Evenly,  ///< as if all segments were equally long
-  InTime   ///< as the lengths of its segments have it
-};
-
 /// The pressures of all paths together at moments of a loop. Sized once; nothing else allocates.
 class Demand {
  public:
-  explicit Demand(Passed passed);
+  Demand();
 
   /// Takes over paths of `samples` points each.
   void set(std::span<const StepPath<float>> paths, std::size_t samples);
@@ -30,12 +24,12 @@ class Demand {
   /// Makes the gradient of a cost of the last normalised pressures one with respect to pressures
   /// that are yet to be normalised, times their output. @param along Σ gradient · pressure.
   void add_gradient(float along, std::span<float> gradient) const;
-  /// Adds the gradient of the same with respect to time() of the points. @pre they are passed in
-  /// time. @param pressure as it was normalised.
+  /// Adds the gradient of the same with respect to time() of the points. @param pressure
+  /// as it was normalised.
   void add_by_time(float along, std::span<const float> pressure, std::span<float> by_time) const;
 
  private:
-  static constexpr std::size_t kMoments = 160;  // in time: a few for each point
+  static constexpr std::size_t kMoments = 160;  // of a loop: a few for each point
 
   /// A path at a moment: on its way from one point to the next.
   struct Passing {
@@ -43,17 +37,11 @@ class Demand {
     bool ends_lap = false;  // `second` is the path's first point
     float share = 0.0F;     // of the way
     float duration = 1.0F;  // of the way, as a share of a lap
-    float weight = 1.0F;    // passings of one path at one moment share it
   };
-  void pass_evenly(const StepPath<float>& path, std::size_t begin, std::size_t samples);
-  void pass_in_time(const StepPath<float>& path, std::size_t begin, std::size_t samples);
-  float almost_norm(float demand) const;
+  void pass(const StepPath<float>& path, std::size_t begin, std::size_t samples);
 
-  const Passed passed_;
-  const int norm_;  // exponent of the norm that stands for the largest
-  std::size_t moments_ = 0;
   std::vector<Passing> passings_;
-  std::array<float, kMoments> demand_{};
+  std::array<float, kMoments> by_demand_{};  // derivative of the output by that of each moment
 };
 
 }  // namespace prostm::planning

@@ -33,8 +33,7 @@ FeltProblem::FeltProblem(const PlanSettings& settings)
       cells_(most_cells(settings)),
       loss_(kFeltSkins, most_cells(settings), most_felt_points(settings), FeltWeights(),
             settings.felt_points),
-      envelope_(most_cells(settings)),
-      demand_(settings.felt_points ? Passed::InTime : Passed::Evenly) {
+      envelope_(most_cells(settings)) {
   const std::size_t most = most_felt_points(settings);
   sources_.reserve(most);
   paths_.reserve(kMaxPaths);
