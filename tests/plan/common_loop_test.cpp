@@ -25,6 +25,13 @@ TEST(CommonLoop, LetsShortPathsGoRoundMoreOften) {
   EXPECT_DOUBLE_EQ(loop.period, kLongest);
   EXPECT_EQ(loop.laps[1], 2);
   EXPECT_EQ(loop.laps[2], 4);
+  EXPECT_NEAR(loop.pace, 1.0, 1e-12);
+}
+
+TEST(CommonLoop, KnowsHowMuchItSlowsPathsDown) {
+  const std::vector<double> own = {kLongest, 0.9 * kLongest, 0.4 * kLongest};
+  const CommonLoop loop = loop_of(own, kLongest);
+  EXPECT_NEAR(loop.pace, (1.0 + 0.9 + 2 * 0.4) / 3, 1e-12);
 }
 
 TEST(CommonLoop, IsShorterWherePathsAre) {

@@ -26,9 +26,11 @@ double quickness(std::span<const double> own, const CommonLoop& loop) {
 }  // namespace
 
 CommonLoop loop_of(std::span<const double> own, double period) {
-  CommonLoop loop{period, {}};
-  for (std::size_t k = 0; k < own.size(); ++k)
+  CommonLoop loop{period, {}, 0.0};
+  for (std::size_t k = 0; k < own.size(); ++k) {
     loop.laps[k] = static_cast<int>(std::min(period / own[k] + kRounding, double{kMostLaps}));
+    loop.pace += loop.laps[k] * own[k] / (period * static_cast<double>(own.size()));
+  }
   return loop;
 }
 

@@ -15,6 +15,7 @@ using LapCounts = std::array<int, kMaxPaths>;
 struct CommonLoop {
   double period = 0.0;  ///< [s]
   LapCounts laps{};
+  double pace = 1.0;  ///< speed of the focal points over their own, the mean over paths
 };
 
 /// Chooses the loop in which focal points move nearly as fast as they may, (P22): of the periods

@@ -8,9 +8,10 @@
 namespace prostm::planning {
 namespace {
 
-// Pressures of moved points are to be felt this much more than the fit's: an array reaches less at
-// some places and moments than (P20) expects.
+// Pressures of moved points are to be felt this much more than the fit's, since an array reaches
+// less at some places than (P20) expects; and more where the loop slows focal points down.
 constexpr float kSpare = 1.05F;
+constexpr double kLeastPace = 0.7;    // below which no more loudness is asked for
 constexpr float kLeastShare = 1e-6F;  // of a lap that a point stands for, in a divisor
 
 /// Points that move can make use of finer cells than pressures can.
@@ -55,6 +56,7 @@ void FeltProblem::set_target(const TargetField& target, double maximum, double s
 
 void FeltProblem::set_points(const StepPoints& points, const CommonLoop& loop) {
   first_ = first_felt_harmonic(loop.period);
+  spare_ = kSpare / static_cast<float>(std::clamp(loop.pace, kLeastPace, 1.0));
   points_ = points;
   const auto n = static_cast<std::size_t>(points.samples), all = points.x.size();
   for (auto* list : {&pressure_, &gradient_, &felt_gradient_, &by_time_, &by_share_})
@@ -90,7 +92,7 @@ float FeltProblem::evaluate(std::span<const float> root) {
 
 float FeltProblem::keep_loudness(std::span<const float> root) {
   normalise(root);
-  return add_envelope(loss_.keep_loudness(pressure_, moves_ ? kSpare : 1.0F));
+  return add_envelope(loss_.keep_loudness(pressure_, moves_ ? spare_ : 1.0F));
 }
 
 void FeltProblem::gradient(std::span<const float> root, std::span<float> gradient) {

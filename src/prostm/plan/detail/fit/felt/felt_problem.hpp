@@ -56,6 +56,7 @@ class FeltProblem {
   const bool moves_;    // whether points move
   int first_ = 1;       // first harmonic that is felt
   double sigma_ = 1.0;  // of a focus [m]
+  float spare_ = 1.0F;  // factor on the loudness to keep, if points move
   float square_ = 1.0F, output_ = 1.0F;
   FeltTables tables_;
   FeltCells cells_;
