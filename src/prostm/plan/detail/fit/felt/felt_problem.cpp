@@ -56,7 +56,7 @@ void FeltProblem::set_target(const TargetField& target, double maximum, double s
 
 void FeltProblem::set_points(const StepPoints& points, const CommonLoop& loop) {
   first_ = first_felt_harmonic(loop.period);
-  spare_ = kSpare / static_cast<float>(std::clamp(loop.pace, kLeastPace, 1.0));
+  if (moves_) spare_ = kSpare / static_cast<float>(std::clamp(loop.pace, kLeastPace, 1.0));
   points_ = points;
   const auto n = static_cast<std::size_t>(points.samples), all = points.x.size();
   for (auto* list : {&pressure_, &gradient_, &felt_gradient_, &by_time_, &by_share_})
@@ -92,7 +92,7 @@ float FeltProblem::evaluate(std::span<const float> root) {
 
 float FeltProblem::keep_loudness(std::span<const float> root) {
   normalise(root);
-  return add_envelope(loss_.keep_loudness(pressure_, moves_ ? spare_ : 1.0F));
+  return add_envelope(loss_.keep_loudness(pressure_, spare_));
 }
 
 void FeltProblem::gradient(std::span<const float> root, std::span<float> gradient) {

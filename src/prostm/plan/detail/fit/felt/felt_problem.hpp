@@ -68,7 +68,7 @@ class FeltProblem {
   // of each point; gradients with respect to its pressure, moment and share
   std::vector<float> pressure_, gradient_, felt_gradient_, by_time_, by_share_;
   Demand demand_;
-  float along_ = 0.0F;  // Σ pressure · gradient of the last cost()
+  float along_ = 0.0F;  // Σ pressure · gradient of the last evaluate()
 };
 
 }  // namespace prostm::planning

@@ -149,9 +149,7 @@ int FeltStep::choose_pressures(const Loops& loops, const LapStarts& starts, cons
   }
   const Effort& effort = kChoosing[static_cast<std::size_t>(from_)];
   evaluations += descent_.run(std::ref(cost), effort.first_step, effort.evaluations, root_);
-  if (moved) {
-    for (float& root : root_) root = std::abs(root);
-  }
+  for (float& root : root_) root = std::abs(root);  // either sign stands for p
   // as loud as the fit, if its output suffices
   problem_.evaluate(root_);
   const FeltProblem::Loudness found = problem_.loudness();
