@@ -16,11 +16,12 @@ using namespace planning;
 
 constexpr std::size_t kPoints = 28, kPaths = 3;
 
-/// Uneven loops in a field of 162 mm, the second with two laps, and their √p: all in one row.
+/// Uneven loops in a field of 162 mm, near each other at some moments, and their √p: all in one
+/// row.
 std::vector<float> uneven_loops(Random& random) {
   std::vector<float> out(3 * kPaths * kPoints);
   for (std::size_t k = 0; k < kPaths; ++k) {
-    const double radius = k == 1 ? 10.0 : 20.0, x = 45.0 + 35.0 * static_cast<double>(k);
+    const double radius = k == 1 ? 10.0 : 20.0, x = 45.0 + 32.0 * static_cast<double>(k);
     for (std::size_t i = 0; i < kPoints; ++i) {
       const double angle =
           2.0 * kPi * (static_cast<double>(i) + random.uniform(-0.35, 0.35)) / kPoints;
@@ -77,13 +78,16 @@ TEST(FeltProblem, HasTheGradientOfItsCost) {
     problem.set_points({static_cast<int>(kPoints), v.subspan(n, n), v.subspan(2 * n, n)}, loop);
     const float value = problem.evaluate(v.first(n));
     problem.gradient(v.first(n), gradient.first(n));
-    problem.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
-    return value;
+    return value + problem.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
   };
   problem.set_points(
       {static_cast<int>(kPoints), std::span(at).subspan(n, n), std::span(at).subspan(2 * n, n)},
       loop);
   problem.keep_loudness(std::span(at).first(n));
+  std::vector<float> gradient(3 * n);
+  problem.evaluate(std::span(at).first(n));
+  problem.gradient(std::span(at).first(n), std::span(gradient).first(n));
+  EXPECT_GT(problem.slide(std::span(gradient).subspan(n, n), std::span(gradient).last(n)), 0.01F);
   expect_gradient(cost, at, random, 0.02);
 }
 

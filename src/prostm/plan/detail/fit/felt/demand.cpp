@@ -9,6 +9,9 @@ namespace {
 constexpr int kNorm = 64;          // exponent of the norm that stands for the largest
 constexpr float kNoMatter = 0.3F;  // its power is 1e-33; those of lower ones are slow to compute
 constexpr float kLeastDuration = 1e-6F;
+// distance that focal points should keep [mm]: an array shows two nearer ones with much more output
+constexpr float kApart = 10.0F;
+constexpr float kNearWeight = 1.0F;  // of (P24)
 
 /// x to the power of kNorm − 1.
 float almost_norm(float x) {
@@ -80,6 +83,45 @@ void Demand::add_by_time(float along, std::span<const float> pressure,
     by_time[at.first] += (1.0F - at.share) * pull;
     if (!at.ends_lap) by_time[at.second] += at.share * pull;
   }
+}
+
+void Demand::add_place(const Passing& at, const StepPoints& points, float dx, float dy,
+                       std::span<float> gradient_x, std::span<float> gradient_y,
+                       std::span<float> by_time) const {
+  const float before = 1.0F - at.share;
+  gradient_x[at.first] += before * dx;
+  gradient_y[at.first] += before * dy;
+  gradient_x[at.second] += at.share * dx;
+  gradient_y[at.second] += at.share * dy;
+  // passed later, a point is farther ahead
+  const float back = (dx * (points.x[at.second] - points.x[at.first]) +
+                      dy * (points.y[at.second] - points.y[at.first])) /
+                     at.duration;
+  by_time[at.first] -= before * back;
+  if (!at.ends_lap) by_time[at.second] -= at.share * back;
+}
+
+float Demand::near_cost(const StepPoints& points, std::span<float> gradient_x,
+                        std::span<float> gradient_y, std::span<float> by_time) const {
+  constexpr float kEach = kNearWeight / static_cast<float>(kMoments);
+  const auto place = [](const Passing& at, std::span<const float> v) {
+    return (1.0F - at.share) * v[at.first] + at.share * v[at.second];
+  };
+  float value = 0.0F;
+  for (std::size_t a = 0; a < passings_.size(); ++a) {
+    for (std::size_t b = a + kMoments; b < passings_.size(); b += kMoments) {
+      const Passing &one = passings_[a], &other = passings_[b];
+      const float dx = place(one, points.x) - place(other, points.x);
+      const float dy = place(one, points.y) - place(other, points.y);
+      const float near = 1.0F - (dx * dx + dy * dy) / (kApart * kApart);
+      if (near <= 0.0F) continue;
+      value += kEach * near * near;
+      const float pull = -4.0F * kEach * near / (kApart * kApart);
+      add_place(one, points, pull * dx, pull * dy, gradient_x, gradient_y, by_time);
+      add_place(other, points, -pull * dx, -pull * dy, gradient_x, gradient_y, by_time);
+    }
+  }
+  return value;
 }
 
 }  // namespace prostm::planning

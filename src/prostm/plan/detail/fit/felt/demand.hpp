@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "prostm/felt/step_path.hpp"
+#include "prostm/plan/detail/fit/felt/envelope.hpp"
 #include "prostm/plan/plan.hpp"
 
 namespace prostm::planning {
@@ -28,6 +29,11 @@ class Demand {
   /// as it was normalised.
   void add_by_time(float along, std::span<const float> pressure, std::span<float> by_time) const;
 
+  /// Returns the cost (P24) of focal points that are near each other at one moment, and adds its
+  /// gradient with respect to the points [1/mm], and to time() of them.
+  float near_cost(const StepPoints& points, std::span<float> gradient_x,
+                  std::span<float> gradient_y, std::span<float> by_time) const;
+
  private:
   static constexpr std::size_t kMoments = 160;  // of a loop: a few for each point
 
@@ -39,6 +45,10 @@ class Demand {
     float duration = 1.0F;  // of the way, as a share of a lap
   };
   void pass(const StepPath<float>& path, std::size_t begin, std::size_t samples);
+  /// Adds what follows from the gradient with respect to where a path is.
+  void add_place(const Passing& at, const StepPoints& points, float dx, float dy,
+                 std::span<float> gradient_x, std::span<float> gradient_y,
+                 std::span<float> by_time) const;
 
   std::vector<Passing> passings_;
   std::array<float, kMoments> by_demand_{};  // derivative of the output by that of each moment

@@ -107,7 +107,7 @@ void FeltProblem::gradient(std::span<const float> root, std::span<float> gradien
     gradient[j] = 2.0F * root[j] * gradient_[j] / output_;
 }
 
-void FeltProblem::slide(std::span<float> gradient_x, std::span<float> gradient_y) {
+float FeltProblem::slide(std::span<float> gradient_x, std::span<float> gradient_y) {
   loss_.turn(pressure_, first_, by_time_);
   loss_.slide(pressure_, gradient_x, gradient_y);
   const auto n = static_cast<std::size_t>(points_.samples);
@@ -121,6 +121,7 @@ void FeltProblem::slide(std::span<float> gradient_x, std::span<float> gradient_y
         weight_ * felt_gradient_[j] * pressure_[j] / std::max(path.share(j % n), kLeastShare);
   }
   demand_.add_by_time(along_, pressure_, by_time_);
+  const float near = demand_.near_cost(points_, gradient_x, gradient_y, by_time_);
   for (std::size_t k = 0; k < paths_.size(); ++k) {
     paths_[k].add_gradient(std::span(by_time_).subspan(k * n, n),
                            std::span(by_share_).subspan(k * n, n), gradient_x.subspan(k * n, n),
@@ -128,6 +129,7 @@ void FeltProblem::slide(std::span<float> gradient_x, std::span<float> gradient_y
   }
   if (weight_ < 1.0F)
     envelope_.add_slide(1.0F - weight_, points_, pressure_, gradient_x, gradient_y);
+  return near;
 }
 
 }  // namespace prostm::planning

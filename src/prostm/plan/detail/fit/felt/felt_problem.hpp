@@ -35,9 +35,9 @@ class FeltProblem {
   float keep_loudness(std::span<const float> root);
   /// Computes the gradient of the last evaluate() with respect to the roots.
   void gradient(std::span<const float> root, std::span<float> gradient);
-  /// Computes the gradient of the last evaluate() with respect to the points [1/mm], after
-  /// gradient().
-  void slide(std::span<float> gradient_x, std::span<float> gradient_y);
+  /// Computes the gradient, with respect to the points [1/mm], of the last evaluate() and of (P24),
+  /// after gradient(). @return (P24).
+  float slide(std::span<float> gradient_x, std::span<float> gradient_y);
 
   /// Loudness and output of the last evaluate().
   struct Loudness {

@@ -174,7 +174,7 @@ float FeltStep::moved_cost(const ShapeSettings& shape, const PlayBounds& bounds,
   problem_.set_points(points(), loop_);
   float value = problem_.evaluate(x.first(n));
   problem_.gradient(x.first(n), gradient.first(n));
-  problem_.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
+  value += problem_.slide(gradient.subspan(n, n), gradient.subspan(2 * n, n));
   value += rise_cost(points(), bounds, pieces, x.first(n), gradient.first(n),
                      gradient.subspan(n, n), gradient.subspan(2 * n, n));
   pairs_.update(loops_, shape);
