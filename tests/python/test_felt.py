@@ -103,10 +103,11 @@ def test_the_lack_falls_with_the_weight_and_again_with_the_points(field):
 
 
 def test_plans_by_what_is_felt_are_in_step(field, plan):
-    assert 0.01 <= plan.loop <= 0.02  # 1 / draw_rate at most
-    for path in plan.paths:
-        laps = plan.loop / path.period
-        assert laps == pytest.approx(round(laps), abs=1e-9) and path.speed <= 7 * (1 + 1e-9)
+    for own in (plan, prostm.plan(field, felt_weight=0.9, felt_points=True, sigma=SIGMA).plan):
+        assert 0.01 <= own.loop <= 0.02  # 1 / draw_rate at most
+        for path in own.paths:
+            laps = own.loop / path.period
+            assert laps == pytest.approx(round(laps), abs=1e-9) and path.speed <= 7 * (1 + 1e-9)
     assert prostm.plan(field).plan.loop == 0 and prostm.plan(field, felt_points=True).plan.loop == 0
     foci = prostm.plan(field, method="am", felt_weight=0.9).foci
     assert any(focus.phase > 0 for focus in foci)

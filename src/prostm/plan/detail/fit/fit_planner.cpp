@@ -248,8 +248,10 @@ void FitPlanner::mend(const TargetField& target, PlanStats& stats) {
 int FitPlanner::mend_between(const TargetField& target, int paths) {
   samples_ *= pieces_;
   for (int k = 0; k < paths; ++k) copy_path(k, k);
-  const SpacingRule rule = spacing_rule(0.0);
-  if (are_apart(points_of(paths), samples_, rule, spacing_)) return paths;
+  SpacingRule rule = spacing_rule(0.0);
+  // more samples see more of the skin's slopes
+  const bool any_long = bound_lengths(target, paths, 1.0 - kRounding, rule);
+  if (!any_long && are_apart(points_of(paths), samples_, rule, spacing_)) return paths;
   paths = space_out(target, paths, rule);
   take_points(paths);
   return paths;
@@ -289,7 +291,8 @@ void FitPlanner::step_together(int paths) {
   loop_ = is_alone_ ? choose_loop(own, longest, last_period_) : loop_of(own, longest);
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
-    period_[place] = loop_.period / std::max(loop_.laps[place], 1);
+    loop_.laps[place] = std::max(loop_.laps[place], 1);
+    period_[place] = loop_.period / loop_.laps[place];
   }
 }
 
