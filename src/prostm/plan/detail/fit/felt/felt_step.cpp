@@ -22,7 +22,7 @@ struct Effort {
 };
 constexpr Effort kMoving = {50, 0.5F}, kMovingAgain = {25, 0.5F};  // of points, in later rounds
 // of pressures, by where it begins: From::Fit, FitAgain, LastPlan, MovedPoints
-constexpr std::array kChoosing = {Effort{12, 0.5F}, Effort{8, 0.5F}, Effort{6, 0.3F},
+constexpr std::array kChoosing = {Effort{12, 0.5F}, Effort{6, 0.5F}, Effort{6, 0.3F},
                                   Effort{30, 0.5F}};
 
 }  // namespace
