@@ -1,6 +1,8 @@
 #pragma once
 /// A player of foci, shared by the tests of their emission.
 
+#include <gtest/gtest.h>
+
 #include <initializer_list>
 #include <span>
 #include <vector>
@@ -43,6 +45,21 @@ struct FociPlayer {
   Watch watch;
   std::vector<FocusSample> kept;
 };
+
+/// Checks that the bounds hold for all samples that were kept, and that foci move only between
+/// silent samples.
+inline void expect_within_bounds(const FociPlayer& player) {
+  ASSERT_TRUE(player.watch.holds()) << "step " << player.watch.step << ", slew "
+                                    << player.watch.slew << ", power " << player.watch.power;
+  EXPECT_EQ(player.emitter.stats().max_focus_step, 0.0);
+  for (std::size_t k = 1; k < player.kept.size() / player.foci; ++k) {
+    for (std::size_t f = 0; f < player.foci; ++f) {
+      if (player.at(k, f).p_D == player.at(k - 1, f).p_D) continue;
+      ASSERT_EQ(player.intensity(k, f), 0.0);
+      ASSERT_EQ(player.intensity(k - 1, f), 0.0);
+    }
+  }
+}
 
 /// Returns a focus 200 mm above the array.
 inline LiftedFocus focus_at(double x, double y, double pressure, double phase = 0.0) {

@@ -291,6 +291,7 @@ void FitPlanner::step_together(int paths) {
   loop_ = is_alone_ ? choose_loop(own, longest, last_period_) : loop_of(own, longest);
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
+    // a path is never longer than a lap may be, but for what single precision costs
     loop_.laps[place] = std::max(loop_.laps[place], 1);
     period_[place] = loop_.period / loop_.laps[place];
   }
