@@ -124,13 +124,15 @@ Options options_of(int argc, char** argv) {
 
 void print(const Statistics& s) {
   std::printf(
-      "{\"samples\": %lld, \"lost\": %lld, \"late\": %lld, \"skipped\": %lld, \"silences\": %lld, "
-      "\"malformed\": %lld, \"subscriptions\": %lld, \"round_trip_ms\": %.3f, \"offset_ms\": %.3f, "
+      "{\"samples\": %lld, \"lost\": %lld, \"concealed\": %lld, \"late\": %lld, \"skipped\": %lld, "
+      "\"silences\": %lld, \"malformed\": %lld, \"subscriptions\": %lld, \"round_trip_ms\": %.3f, "
+      "\"offset_ms\": %.3f, "
       "\"buffered_ms\": %.3f}\n",
       static_cast<long long>(s.samples), static_cast<long long>(s.lost),
-      static_cast<long long>(s.late), static_cast<long long>(s.skipped),
-      static_cast<long long>(s.silences), static_cast<long long>(s.malformed),
-      static_cast<long long>(s.subscriptions), s.round_trip_ms, s.offset_ms, s.buffered_ms);
+      static_cast<long long>(s.concealed), static_cast<long long>(s.late),
+      static_cast<long long>(s.skipped), static_cast<long long>(s.silences),
+      static_cast<long long>(s.malformed), static_cast<long long>(s.subscriptions), s.round_trip_ms,
+      s.offset_ms, s.buffered_ms);
   std::fflush(stdout);
 }
 

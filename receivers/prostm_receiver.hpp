@@ -112,6 +112,8 @@ enum Kind : std::uint8_t {
 };
 constexpr std::size_t kHeader = 16;
 constexpr int kMostFoci = 8;
+constexpr std::int64_t kDatagram = 1200 - kHeader - 32;  // most bytes of samples in one
+constexpr Ns kConcealed = 2'000'000;                     // longest gap that is concealed
 constexpr int kReadsAtOnce = 64;  // then it is looked whether the subscription must be renewed
 
 struct Focus {
@@ -138,6 +140,7 @@ struct Settings {
 struct Statistics {
   std::int64_t samples = 0;    ///< received
   std::int64_t lost = 0;       ///< not there at their play time
+  std::int64_t concealed = 0;  ///< lost ones that were interpolated
   std::int64_t late = 0;       ///< came after their play time
   std::int64_t skipped = 0;    ///< left out by prostm, because this side read too slowly
   std::int64_t silences = 0;   ///< times when sound was ramped down because the stream stopped
@@ -186,6 +189,7 @@ class Receiver {
   void say(const std::string& sentence) {
     if (on_event) on_event(sentence);
   }
+  bool bridges(const Sample& last, const Sample& next) const;
   Sample& slot(std::int64_t index) {
     return ring_[static_cast<std::size_t>((index / settings_.every) % kRing)];
   }
@@ -216,6 +220,26 @@ class Receiver {
   Ns last_at_ = 0;
 };
 
+/// True if the samples missing between two may be interpolated: at most one datagram's.
+inline bool Receiver::bridges(const Sample& last, const Sample& next) const {
+  const std::int64_t missing = (next.index - last.index) / settings_.every - 1;
+  const auto period = static_cast<Ns>(1e9 / rate_) * settings_.every;
+  return last.index >= 0 && last.foci == next.foci && missing * period <= kConcealed &&
+         missing * last.foci * 16 <= kDatagram &&
+         std::abs(next.time - last.time - (missing + 1) * period) <= period;
+}
+
+/// Returns the focal points of `last` moved by `share` of the way to those of `next`.
+inline Sample between(const Sample& last, const Sample& next, double share) {
+  const auto mix = [s = static_cast<float>(share)](float a, float b) { return a + s * (b - a); };
+  Sample out = last;
+  for (std::size_t f = 0; f < out.focus.size(); ++f) {
+    const Focus &a = last.focus[f], &b = next.focus[f];
+    out.focus[f] = {mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z), mix(a.intensity, b.intensity)};
+  }
+  return out;
+}
+
 inline float Receiver::at(Ns time, Sample& out) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Ns step = last_at_ == 0 ? 0 : std::max<Ns>(0, time - last_at_);
@@ -228,18 +252,26 @@ inline float Receiver::at(Ns time, Sample& out) {
   // on to the last sample whose time has come
   const Ns period = static_cast<Ns>(1e9 / rate_) * settings_.every;
   bool gap = false;
+  const Sample* coming = nullptr;  // the first that is here and not due
   for (std::int64_t next = played_ + settings_.every; next <= newest_; next += settings_.every) {
     const Sample& sample = slot(next);
     if (sample.index != next) continue;  // lost, or not here yet
-    if (sample.time > at) break;
+    if (sample.time > at) {
+      coming = &sample;
+      break;
+    }
     const std::int64_t missing = (next - played_) / settings_.every - 1;
-    gap = gap || missing > 0;
+    const bool concealed = missing > 0 && !falling_ && bridges(slot(played_), sample);
+    gap = gap || (missing > 0 && !concealed);
     count_.lost += missing;
+    if (concealed) count_.concealed += missing;
     played_ = next;
   }
   const Sample* sample = played_ >= 0 ? &slot(played_) : nullptr;
-  const bool here = sample != nullptr && sample->index == played_ && at >= sample->time &&
-                    at < sample->time + period + period / 2;
+  const bool known = sample != nullptr && sample->index == played_ && at >= sample->time;
+  const bool inside = known && at >= sample->time + period && coming != nullptr &&
+                      bridges(*sample, *coming);  // a gap to conceal
+  const bool here = known && (inside || at < sample->time + period + period / 2);
   const bool fresh = std::max(time, now_ns()) - heard_ <= settings_.silence_after;
   const bool stalled = step > settings_.ramp && step > 2 * period;  // the caller was away
   const bool good = here && fresh && !stalled && subscribed_ && !stopped_;
@@ -256,7 +288,12 @@ inline float Receiver::at(Ns time, Sample& out) {
   } else {
     gain_ = std::min(1.0F, gain_ + ramp);
   }
-  if (!falling_) held_ = *sample;
+  if (!falling_ && !inside) held_ = *sample;
+  if (!falling_ && inside) {
+    const Ns whole = coming->time - sample->time;
+    held_ = between(*sample, *coming,
+                    static_cast<double>(at - sample->time) / static_cast<double>(whole));
+  }
   out = held_;
   for (Focus& focus : out.focus) focus.intensity *= gain_;
   return gain_;

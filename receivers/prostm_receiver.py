@@ -35,6 +35,8 @@ FOCUS_BYTES = 16  # x, y, z [m] and the intensity 0..1, each a float
 WANT_SAMPLES = 1
 
 MS = 1_000_000  # ns
+DATAGRAM = 1200 - HEADER.size - BLOCK_HEAD.size  # most bytes of samples in one
+CONCEALED = 2 * MS  # longest gap that is concealed
 READS_AT_ONCE = 64
 RENEW_EVERY = 250 * MS
 STALL = 20 * MS  # between two calls of step()
@@ -59,7 +61,7 @@ class Receiver:
     """Call step() about once a millisecond.
 
     play(time_ns, gain, foci, sample) gets the output, sample by sample: the time by this machine's steady clock
-    (time.monotonic_ns), the factor that is in the intensities (1 while all is well), the number of focal points and
+    (time.perf_counter_ns), the factor that is in the intensities (1 while all is well), the number of focal points and
     four floats for each: x, y, z [m] and the intensity 0..1.
     """
 
@@ -72,7 +74,7 @@ class Receiver:
         self.on_block = on_block or (lambda _: None)
         self.on_event = on_event or (lambda _: None)
         self.counts = dict.fromkeys(
-            ("samples", "lost", "late", "skipped", "silences", "malformed", "subscriptions"), 0)
+            ("samples", "lost", "concealed", "late", "skipped", "silences", "malformed", "subscriptions"), 0)
         self.round_trip = 0
         self.socket, self.session, self.sequence, self.heard = None, 0, 0, 0
         self.tried = -GONE_AFTER
@@ -111,7 +113,7 @@ class Receiver:
         link.setblocking(False)
         self.socket, self.unread = link, b""
         self.token, self.asked, self.asks = 0, 0, 0
-        self.opened = time.monotonic_ns()
+        self.opened = time.perf_counter_ns()
 
     def disconnect(self):
         if self.socket is not None:
@@ -142,11 +144,11 @@ class Receiver:
             self.send(SUBSCRIBE, SUBSCRIBE_BODY.pack(self.token, WANT_SAMPLES, self.foci, self.every, int(self.shared)))
         self.asks += 1
         if self.subscribed and self.socket is not None:
-            self.send(TIME_REQUEST, REQUEST_BODY.pack(time.monotonic_ns()))
+            self.send(TIME_REQUEST, REQUEST_BODY.pack(time.perf_counter_ns()))
 
     def step(self, wait=0.001):
         """Sends what is due, receives for at most `wait` seconds, and plays what is due."""
-        now = time.monotonic_ns()
+        now = time.perf_counter_ns()
         if self.socket is None:
             self.connect(now)
         if self.socket is None:
@@ -155,9 +157,9 @@ class Receiver:
             self.ask(now)
         if self.socket is not None and select.select([self.socket], [], [], wait)[0]:
             self.receive()
-        if self.socket is not None and time.monotonic_ns() - max(self.opened, self.heard) > GONE_AFTER:
+        if self.socket is not None and time.perf_counter_ns() - max(self.opened, self.heard) > GONE_AFTER:
             self.disconnect()
-        self.play_due(time.monotonic_ns())
+        self.play_due(time.perf_counter_ns())
 
     def receive(self):
         """Takes the messages that have arrived, not so many that the renewal is forgotten."""
@@ -188,7 +190,7 @@ class Receiver:
             body, self.unread = self.unread[HEADER.size:HEADER.size + size], self.unread[HEADER.size + size:]
             if session != self.session:
                 self.forget()
-            self.session, self.heard = session, time.monotonic_ns()
+            self.session, self.heard = session, time.perf_counter_ns()
             try:
                 self.take(kind, body)
             except struct.error:
@@ -278,14 +280,35 @@ class Receiver:
             self.hand_over(until, self.held)
         self.last = now
         good = self.subscribed and not self.stopped and now - self.heard <= self.silence_after
-        while good and self.blocks and self.blocks[0].time <= until:
-            if not self.play_block(until):
+        while good and self.blocks:
+            self.conceal(until)
+            if self.blocks[0].time > until or not self.play_block(until):
                 break
         overdue = self.next_index is not None and self.next_time + self.period() // 2 < until
         if self.next_index is not None and (not good or overdue):
             self.interrupt()
         if self.falling:
             self.fall(until)
+
+    def conceal(self, until):
+        """Fills a gap as long as one datagram, where it is due, on straight lines between the samples around it."""
+        after, period = self.blocks[0], self.period()
+        if self.next_index is None or self.next_time > until:
+            return
+        missing = (after.index - self.next_index) // after.stride
+        foci, last = self.held
+        gap = missing * period
+        if not 0 < missing <= DATAGRAM // (foci * FOCUS_BYTES) or gap > CONCEALED or after.foci != foci:
+            return
+        if abs(after.time - gap - self.next_time) > period:  # the play times jump
+            return
+        first, data = after.sample(0), array("f")
+        for i in range(1, missing + 1):
+            share = i / (missing + 1)
+            data.extend(a + share * (b - a) for a, b in zip(last, first))
+        self.blocks.insert(0, Block(self.next_index, self.next_time, after.stride, foci, data))
+        self.counts["lost"] += missing
+        self.counts["concealed"] += missing
 
     def play_block(self, until):
         """Plays the due samples of the first block; false when there are more, whose time has not come."""
@@ -407,7 +430,7 @@ def main():
 
     def play(at, gain, foci, sample):
         # the place for the call of an array's library
-        played.row(time.monotonic_ns(), at, foci, gain, sample)
+        played.row(time.perf_counter_ns(), at, foci, gain, sample)
         if gain == 0.0:
             print(f"silent {(at - receiver.heard) / MS:.1f} ms after the last message", flush=True)
 
@@ -419,11 +442,11 @@ def main():
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, interrupt)
-    begin = next_line = time.monotonic()
+    begin = next_line = time.perf_counter()
     try:
-        while time.monotonic() - begin < given.seconds:
+        while time.perf_counter() - begin < given.seconds:
             receiver.step()
-            if time.monotonic() - next_line >= 1.0:
+            if time.perf_counter() - next_line >= 1.0:
                 next_line += 1.0
                 print(json.dumps(receiver.statistics()), flush=True)
     except KeyboardInterrupt:
