@@ -1,8 +1,8 @@
 /// The compiled module prostm._prostm, whose names the package prostm shows as its own.
 
 #include "bindings.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/version.hpp"
 
 PYBIND11_MODULE(_prostm, m) {
   namespace py = pybind11;
@@ -12,6 +12,7 @@ PYBIND11_MODULE(_prostm, m) {
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "prostm";
   m.attr("__version__") = PROSTM_VERSION;
+  m.attr("__commit__") = std::string(prostm::commit());
   py::register_exception<prostm::InputError>(m, "InputError", PyExc_ValueError).doc() =
       "An invalid file: one sentence that says what is wrong, where, and what would be right.";
   m.def("_described", &described, "Names a value in a message.", py::arg("value"));

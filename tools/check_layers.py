@@ -19,7 +19,7 @@ OURS = re.compile(r"\bprostm_(\w+)\b")
 PROGRAMS = ("apps", "python", "bench", "lab", "fuzz")
 MAY_LOOK_INSIDE = ("tests", "bench", "lab")
 STAGES = "src/prostm/"
-OF_ALL = (STAGES + "prostm.hpp", STAGES + "version.hpp")
+OF_ALL = (STAGES + "prostm.hpp", STAGES + "version.hpp", STAGES + "commit.hpp")
 
 # Rooms inside a stage: a folder of it -> folders and headers of the stage that it must not include.
 ROOMS = {

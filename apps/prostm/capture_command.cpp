@@ -2,6 +2,7 @@
 
 #include "captured_fields.hpp"
 #include "common.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/runner.hpp"
@@ -30,6 +31,7 @@ int capture_command(const CaptureOptionsGiven& given) {
   settings.simulated_array.realtime = false;
   Pipeline pipeline(settings, make_hands(given.hand, settings));
   Recorder recorder(given.out, settings_groups(settings));
+  recorder.set_attribute("prostm", version_text());
   recorder.set_attribute("scene", settings.scene);
   recorder.set_attribute("hand", given.hand);
 

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <thread>
 
+#include "prostm/commit.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
@@ -296,8 +297,10 @@ void flush(std::FILE* out) {
                   error != 0 ? std::generic_category().message(error) : "a write before failed"));
 }
 
-void write_json(const std::string& json_option, const nlohmann::ordered_json& value) {
-  if (!json_option.empty()) write_file(json_option, to_text(value));
+void write_json(const std::string& json_option, nlohmann::ordered_json value) {
+  if (json_option.empty()) return;
+  if (value.is_object()) value["prostm"] = version_text();
+  write_file(json_option, to_text(value));
 }
 
 void pause(double seconds) {

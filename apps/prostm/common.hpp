@@ -103,9 +103,9 @@ void say_written(std::FILE* out, const std::string& path);
 /// Writes what was printed. @throws InputError when it cannot be.
 void flush(std::FILE* out);
 
-/// Writes JSON to what `--json` names; numbers that are not finite become null. Nothing when it
-/// names nothing.
-void write_json(const std::string& json_option, const nlohmann::ordered_json& value);
+/// Writes JSON to what `--json` names, with the program's version and commit in an object's key
+/// "prostm"; numbers that are not finite become null. Does nothing if the option is empty.
+void write_json(const std::string& json_option, nlohmann::ordered_json value);
 
 /// Waits [s].
 void pause(double seconds);

@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "prostm/acoustics/focus_width.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/units.hpp"
@@ -262,6 +263,7 @@ int field_command(const FieldOptionsGiven& given) {
   report.field = &field;
   report.focus = focus_accuracy(packed, loop, drives, input.raster.X_DP);
   report.settings = settings_groups(std::as_const(all));
+  report.program = version_text();
   Judgement judgement;
   if (is_felt(input.raster, loop)) {
     FeelingSkin skin(input.raster);

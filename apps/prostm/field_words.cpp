@@ -137,7 +137,7 @@ std::string verdict(const TargetField& field, const Plan& plan, const Metrics& p
   const std::string felt =
       !by_felt ? ""
       : std::isfinite(played.felt_skill)
-          ? fmt::format(" as pressure and S_8.5 {:.2f} as felt by the model", played.felt_skill)
+          ? fmt::format(" as pressure and skill_8 {:.2f} as felt by the model", played.felt_skill)
           : " as pressure; --array judges what is felt";
   return fmt::format(
       "{} {} this field with skill {:.2f}{} (1 is perfect, 0 is no better than an even field)",

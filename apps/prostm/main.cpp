@@ -12,10 +12,10 @@
 #include "add_options.hpp"
 #include "common.hpp"
 #include "options.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
-#include "prostm/version.hpp"
 #include "usage.hpp"
 
 namespace {
@@ -307,7 +307,7 @@ void add_report(CLI::App& app, Work& work) {
 int obey(int argc, char** argv) {
   CLI::App app(
       "prostm: touch in mid-air from pressure fields, by path routing optimisation for ultrasound");
-  app.set_version_flag("--version", PROSTM_VERSION);
+  app.set_version_flag("--version", prostm::version_text());
   app.require_subcommand(1);
   Work work;
   add_run(app, work);

@@ -8,6 +8,7 @@
 #include "field_words.hpp"
 #include "plan_pictures.hpp"
 #include "prostm/am/am_planner.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/random.hpp"
@@ -244,6 +245,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   extras.quality = &r.quality;
   extras.controls = &r.controls;
   extras.warnings = &r.warnings;
+  extras.program = version_text();
   write_file(json, plan_to_json(r.plan, target, extras, settings_groups(settings)));
 }
 

@@ -4,12 +4,12 @@
 #include <filesystem>
 
 #include "common.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
 #include "prostm/core/require.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/report/page.hpp"
-#include "prostm/version.hpp"
 #include "report/print_page.hpp"
 #include "report/report.hpp"
 
@@ -87,7 +87,7 @@ class ReportRun {
 
   /// All that a part's numbers follow from.
   Json asked(const ReportPart& part) const {
-    Json asked = {{"version", PROSTM_VERSION}, {"quick", given_.quick}, {"seed", given_.seed}};
+    Json asked = {{"version", version_text()}, {"quick", given_.quick}, {"seed", given_.seed}};
     if (!part.of_paper) return asked;
     for (const char* file : {"fig2.field.json", "fig2.json", "fig4.json"}) {
       const std::string text = work_.paper_file(file).value_or("");
@@ -141,7 +141,7 @@ class ReportRun {
 
 Json all_json(const std::vector<report::Part>& parts) {
   Json json = {
-      {"format", "prostm-report/1"}, {"version", PROSTM_VERSION}, {"parts", Json::object()}};
+      {"format", "prostm-report/1"}, {"version", version_text()}, {"parts", Json::object()}};
   for (const report::Part& part : parts) json["parts"][part.name] = part.document;
   return json;
 }

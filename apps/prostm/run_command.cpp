@@ -12,6 +12,7 @@
 #include "common.hpp"
 #include "instant.hpp"
 #include "mute_watch.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/io/recorder.hpp"
@@ -179,6 +180,7 @@ std::unique_ptr<Recorder> make_recorder(const RunOptionsGiven& given,
                                         const PipelineSettings& settings) {
   if (given.record.empty()) return nullptr;
   auto recorder = std::make_unique<Recorder>(given.record, settings_groups(settings));
+  recorder->set_attribute("prostm", version_text());
   recorder->set_attribute("scene", settings.scene);
   recorder->set_attribute("hand", given.hand);
   return recorder;

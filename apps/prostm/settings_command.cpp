@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "common.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/nearest_name.hpp"
-#include "prostm/version.hpp"
 
 namespace prostm::app {
 namespace {
@@ -143,7 +143,7 @@ void print_table(std::FILE* out, const std::vector<ListedSetting>& settings) {
 /// A settings file in which everything that has its default is commented out.
 void print_toml(const std::vector<ListedSetting>& settings) {
   fmt::print("# Settings of prostm {}. A key takes effect once the # before it is removed.\n",
-             PROSTM_VERSION);
+             version_text());
   std::string group;
   for (const ListedSetting& s : settings) {
     if (s.group != group) fmt::print("\n[{}]\n", s.group);

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "common.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/study/session.hpp"
-#include "prostm/version.hpp"
 #include "view.hpp"
 
 namespace prostm::app {
@@ -201,7 +201,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   const Interrupt interrupt;  // from here on a Ctrl-C ends in a report
   ResponseFile file(path);
   const bool begins = file.lines().empty();
-  const nlohmann::ordered_json facts = {{"prostm", PROSTM_VERSION},
+  const nlohmann::ordered_json facts = {{"prostm", version_text()},
                                         {"device", settings.device},
                                         {"array", settings.array},
                                         {"hand", given.run.hand},

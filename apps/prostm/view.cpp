@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "common.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/pose_file.hpp"
-#include "prostm/version.hpp"
 #include "prostm/viewer/page_files.hpp"
 
 namespace prostm::app {
@@ -71,7 +71,7 @@ std::unique_ptr<HandSource> View::behind_the_page(std::unique_ptr<HandSource> ba
 ViewHello View::hello(Pipeline& pipeline) const {
   const GridShape& grid = pipeline.world_stage().world().grid();
   const PipelineSettings& s = settings();
-  return {PROSTM_VERSION,     pipeline.device().info().name,
+  return {version_text(),     pipeline.device().info().name,
           s.transducers.name, s.transducers.position,
           grid.p_DF,          grid.cell * grid.nx};
 }

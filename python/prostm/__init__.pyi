@@ -11,6 +11,7 @@ _Path = Union[str, PathLike[str]]
 _Setting = Union[float, int, bool, str]
 
 __version__: str
+__commit__: str
 kMaxFieldCells: int
 kMaxPatches: int
 kMaxPaths: int

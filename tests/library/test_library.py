@@ -207,7 +207,7 @@ def test_the_version_is_the_same_everywhere(prefix, pkg_config):
     parts = [re.findall(rf"define PROSTM_VERSION_{part} (\d+)", text)[0] for part in ("MAJOR", "MINOR", "PATCH")]
     assert ".".join(parts) == version
     assert pkg_config("--modversion") == [version]
-    assert run(prefix / "bin/prostm", "--version").split()[-1] == version
+    assert run(prefix / "bin/prostm", "--version").split()[0] == version
     released = re.search(r"^## \[(\d.*)\] - (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.M)
     cited = (ROOT / "CITATION.cff").read_text()
     assert released[1] == version

@@ -1,11 +1,11 @@
-#include "prostm/version.hpp"
+#include "prostm/commit.hpp"
 #include "report.hpp"
 
 namespace prostm::app {
 
 void make_about(const ReportWork& work, nlohmann::ordered_json& document) {
   using report::text_block;
-  document["values"] = {{"version", PROSTM_VERSION}, {"seed", work.seed}, {"quick", work.quick}};
+  document["values"] = {{"version", version_text()}, {"seed", work.seed}, {"quick", work.quick}};
   auto& blocks = document["blocks"];
   if (work.quick) {
     blocks.push_back(text_block(

@@ -38,7 +38,7 @@ void make_gallery(const ReportWork& work, nlohmann::ordered_json& document) {
   document["blocks"].push_back(report::figure_block(
       "gallery.svg",
       "Generated targets, the field of the paper's paths made valid, and that of preset best, by "
-      "Eq. (1); under each its RMSE and S_8.5",
+      "Eq. (1); under each its RMSE and skill_8",
       "Nine targets, each with the paths and fields of two presets"));
   document["blocks"].push_back(
       report::table_block("By Eq. (1)", metrics_columns("target and preset"), rows));

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "prostm/version.hpp"
+#include "prostm/commit.hpp"
 #include "report.hpp"
 
 namespace prostm::app {
@@ -26,7 +26,7 @@ void make_machine(const ReportWork& work, nlohmann::ordered_json& document) {
   const Machine machine = look_at_machine(work.full_or_quick(1.0, 0.3));
   utsname system{};
   uname(&system);
-  document["values"] = {{"version", PROSTM_VERSION}, {"seed", work.seed}};
+  document["values"] = {{"version", version_text()}, {"seed", work.seed}};
   document["blocks"].push_back(report::text_block(
       "prostm {/values/version}, seed {/values/seed}. The same version with the same seed gives "
       "the "

@@ -3,8 +3,8 @@
 namespace prostm::app {
 
 std::vector<report::Column> metrics_columns(const std::string& heading) {
-  return {{"name", heading},          {"rmse", "RMSE"},       {"correlation", "correlation"},
-          {"skill_8", "skill S_8.5"}, {"overlap", "overlap"}, {"spill", "spill"},
+  return {{"name", heading},       {"rmse", "RMSE"},       {"correlation", "correlation"},
+          {"skill_8", "skill_8"},  {"overlap", "overlap"}, {"spill", "spill"},
           {"coverage", "coverage"}};
 }
 

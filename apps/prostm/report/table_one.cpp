@@ -65,7 +65,7 @@ Json quality_row(const PlannerColumn& column) {
 
 const std::vector<report::Column> kQuality = {
     {"planner", "planner"},         {"fields", "fields", "", 0}, {"rmse", "RMSE"},
-    {"correlation", "correlation"}, {"skill_8", "skill S_8.5"},  {"coverage", "coverage"}};
+    {"correlation", "correlation"}, {"skill_8", "skill_8"},      {"coverage", "coverage"}};
 
 /// Measures all planners on all fields of a scene. @param begin of the part's share that is done.
 FieldBench measured(const ReportWork& work, const PipelineSettings& settings,
@@ -90,7 +90,7 @@ void make_table_one(const ReportWork& work, Json& document) {
       "How well plans reconstruct the fields by the paper's Eq. (1), as they are played; means "
       "over "
       "the fields on which every planner found something. RMSE is of pressures over the field's "
-      "highest. S_8.5 is 1 for a perfect field and 0 for an even one, after both are blurred by "
+      "highest. skill_8 is 1 for a perfect field and 0 for an even one, after both are blurred by "
       "8.5 mm. AM stands here for its time: the paper calls Eq. (1) \"not suited for a "
       "quantitative (e.g., RMSE) comparison of STM and AM\"."));
   timing.push_back(report::text_block(

@@ -118,6 +118,7 @@ std::string physical_to_json(const PhysicalReport& report) {
                             ? matrix(*report.raster, in_micrometres(report.felt->percept))
                             : Json();
   document["settings"] = settings_to_json(report.settings);
+  if (!report.program.empty()) document["prostm"] = report.program;
   return to_text(document);
 }
 

@@ -26,6 +26,7 @@ struct PhysicalReport {
   const Ghosts* ghosts = nullptr;         ///< the same
   std::vector<FeltHarmonic> spectrum;   ///< empty unless asked for, and for loops that are not felt
   std::vector<SettingsGroup> settings;  ///< of every stage
+  std::string program;                  ///< writes "prostm", the program's version, when not empty
 };
 std::string physical_to_json(const PhysicalReport& report);
 

@@ -164,6 +164,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
   raster["height_mm"] = heights_json(target);
   document["raster"] = std::move(raster);
   if (!settings.empty()) document["settings"] = settings_to_json(settings);
+  if (!extras.program.empty()) document["prostm"] = extras.program;
   return to_text(document);
 }
 

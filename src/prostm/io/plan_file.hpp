@@ -41,6 +41,7 @@ struct PlanFileExtras {
   const std::vector<Control>* controls = nullptr;
   const PowerShare* power = nullptr;                   ///< writes "power", when given
   const std::vector<std::string>* warnings = nullptr;  ///< writes "warnings", when given
+  std::string program;  ///< writes "prostm", the program's version, when not empty
 };
 
 /// @param target the field that was planned: its plane and heights are repeated in the file.
