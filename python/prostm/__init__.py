@@ -27,6 +27,7 @@ import math as _math
 import numbers as _numbers
 import os as _os
 
+from . import _compiled as _compiled
 from ._arguments import explain_wrong_types as _explain_wrong_types, wrong_type as _wrong_type
 
 _explain_wrong_types()
@@ -34,7 +35,7 @@ _explain_wrong_types()
 from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, Emitter, FeltPlan, FocalPath, FocalPoint,
                       FieldShape, FocusEmitter, GateResult, InputError, LiftedFocus, LiftedPath, LiftedPlan, Metrics,
                       PathEmitter, Plan, PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace,
-                      Recording, SkinSettings, TakeOver, TargetField, TargetFrame, __version__, closed_length, controls,
+                      Recording, SkinSettings, TakeOver, TargetField, TargetFrame, __commit__, __version__, closed_length, controls,
                       drive_intensity, even_share, felt_plan, felt_skins, field_from_json, field_shape, field_to_json,
                       height_at, kMaxFieldCells, kMaxPatches, kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples,
                       lift, max_pressure, plan_from_json, plan_to_json, quasi_static_field, read_field, read_plan,

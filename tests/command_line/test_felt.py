@@ -74,7 +74,7 @@ def test_the_verdict_is_of_what_is_felt_where_an_array_is_given(prostm, settings
     metrics = plan_of(prostm, "--array", "usx", "--settings", file)["metrics"]
     lines = prostm("plan", FIELD, "--array", "usx", "--settings", file).stdout.splitlines()
     assert lines[1] == (f"4 paths render this field with skill {metrics['skill_0']:.2f} as pressure and "
-                        f"S_8.5 {metrics['felt_skill']:.2f} as felt by the model{end}")
+                        f"skill_8 {metrics['felt_skill']:.2f} as felt by the model{end}")
     metrics = plan_of(prostm, "--settings", file)["metrics"]
     lines = prostm("plan", FIELD, "--settings", file).stdout.splitlines()
     assert lines[1] == (f"4 paths render this field with skill {metrics['skill_0']:.2f} as pressure; "

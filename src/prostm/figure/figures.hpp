@@ -58,9 +58,9 @@ struct GalleryPage {
   std::size_t fields_in_row = 3;  ///< ≥ 1
 };
 /// For each field its target and beside it every plan's field with the paths or foci, all coloured
-/// by pressure over the target's maximum; RMSE and S_8.5 under each plan, those of the better RMSE
-/// in bold, or RMSE and correlation, none in bold. @throws std::invalid_argument: no field, plans
-/// that differ in number, or sizes that disagree. @throws InputError when the file cannot be
+/// by pressure over the target's maximum; RMSE and skill_8 under each plan, those of the better
+/// RMSE in bold, or RMSE and correlation, none in bold. @throws std::invalid_argument: no field,
+/// plans that differ in number, or sizes that disagree. @throws InputError when the file cannot be
 /// written.
 void draw_gallery(const GalleryPage& page, const std::vector<GalleryField>& fields,
                   const std::string& path);
