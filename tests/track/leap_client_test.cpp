@@ -276,6 +276,24 @@ TEST(LeapClient, SaysWhenNothingOrSomethingElseAnswers) {
   EXPECT_FALSE(tracker->status().connected);
 }
 
+TEST(LeapClient, TheHostHasBracketsAroundAnIpv6Address) {
+  for (const std::string address : {"127.0.0.1", "::1"}) {
+    std::optional<LeapServer> server;
+    try {
+      server.emplace(std::vector<LeapServer::Message>{}, false, "/v6.json", address);
+    } catch (const boost::system::system_error&) {
+      GTEST_SKIP() << "this machine has no address " << address;
+    }
+    const auto tracker = make_leap_tracker({address, server->port()});
+    server->requests(1);
+    const bool is_v6 = address == "::1";
+    const std::string host =
+        (is_v6 ? "[::1]:" : "127.0.0.1:") + std::to_string(int{server->port()});
+    EXPECT_EQ(server->host(), host);
+    EXPECT_EQ(tracker->status().sentence, "connected to leap://" + host);
+  }
+}
+
 TEST(LeapAddress, IsReadOrRefusedWithASentence) {
   EXPECT_EQ(leap_address("leap://127.0.0.1:6437").host, "127.0.0.1");
   EXPECT_EQ(leap_address("leap://localhost").port, 6437);

@@ -1,5 +1,5 @@
 #pragma once
-/// A Leap service for tests that plays messages at their own times, on a free port of 127.0.0.1.
+/// A Leap service for tests that plays messages at their own times, on a free port.
 
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
@@ -24,9 +24,13 @@ class LeapServer {
   };
 
   /// Sends `messages` to every client that asks for `path`, repeatedly if `loop`.
+  /// @throws boost::system::system_error without such an address.
   explicit LeapServer(std::vector<Message> messages, bool loop = false,
-                      std::string path = "/v6.json")
-      : messages_(std::move(messages)), loop_(loop), path_(std::move(path)) {
+                      std::string path = "/v6.json", const std::string& address = "127.0.0.1")
+      : messages_(std::move(messages)),
+        loop_(loop),
+        path_(std::move(path)),
+        acceptor_(io_, {boost::asio::ip::make_address(address), 0}) {
     accept();
     thread_ = std::thread([this] { io_.run(); });
   }
@@ -36,6 +40,8 @@ class LeapServer {
   }
 
   std::uint16_t port() const { return port_; }
+  /// The Host of the newest client. @pre requests() has returned.
+  const std::string& host() const { return host_; }
   /// Waits until clients have sent `count` messages; returns all so far.
   std::vector<std::string> requests(std::size_t count) {
     while (said_ < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -72,6 +78,7 @@ class LeapServer {
     }
     void answer() {
       namespace http = boost::beast::http;
+      server.host_ = std::string(request[http::field::host]);
       if (request.target() != server.path_) {
         auto refusal = std::make_shared<http::response<http::string_body>>(http::status::not_found,
                                                                            request.version(), "no");
@@ -145,10 +152,11 @@ class LeapServer {
   bool loop_;
   std::string path_;
   boost::asio::io_context io_{1};
-  tcp::acceptor acceptor_{io_, {boost::asio::ip::address_v4::loopback(), 0}};
+  tcp::acceptor acceptor_;
   std::uint16_t port_ = acceptor_.local_endpoint().port();
   std::vector<std::shared_ptr<Session>> sessions_;
   std::vector<std::string> requests_;
+  std::string host_;
   std::atomic<std::size_t> said_{0};
   std::thread thread_;
 };

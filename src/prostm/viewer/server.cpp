@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "prostm/core/host_port.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/viewer/detail/hub.hpp"
 #include "prostm/viewer/detail/session.hpp"
@@ -180,11 +181,10 @@ int ViewServer::port() const {
 
 std::string ViewServer::url() const {
   const auto address = impl_->acceptor.local_endpoint().address();
+  std::string host = address.to_string();
   // an address that stands for all of this machine's cannot be visited
-  if (address.is_unspecified()) return fmt::format("http://127.0.0.1:{}/", port());
-  const std::string host = address.to_string();
-  return address.is_v6() ? fmt::format("http://[{}]:{}/", host, port())
-                         : fmt::format("http://{}:{}/", host, port());
+  if (address.is_unspecified()) host = address.is_v6() ? "::1" : "127.0.0.1";
+  return fmt::format("http://{}/", HostPort{host, static_cast<std::uint16_t>(port())}.text());
 }
 
 bool ViewServer::loopback() const {

@@ -49,9 +49,9 @@ std::vector<tcp::endpoint> endpoints_of(const HostPort& address, asio::io_contex
   const auto found = resolver.resolve(address.host, std::to_string(address.port), error);
   if (error) {
     throw InputError(
-        fmt::format("leap://{}:{}: the host {} is unknown; the service is "
+        fmt::format("leap://{}: the host {} is unknown; the service is "
                     "usually at leap://127.0.0.1:6437",
-                    address.host, address.port, address.host));
+                    address.text(), address.host));
   }
   std::vector<tcp::endpoint> endpoints;
   for (const auto& entry : found) endpoints.push_back(entry.endpoint());
@@ -61,8 +61,8 @@ std::vector<tcp::endpoint> endpoints_of(const HostPort& address, asio::io_contex
 class LeapTracker final : public LiveTracker {
  public:
   explicit LeapTracker(const HostPort& address)
-      : name_(fmt::format("leap://{}:{}", address.host, address.port)),
-        host_(fmt::format("{}:{}", address.host, address.port)),
+      : name_("leap://" + address.text()),
+        host_(address.text()),
         endpoints_(endpoints_of(address, io_)),
         retry_(io_),
         thread_([this] { run(); }) {}
@@ -249,9 +249,9 @@ TrackerFinding look_for_leap(const HostPort& address, double seconds) {
   const TrackerStatus status = tracker.status();
   if (!status.connected) {
     if (tracker.is_settled()) return {false, status.sentence};
-    return {false, fmt::format("nothing answered at leap://{}:{} within {:g} s; {}, and a firewall "
+    return {false, fmt::format("nothing answered at leap://{} within {:g} s; {}, and a firewall "
                                "must let it in",
-                               address.host, address.port, seconds, leap_needs())};
+                               address.text(), seconds, leap_needs())};
   }
   if (status.frames > 0) return {true, status.sentence + ", and frames come in"};
   return {true, status.sentence + ", but no frame came in " + fmt::format("{:g} s", seconds) +
