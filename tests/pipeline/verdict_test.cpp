@@ -74,6 +74,16 @@ TEST(Verdict, ASlowLinkMayBeWhyADeviceFellSilent) {
                         "its link passed blocks on, too late for 30 of 3000 blocks"));
 }
 
+TEST(Verdict, APageHandThatWasReleasedUnaskedIsTold) {
+  EXPECT_THAT(said([](RunSummary& s) { s.hidden_page_hands = 2; }),
+              ElementsAre(StartsWith("The rates were held"),
+                          StartsWith("The page's hand was released because its page was hidden "
+                                     "(2×): keep the page in front")));
+  EXPECT_THAT(said([](RunSummary& s) { s.late_page_hands = 1; }).back(),
+              StartsWith("The page's hand was released because no message came from its page for "
+                         "0.5 s (1×)"));
+}
+
 TEST(Verdict, ASlowFluidIsNamedWithTheGridThatFits) {
   const Verdict verdict = judged([](RunSummary& s) {
     s.world_steps = 2610;

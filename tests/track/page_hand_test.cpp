@@ -142,7 +142,7 @@ TEST(PageHand, YawTurnsTheShortWay) {
   EXPECT_NEAR(along_fingers(hand).x(), -std::sin(-3.0), 1e-3);
 }
 
-TEST(PageHand, SilenceAndReleaseLetGoAndTheNextHandIsAnother) {
+TEST(PageHand, SilenceReleasesItUntilPosesComeSteadily) {
   PageHand page{TrackSettings()};
   Hand hand;
   double age = 0.0;
@@ -153,12 +153,74 @@ TEST(PageHand, SilenceAndReleaseLetGoAndTheNextHandIsAnother) {
   EXPECT_TRUE(page.sample(1.49, hand, age));
   EXPECT_NEAR(age, 0.49, 1e-12);
   EXPECT_FALSE(page.sample(1.51, hand, age));
-  page.place(pose_at(Vec3(0.1, 0, 0.2)));
-  ASSERT_TRUE(page.sample(2.0, hand, age));
+  EXPECT_EQ(page.report().state, PageHandState::Late);
+  EXPECT_EQ(page.report().late, 1);
+  for (int i = 0; i <= 10; ++i) {
+    page.place(pose_at(Vec3(0.1, 0, 0.2)));
+    ASSERT_EQ(page.sample(2.0 + 0.1 * i, hand, age), i == 10) << i;
+  }
   EXPECT_NE(hand.id, id);
   EXPECT_NEAR(hand.position[kPalm].x(), 0.1, 1e-12) << "it comes where the pointer is";
+}
+
+/// The timers of a hidden page run once a second, or once a minute, and now and then in bursts.
+TEST(PageHand, LateTimersReleaseItOnceAndNeverBringItBack) {
+  for (const double period : {0.6, 1.0, 60.0}) {
+    for (const int burst : {1, 5}) {
+      PageHand page{TrackSettings()};
+      Hand hand;
+      double age = 0.0;
+      int switches = 0;
+      bool held = false;
+      for (double next = 0.0, time = 0.0; time < 20.0 * period; time += kStep) {
+        const double since = time - next;
+        if (since >= 0.0 && since < burst * kStep) page.place(pose_at(Vec3(0, 0, 0.2)));
+        if (since >= burst * kStep) next += period;
+        if (held != page.sample(time, hand, age)) ++switches;
+        held = page.report().state == PageHandState::Held;
+      }
+      EXPECT_EQ(switches, 2) << period << " s, " << burst << " messages";
+      EXPECT_FALSE(held);
+      EXPECT_EQ(page.report().late, 1);
+    }
+  }
+}
+
+TEST(PageHand, AHandThatWasReleasedIsTakenAnewAtOnce) {
+  PageHand page{TrackSettings()};
+  Hand hand;
+  double age = 0.0;
+  page.place(pose_at(Vec3(0, 0, 0.2)));
+  ASSERT_TRUE(page.sample(0.0, hand, age));
   page.release();
-  EXPECT_FALSE(page.sample(2.02, hand, age));
+  EXPECT_FALSE(page.sample(0.02, hand, age));
+  EXPECT_EQ(page.report().state, PageHandState::Free);
+  page.place(pose_at(Vec3(0, 0, 0.2)));
+  EXPECT_TRUE(page.sample(0.04, hand, age));
+  // also one that had lapsed
+  EXPECT_FALSE(page.sample(1.0, hand, age));
+  page.release();
+  EXPECT_FALSE(page.sample(1.02, hand, age));
+  page.place(pose_at(Vec3(0, 0, 0.2)));
+  EXPECT_TRUE(page.sample(1.04, hand, age));
+}
+
+TEST(PageHand, ReportsThatItsPageIsHidden) {
+  PageHand page{TrackSettings()};
+  Hand hand;
+  double age = 0.0;
+  page.place(pose_at(Vec3(0, 0, 0.2)));
+  ASSERT_TRUE(page.sample(0.0, hand, age));
+  page.release(true);
+  EXPECT_FALSE(page.sample(0.02, hand, age));
+  EXPECT_EQ(page.report().state, PageHandState::Hidden);
+  EXPECT_EQ(page.report().hidden, 1);
+  page.place(pose_at(Vec3(0, 0, 0.2)));
+  EXPECT_TRUE(page.sample(0.04, hand, age));
+  page.release();
+  EXPECT_FALSE(page.sample(0.06, hand, age));
+  EXPECT_EQ(page.report().hidden, 1);
+  EXPECT_EQ(page.report().late, 0);
 }
 
 TEST(PageHand, RefusesWhatIsNoPlaceAndClampsAngles) {
@@ -191,14 +253,14 @@ TEST(HandSwitch, GivesThePagesHandWhileItIsHeldAndTheOtherElse) {
   HandFrame frame;
   hands.sample(0.0, frame);
   ASSERT_EQ(frame.hands.size(), 1u);
-  EXPECT_FALSE(hands.page_in_charge());
+  EXPECT_EQ(page->report().state, PageHandState::Free);
   const std::int64_t base = frame.hands[0].id;
 
   const Vec3 p_D(0.03, 0.02, 0.25);
   page->place(pose_at(p_D));
   hands.sample(0.02, frame);
   ASSERT_EQ(frame.hands.size(), 1u);
-  EXPECT_TRUE(hands.page_in_charge());
+  EXPECT_EQ(page->report().state, PageHandState::Held);
   EXPECT_NE(frame.hands[0].id, base);
   EXPECT_EQ(frame.time, 0.02);
   to_device(X_DT, frame);
@@ -208,7 +270,7 @@ TEST(HandSwitch, GivesThePagesHandWhileItIsHeldAndTheOtherElse) {
   hands.sample(0.04, frame);
   ASSERT_EQ(frame.hands.size(), 1u);
   EXPECT_EQ(frame.hands[0].id, base);
-  EXPECT_FALSE(hands.page_in_charge());
+  EXPECT_EQ(page->report().state, PageHandState::Free);
 
   HandSwitch alone(make_absent_hand(), page, X_DT);
   alone.sample(0.0, frame);

@@ -116,6 +116,49 @@ TEST(LiveSteering, APageThatLosesTheHandIsTold) {
   EXPECT_TRUE(transport_becomes(second, "hand_page", nullptr));
 }
 
+TEST(LiveSteering, AHiddenPageReleasesTheHandAndThatIsReported) {
+  LiveRun run;
+  Page page(run.port());
+  const std::string hand = R"({"type":"hand","palm_mm":[0,0,200],"yaw_deg":0,"pitch_deg":0,)"
+                           R"("roll_deg":0,"closure":0,"side":"left","take":true})";
+  ASSERT_TRUE(eventually([&] {
+    page.say(hand);
+    return (run.flags() & kViewPageHand) != 0;
+  }));
+  EXPECT_TRUE(transport_becomes(page, "page_hand", "held"));
+  page.say(R"({"type":"hand","release":true,"hidden":true})");
+  EXPECT_TRUE(transport_becomes(page, "page_hand", "hidden"));
+  const Json told = run.numbers().at("run").at("page_hand");
+  EXPECT_EQ(told.at("state"), "hidden");
+  EXPECT_EQ(told.at("hidden"), 1);
+  const RunSummary summary = run.stop();
+  EXPECT_EQ(summary.hidden_page_hands, 1);
+}
+
+// each message of a hidden page comes a second after the one before
+TEST(LiveSteering, LatePagesDoNotPassTheHandToAndFro) {
+  LiveRun run;
+  Page first(run.port()), second(run.port());
+  const int one = first.next_text("hello").at("page");
+  const std::string hand = R"({"type":"hand","palm_mm":[0,0,200],"yaw_deg":0,"pitch_deg":0,)"
+                           R"("roll_deg":0,"closure":0,"side":"left"})";
+  ASSERT_TRUE(eventually([&] {
+    first.say(hand);
+    return (run.flags() & kViewPageHand) != 0;
+  }));
+  ASSERT_TRUE(transport_becomes(first, "hand_page", one));
+  ASSERT_TRUE(transport_becomes(first, "page_hand", "late"));
+  second.say(hand);
+  EXPECT_THAT(second.next_text("error").at("sentence").get<std::string>(),
+              HasSubstr("another page has the hand"));
+  first.say(hand);
+  for (int i = 0; i < 30; ++i) {
+    first.next_frame();
+    EXPECT_EQ(run.flags() & kViewPageHand, 0U);
+  }
+  EXPECT_GE(run.stop().late_page_hands, 1);
+}
+
 // what a paused page shows is of one step, also while it makes single ones
 TEST(LiveSteering, APauseIsSeenAtOneInstant) {
   LiveRun run;

@@ -59,7 +59,10 @@ TEST(PageMessage, HandIsInMetresAndRadians) {
   EXPECT_EQ(hand.closure, 0.25);
   EXPECT_TRUE(hand.left);
   EXPECT_FALSE(hand.take);
-  EXPECT_TRUE(read<HandMessage>(R"({"type":"hand","release":true})").release);
+  const auto released = read<HandMessage>(R"({"type":"hand","release":true})");
+  EXPECT_TRUE(released.release);
+  EXPECT_FALSE(released.hidden);
+  EXPECT_TRUE(read<HandMessage>(R"({"type":"hand","release":true,"hidden":true})").hidden);
 }
 
 TEST(PageMessage, CalibrationMuteAndRate) {
@@ -119,6 +122,7 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {R"({"type":"hand","palm_mm":[0,0,"a"]})", "\"palm_mm\" must be a number"},
       {R"({"type":"hand","palm_mm":[0,0,2000]})", "between -500 and 500"},
       {R"({"type":"hand","release":1})", "true or false"},
+      {R"({"type":"hand","release":true,"hidden":1})", "\"hidden\" must be true or false"},
       {R"({"type":"calibration","do":"undo"})", "begin, take, solve, save or cancel"},
       {R"({"type":"calibration","do":"take"})", "lacks \"mark\""},
       {R"({"type":"calibration","do":"take","mark":0.5})", "whole number"},

@@ -157,6 +157,19 @@ TEST_F(Server, TellsNumbersByName) {
   EXPECT_EQ(json.at("sequence"), 1);
 }
 
+/// A hidden page asks for one frame a second, which must not be the rate of what others read.
+TEST_F(Server, NumbersHaveARateOfTheirOwn) {
+  Page page(port_);
+  page.say(R"({"type":"rate","hz":1})");
+  ASSERT_TRUE(eventually([&] { return server_.stats().pages == 1; }));
+  for (int i = 0; i < 2; ++i) page.next_frame();
+  const std::int64_t frames = server_.stats().frames, asked = source_.refreshed;
+  EXPECT_TRUE(eventually([&] {
+    get(port_, "/numbers.json");
+    return source_.refreshed - asked > server_.stats().frames - frames + 3;
+  })) << "only frames of the page make numbers new";
+}
+
 TEST(ServerWithoutAPage, SaysSo) {
   StandIn source;
   const ViewServer server(anywhere(), source, {});

@@ -29,6 +29,7 @@ class Run {
         plans_(pipeline, pace_, shared_) {
     if (pace_.realtime) world_.set_clock();
     if (options.live == nullptr) return;
+    page_hand_ = options.live->page_hand;
     steering_.emplace(*options.live, pipeline);
     shared_.snapshots = &steering_->snapshots();
   }
@@ -110,7 +111,8 @@ class Run {
   WorldSide world_;
   PlanSide plans_;
   std::optional<Steering> steering_;
-  std::optional<RunSummary> summary_;  // once the run's seconds are over
+  std::shared_ptr<const PageHand> page_hand_;  // null without pages
+  std::optional<RunSummary> summary_;          // once the run's seconds are over
   bool summary_waits_ = false, watched_ = false;
   double alone_since_ = 0.0;  // while paused: when a page was last seen [s of the clock]
 };
@@ -218,6 +220,11 @@ RunSummary Run::summary() {
   if (pace_.realtime) s.skipped_updates = world_.published() - s.plans - s.empty_updates;
   s.unobserved = plans_.unobserved();
   s.full_scale_pressure = pipeline_.plans().full_scale_pressure();
+  if (page_hand_) {
+    const PageHandReport hand = page_hand_->report();
+    s.late_page_hands = hand.late;
+    s.hidden_page_hands = hand.hidden;
+  }
   return s;
 }
 

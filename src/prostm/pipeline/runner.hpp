@@ -58,7 +58,8 @@ struct RunSummary {
   std::int64_t long_paths = 0, crossings = 0;  ///< of all plans
   /// Updates whose target is a stimulus, and those of them that passed its gate.
   std::int64_t judged_updates = 0, passed_updates = 0;
-  ContactStats contact_stats;  ///< of all updates
+  std::int64_t late_page_hands = 0, hidden_page_hands = 0;  ///< PageHandReport
+  ContactStats contact_stats;                               ///< of all updates
   DeviceInfo played_by;
   DeviceStats device;
   EmitStats emit;

@@ -14,6 +14,7 @@
 #include "prostm/core/spsc_ring.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/score/score.hpp"
+#include "prostm/track/live/page_hand.hpp"
 
 namespace prostm {
 
@@ -61,11 +62,14 @@ struct PlanSnapshot {
 struct RunSnapshot {
   double time = 0.0;                         ///< run time [s]
   double world_rate = 0.0, plan_rate = 0.0;  ///< over the last second [Hz]
-  bool paused = false, page_hand = false, fading = false;
+  bool paused = false, fading = false;
+  PageHandReport page_hand;
   DeviceStats device;  ///< since the start of the run, as are the next
   EmitStats emit;
   double full_scale_pressure = 0.0;  ///< [Pa]
   double intensity = 0.0;            ///< of the strongest focal point now, 0..1
+
+  bool page_hand_in_charge() const { return page_hand.state == PageHandState::Held; }
 };
 
 /// The hand-off. Each function says whose it is.

@@ -193,6 +193,22 @@ void judge_output(const RunSummary& s, std::vector<std::string>& out) {
   }
 }
 
+/// Reports when the hand of a page was released without being asked to: the output changed with it.
+void judge_page_hand(const RunSummary& s, std::vector<std::string>& out) {
+  if (s.hidden_page_hands > 0) {
+    out.push_back(fmt::format(
+        "The page's hand was released because its page was hidden ({}×): keep the page in front "
+        "while its hand is in use.",
+        s.hidden_page_hands));
+  }
+  if (s.late_page_hands > 0) {
+    out.push_back(fmt::format(
+        "The page's hand was released because no message came from its page for 0.5 s ({}×): keep "
+        "the page in front, and close what slows the browser down.",
+        s.late_page_hands));
+  }
+}
+
 /// Reports faults that should never occur.
 void judge_faults(const RunSummary& s, std::vector<std::string>& out) {
   if (s.world_resets > 0) {
@@ -278,6 +294,7 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   if (!tracker || tracker->frames > 0) {
     judge_contact(s.contact_stats, s.seconds, s.plans > 0, settings.box.follow, unusual);
   }
+  judge_page_hand(s, unusual);
   judge_output(s, unusual);
   if (unusual.empty() && verdict.held.value_or(true))
     verdict.sentences.emplace_back("Nothing was unusual.");

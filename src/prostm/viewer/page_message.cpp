@@ -84,7 +84,10 @@ TransportMessage read_transport(const Json& json) {
 HandMessage read_hand(const Json& json) {
   HandMessage m;
   if (json.contains("release")) m.release = truth(json, "release");
-  if (m.release) return m;
+  if (m.release) {
+    if (json.contains("hidden")) m.hidden = truth(json, "hidden");
+    return m;
+  }
   if (json.contains("take")) m.take = truth(json, "take");
   const Json& palm = member(json, "palm_mm");
   if (!palm.is_array() || palm.size() != 3)

@@ -28,6 +28,7 @@ struct TransportMessage {
 /// The page's hand. Angles are 0 for a palm down with the fingers along +y.
 struct HandMessage {
   bool release = false;                       ///< it lets go, and nothing else counts
+  bool hidden = false;                        ///< of a release: nobody sees the page any more
   bool take = false;                          ///< takes the hand from another page that holds it
   double palm[3] = {};                        ///< in D [m], each within 0.5 m
   double yaw = 0.0, pitch = 0.0, roll = 0.0;  ///< [rad]

@@ -33,7 +33,7 @@ struct PipelineView::Impl {
   viewer::CommandQueue commands;
   std::uint32_t hand_holder = 0;  // the page that holds the hand, 0: none
   bool known = false;             // the run has begun
-  bool page_hand = false;         // as told, as is the next
+  PageHandState told_hand = PageHandState::Free;
   std::uint32_t told_holder = 0;
   std::optional<CalibrationGuide> calibration;
   std::uint32_t calibrator = 0;       // the page that it listened to last, 0: that one is gone
@@ -100,11 +100,14 @@ std::string PipelineView::Impl::take(std::uint32_t page, const TransportMessage&
 
 std::string PipelineView::Impl::take(std::uint32_t page, const HandMessage& m) {
   if (m.release) {
-    // letting go of what another page holds would be rude
-    if (page == hand_holder) link.page_hand->release();
+    // a page cannot release what another one holds
+    if (page != hand_holder) return {};
+    link.page_hand->release(m.hidden);
+    hand_holder = 0;
     return {};
   }
-  const bool anothers = hand_holder != 0 && hand_holder != page && link.snapshots.run().page_hand;
+  // also while it has lapsed: two pages whose timers are late must not pass it to and fro
+  const bool anothers = hand_holder != 0 && hand_holder != page;
   if (anothers && !m.take) return "another page has the hand; switch it on here to take it";
   hand_holder = page;
   PagePose pose;
@@ -132,7 +135,7 @@ std::string PipelineView::Impl::begin_calibration() {
 std::string PipelineView::Impl::take_mark(int mark) {
   const RunSnapshot& run = link.snapshots.run();
   if (!link.control.state().tracker) return kNoTracker;
-  if (run.page_hand) return "let go of the page's hand first";
+  if (run.page_hand_in_charge()) return "let go of the page's hand first";
   if (run.paused) return "the run is paused; let it go on first";
   return calibration->take(mark);
 }
@@ -188,7 +191,7 @@ std::string PipelineView::Impl::take(std::uint32_t page, const CalibrationMessag
 }
 
 void PipelineView::Impl::look_at_finger() {
-  if (!calibration || link.snapshots.run().page_hand) return;
+  if (!calibration || link.snapshots.run().page_hand_in_charge()) return;
   const StepSnapshot& step = link.snapshots.step();
   HandFrame hands = step.hands;
   to_device(step.X_DT.inverse(), hands);  // back into T
@@ -235,18 +238,18 @@ bool PipelineView::refresh_state(Room room, std::string& out) {
   const bool fresh = i.link.control.refresh();
   if (fresh) i.commands.answered(now);
   i.commands.hand_over(now);
-  const bool page_hand = i.link.snapshots.run().page_hand;
+  const PageHandState hand = i.link.snapshots.run().page_hand.state;
   i.known = i.known || fresh;  // before the run begins there is nothing to tell
-  const bool same_hand = page_hand == i.page_hand && i.hand_holder == i.told_holder;
+  const bool same_hand = hand == i.told_hand && i.hand_holder == i.told_holder;
   if (!i.known || (!fresh && same_hand && !i.calibration_changed)) return false;
   i.calibration_changed = false;
-  i.page_hand = page_hand;
+  i.told_hand = hand;
   i.told_holder = i.hand_holder;
   const LiveState& state = i.link.control.state();
   const Json json = {
       {"type", "state"},
       {"controls", viewer::controls_json(state.settings, i.start)},
-      {"transport", viewer::transport_json(state, page_hand, i.hand_holder)},
+      {"transport", viewer::transport_json(state, hand, i.hand_holder)},
       {"rates", viewer::rates_json(state.settings.pipeline)},
       {"settings", viewer::changed_settings(state.settings.pipeline)},
       {"tracker", viewer::tracker_json(state.tracker)},

@@ -129,7 +129,7 @@ void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fa
   run.world_rate = step_rate_.rate();
   run.plan_rate = plan_rate_.rate();
   run.paused = !state_.playing;
-  run.page_hand = link_.hands != nullptr && link_.hands->page_in_charge();
+  if (link_.page_hand) run.page_hand = link_.page_hand->report();
   run.fading = fading;
   run.device = pipeline_.device_stats();
   run.emit = pipeline_.emit_stats();

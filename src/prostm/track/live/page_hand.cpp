@@ -12,7 +12,9 @@ namespace prostm {
 namespace {
 
 constexpr double kReach = 0.5;              // largest |coordinate| of the palm in D [m]
-constexpr double kSilence = 0.5;            // a hand not placed for this long is released [s]
+constexpr double kSilence = 0.5;            // a hand not placed for this long lapses [s]
+constexpr double kGap = 0.4;                // longest time between poses that count as steady [s]
+constexpr double kSteady = 1.0;             // steady poses that bring a lapsed hand back [s]
 constexpr double kFollowRate = 40.0;        // ω of the spring [1/s]
 constexpr double kLongestStep = 0.1;        // longest step of the spring, e.g. after a pause [s]
 constexpr std::int64_t kFirstId = 1 << 30;  // above any tracker's ids
@@ -55,32 +57,49 @@ bool PageHand::place(const PagePose& pose) noexcept {
   return true;
 }
 
-void PageHand::release() noexcept {
-  newest_.draft().held = false;
+void PageHand::release(bool hidden) noexcept {
+  Message& message = newest_.draft();
+  message.held = false;
+  message.hidden = hidden;
   newest_.publish();
 }
 
+PageHandReport PageHand::report() const noexcept {
+  return {state_.load(std::memory_order_relaxed), late_.load(std::memory_order_relaxed),
+          hidden_.load(std::memory_order_relaxed)};
+}
+
+void PageHand::enter(PageHandState state) noexcept {
+  const PageHandState before = state_.exchange(state, std::memory_order_relaxed);
+  if (before == state) return;
+  if (state == PageHandState::Late) late_.fetch_add(1, std::memory_order_relaxed);
+  if (state == PageHandState::Hidden) hidden_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void PageHand::receive(const Message& message, double time) noexcept {
+  if (!message.held) return enter(message.hidden ? PageHandState::Hidden : PageHandState::Free);
+  if (time - arrival_ > kGap) steady_since_ = time;
+  arrival_ = time;
+  const PageHandState before = state_.load(std::memory_order_relaxed);
+  if (before == PageHandState::Late && time - steady_since_ < kSteady) return;
+  const PagePose& pose = message.pose;
+  // another side is another hand
+  const bool same = before == PageHandState::Held && pose.side == side_;
+  side_ = pose.side;
+  target_ = {pose.p_D.x(), pose.p_D.y(), pose.p_D.z(), pose.yaw,
+             pose.pitch,   pose.roll,    pose.closure};
+  enter(PageHandState::Held);
+  if (same) return;
+  ++id_;
+  motion_ = {target_, {}};
+  last_time_ = time;
+}
+
 bool PageHand::sample(double time, Hand& out, double& age) noexcept {
-  const bool was_held = held_;
-  if (newest_.refresh()) {
-    const Message& message = newest_.value();
-    const PagePose& pose = message.pose;
-    held_ = message.held;
-    arrival_ = time;
-    // another side is another hand
-    const bool same = was_held && pose.side == side_;
-    side_ = pose.side;
-    target_ = {pose.p_D.x(), pose.p_D.y(), pose.p_D.z(), pose.yaw,
-               pose.pitch,   pose.roll,    pose.closure};
-    if (held_ && !same) {
-      ++id_;
-      motion_ = {target_, {}};
-      last_time_ = time;
-    }
-  }
-  if (!held_) return false;
+  if (newest_.refresh()) receive(newest_.value(), time);
+  if (state_.load(std::memory_order_relaxed) != PageHandState::Held) return false;
   if (time - arrival_ > kSilence) {
-    held_ = false;
+    enter(PageHandState::Late);
     return false;
   }
   follow(std::clamp(time - last_time_, 0.0, kLongestStep));
@@ -156,9 +175,7 @@ void HandSwitch::sample(double time, HandFrame& out) {
   base_->sample(time, out);
   Hand hand;
   double age = 0.0;
-  const bool page = page_->sample(time, hand, age);
-  in_charge_.store(page, std::memory_order_relaxed);
-  if (!page) return;
+  if (!page_->sample(time, hand, age)) return;
   out.time = time;
   out.age = age;
   out.hands.clear();

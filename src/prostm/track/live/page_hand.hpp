@@ -1,11 +1,14 @@
 #pragma once
 /// The hand that a page moves with mouse, touch or keys, and the switch between it and other hands.
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "prostm/core/latest.hpp"
+#include "prostm/core/names.hpp"
 #include "prostm/track/hand_source.hpp"
 
 namespace prostm {
@@ -21,9 +24,32 @@ struct PagePose {
   Side side = Side::Right;
 };
 
+/// State of the page's hand.
+enum class PageHandState : std::uint8_t {
+  Free,   ///< nobody holds it
+  Held,   ///< in charge
+  Late,   ///< lapsed: the poses come too late
+  Hidden  ///< released because its page is hidden
+};
+template <>
+inline constexpr std::array<std::string_view, 4> kNames<PageHandState> = {"free", "held", "late",
+                                                                          "hidden"};
+
+/// State of the page's hand, and how often it was released without being asked to.
+struct PageHandReport {
+  PageHandState state = PageHandState::Free;
+  std::int64_t late = 0;    ///< lapses
+  std::int64_t hidden = 0;  ///< releases because the page was hidden
+};
+
 /// The page's hand. It follows the placed poses like a critically damped spring, (H19) of
 /// docs/design.md, so that 60 unevenly timed messages a second make a smooth motion with a true
-/// velocity. A hand that is not placed for 0.5 s of run time is released.
+/// velocity.
+///
+/// A hand that is not placed for 0.5 s of run time lapses. Browsers run the timers of a page that
+/// nobody sees once a second or less, so a lapsed hand comes back only after it has been placed at
+/// least every 0.4 s for a whole second, or anew after release(): late timers release it once and
+/// do not switch the output on and off.
 class PageHand {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.
@@ -33,23 +59,28 @@ class PageHand {
   /// finite or the palm is outside its bounds; angles and closure are clamped (yaw and roll ±180°,
   /// pitch ±90°). One thread, the same for place() and release(); lock-free.
   bool place(const PagePose& pose) noexcept;
-  /// Releases the hand.
-  void release() noexcept;
+  /// Releases the hand. @param hidden because nobody sees its page any more; reported.
+  void release(bool hidden = false) noexcept;
 
   /// Sets `out` to the hand at run time `time` [s], in D; false if no page holds it. Sets `age` to
   /// `time` less the time when the newest pose was first seen here [s]. The hand gets a new id each
   /// time a page takes it. Times must not decrease. One other thread; allocates nothing.
   bool sample(double time, Hand& out, double& age) noexcept;
 
+  /// As of the last sample(). Any thread; lock-free.
+  PageHandReport report() const noexcept;
+
  private:
   static constexpr int kFreedom = 7;  // x, y, z, yaw, pitch, roll, closure
   struct Message {
     PagePose pose;
-    bool held = false;
+    bool held = false, hidden = false;
   };
   struct Motion {
     std::array<double, kFreedom> value{}, rate{};
   };
+  void receive(const Message& message, double time) noexcept;
+  void enter(PageHandState state) noexcept;
   void follow(double dt) noexcept;
   void pose_at(double offset, Hand& out) const noexcept;
 
@@ -58,8 +89,10 @@ class PageHand {
   Motion motion_;
   std::array<double, kFreedom> target_{};
   Side side_ = Side::Right;
-  bool held_ = false;
-  double last_time_ = 0.0, arrival_ = 0.0;  // [s]
+  std::atomic<PageHandState> state_{PageHandState::Free};  // written by the sampling thread
+  std::atomic<std::int64_t> late_{0}, hidden_{0};          // as is this
+  double last_time_ = 0.0, arrival_ = 0.0;                 // [s]
+  double steady_since_ = 0.0;  // poses have come without a gap since then [s]
   std::int64_t id_;
 };
 
@@ -75,8 +108,6 @@ class HandSwitch final : public HandSource {
   void seek(double time) override { base_->seek(time); }
   std::optional<TrackerStatus> tracker_status() const override { return base_->tracker_status(); }
 
-  /// Whether the last sample() was the page's. Any thread.
-  bool page_in_charge() const { return in_charge_.load(std::memory_order_relaxed); }
   /// Sets another pose of the tracker, from the next sample() on. The sampling thread only.
   void set_tracker_pose(const Pose& X_DT) { X_TD_ = X_DT.inverse(); }
 
@@ -84,7 +115,6 @@ class HandSwitch final : public HandSource {
   std::unique_ptr<HandSource> base_;
   std::shared_ptr<PageHand> page_;
   Pose X_TD_;
-  std::atomic<bool> in_charge_{false};
 };
 
 /// A source that never has a hand; the fallback behind the page's hand (`--hand page`).

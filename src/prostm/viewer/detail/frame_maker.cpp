@@ -227,7 +227,7 @@ void FrameMaker::fill_scores(ViewFrame& frame) const {
 
 std::uint32_t FrameMaker::flags(const ViewFrame& frame) const {
   const RunSnapshot& run = snapshots_.run();
-  return (run.paused ? kViewPaused : 0U) | (run.page_hand ? kViewPageHand : 0U) |
+  return (run.paused ? kViewPaused : 0U) | (run.page_hand_in_charge() ? kViewPageHand : 0U) |
          (frame.hand_count > 0 ? kViewHandInSight : 0U) | (run.fading ? kViewFading : 0U) |
          (mute_.on(MuteReason::Person) ? kViewMuted : 0U) |
          (mute_.on(MuteReason::Calibration) ? kViewCalibrating : 0U) |
@@ -253,6 +253,7 @@ void FrameMaker::fill_numbers(ViewFrame& frame) {
   const RunSnapshot& run = snapshots_.run();
   frame.run.time = run.time;
   frame.run.flags = flags(frame);
+  frame.run.page_hand = run.page_hand;
 
   const double plan_time = plan.plan_time + plan.lift_time + plan.contact_time;
   set(frame, kTrackMs, kMs * step.track_time);

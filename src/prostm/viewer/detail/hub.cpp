@@ -6,6 +6,9 @@
 namespace prostm::viewer {
 namespace {
 
+// Pages set the rate of frames, and a hidden one wants one a second; numbers do not wait for them.
+constexpr auto kNumbersAge = std::chrono::milliseconds(100);
+
 /// null for what JSON cannot say.
 nlohmann::ordered_json number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -35,19 +38,24 @@ std::shared_ptr<Bytes> EncodedFrame::unused_buffer() {
 
 void Hub::next_frame() {
   source.refresh(frame, news);
+  frame_at = Clock::now();
   ++frame.sequence;
 }
 
 std::string Hub::numbers() {
   if (!source.shows_frames(Room::Main)) return {};
-  if (pages.empty()) next_frame();
+  if (pages.empty() || Clock::now() - frame_at > kNumbersAge) next_frame();
   nlohmann::ordered_json json = {{"sequence", frame.sequence},
                                  {"run",
                                   {{"time", number(frame.run.time)},
                                    {"recording_time", number(frame.run.recording_time)},
                                    {"world_steps", frame.run.world_steps},
                                    {"plan_updates", frame.run.plan_updates},
-                                   {"flags", frame.run.flags}}}};
+                                   {"flags", frame.run.flags},
+                                   {"page_hand",
+                                    {{"state", name_of(frame.run.page_hand.state)},
+                                     {"late", frame.run.page_hand.late},
+                                     {"hidden", frame.run.page_hand.hidden}}}}}};
   const auto names = view_number_names();
   for (std::size_t i = 0; i < names.size(); ++i)
     json["numbers"][std::string(names[i])] = number(frame.numbers[i]);

@@ -38,7 +38,7 @@ struct Hub {
     states.fill(std::make_shared<std::string>());
   }
 
-  /// The newest frame's numbers as JSON; asks for a frame where nobody looks. Empty where the main
+  /// Numbers as JSON, at most 0.1 s old, however seldom pages want frames. Empty where the main
   /// room gets no frames.
   std::string numbers();
   /// Asks the source for the next frame.
@@ -50,6 +50,7 @@ struct Hub {
   bool any_address = false;  // listens on more than loopback
 
   ViewFrame frame;
+  Clock::time_point frame_at;  // when it was asked for
   ViewNews news;
   std::array<std::shared_ptr<const std::string>, std::size(kRooms)> states;  ///< by Room
   std::vector<Session*> pages;  // those whose WebSocket is open

@@ -62,13 +62,15 @@ Json controls_json(const LiveSettings& settings, const LiveSettings& start) {
   return controls;
 }
 
-Json transport_json(const LiveState& state, bool page_hand, std::uint32_t holder) {
+Json transport_json(const LiveState& state, PageHandState hand, std::uint32_t holder) {
+  const bool in_charge = hand == PageHandState::Held;
   Json json = {{"playing", state.playing}, {"recording", nullptr}};
   if (state.recording_length > 0.0)
     json["recording"] = {{"length_s", state.recording_length}, {"seekable", true}};
-  json["source"] = page_hand ? "page" : state.settings.source;
+  json["source"] = in_charge ? "page" : state.settings.source;
   json["base"] = state.settings.source;
-  json["hand_page"] = page_hand && holder != 0 ? Json(holder) : Json(nullptr);
+  json["hand_page"] = in_charge && holder != 0 ? Json(holder) : Json(nullptr);
+  json["page_hand"] = name_of(hand);
   return json;
 }
 

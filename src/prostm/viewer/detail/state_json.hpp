@@ -16,9 +16,8 @@ Json millimetres(const Vec3& p);
 /// Every control, in the order in which to show them. @param start settings that the run began
 /// with.
 Json controls_json(const LiveSettings& settings, const LiveSettings& start);
-/// @param page_hand whether the page's hand is in charge. @param holder the page that holds it, or
-/// 0.
-Json transport_json(const LiveState& state, bool page_hand, std::uint32_t holder);
+/// @param holder the page that holds the page's hand, or 0.
+Json transport_json(const LiveState& state, PageHandState hand, std::uint32_t holder);
 /// Rates that the settings ask for.
 Json rates_json(const PipelineSettings& settings);
 Json tracker_json(const std::optional<TrackerStatus>& tracker);
