@@ -12,6 +12,8 @@
 namespace prostm::app {
 namespace {
 
+constexpr unsigned char kEscape = 0x1b;
+
 termios before;  // of the terminal; written before `changed` is set
 std::atomic<bool> changed{false};
 
@@ -50,14 +52,49 @@ TerminalKeys::~TerminalKeys() {
   if (available_) before_sudden_end(nullptr);
 }
 
-char TerminalKeys::next() {
-  if (!available_ || !in_foreground()) return 0;
+std::optional<unsigned char> TerminalKeys::next_byte() {
+  if (!available_ || !in_foreground()) return std::nullopt;
   // after the program was stopped, its terminal is as the shell left it
-  if (!take_terminal()) return 0;
+  if (!take_terminal()) return std::nullopt;
   pollfd waiting{STDIN_FILENO, POLLIN, 0};
-  if (poll(&waiting, 1, 0) != 1 || (waiting.revents & POLLIN) == 0) return 0;
-  char key = 0;
-  return read(STDIN_FILENO, &key, 1) == 1 ? key : '\0';
+  if (poll(&waiting, 1, 0) != 1 || (waiting.revents & POLLIN) == 0) return std::nullopt;
+  unsigned char byte = 0;
+  if (read(STDIN_FILENO, &byte, 1) != 1) return std::nullopt;
+  return byte;
+}
+
+/// Skips what follows Escape at once: "[" or "O", parameters and a letter, or the key of Alt.
+void TerminalKeys::skip_sequence() {
+  std::optional<unsigned char> byte = next_byte();
+  if (byte != '[' && byte != 'O') return;
+  do {
+    byte = next_byte();
+  } while (byte && (*byte < 0x40 || *byte > 0x7e));
+}
+
+/// Reads the rest of a character in UTF-8; nothing for invalid bytes.
+std::optional<char32_t> TerminalKeys::character(unsigned char first) {
+  if (first < 0x80) return first;
+  const int following = first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : first >= 0xc0 ? 1 : 0;
+  if (following == 0) return std::nullopt;
+  char32_t code = first & (0x3fU >> following);
+  for (int i = 0; i < following; ++i) {
+    const std::optional<unsigned char> byte = next_byte();
+    if (!byte || (*byte & 0xc0U) != 0x80U) return std::nullopt;
+    code = code << 6U | (*byte & 0x3fU);
+  }
+  return code;
+}
+
+std::optional<char32_t> TerminalKeys::next() {
+  while (const std::optional<unsigned char> byte = next_byte()) {
+    if (byte == kEscape) {
+      skip_sequence();
+    } else if (const std::optional<char32_t> typed = character(*byte)) {
+      return typed;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace prostm::app

@@ -1,6 +1,8 @@
 #pragma once
 /// Single keys from the terminal, without Enter.
 
+#include <optional>
+
 namespace prostm::app {
 
 /// Reads keys as they are pressed, where standard input is a terminal and the program is in its
@@ -15,10 +17,16 @@ class TerminalKeys {
 
   /// Whether keys could be read when this was made.
   bool available() const { return available_; }
-  /// Returns the oldest key that was pressed and not read; 0 without one. Does not wait.
-  char next();
+  /// Returns the oldest character that was typed and not read; nothing without one. The terminal
+  /// sends UTF-8. The sequences of arrows and other keys without a character are skipped, as are
+  /// keys with Alt. Does not wait.
+  std::optional<char32_t> next();
 
  private:
+  std::optional<unsigned char> next_byte();
+  void skip_sequence();
+  std::optional<char32_t> character(unsigned char first);
+
   bool available_ = false;
 };
 

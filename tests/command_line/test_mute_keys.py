@@ -62,7 +62,8 @@ def terminal(program, tmp_path):
     opened.close()
 
 
-@pytest.mark.parametrize("key", ["m", " "])
+# a terminal sends characters: those of M's place on Cyrillic, Greek, Hebrew, Arabic and Thai keyboards mute, too
+@pytest.mark.parametrize("key", ["m", "M", " ", "ь", "Ь", "μ", "צ", "ة", "ท", "ｍ"])
 def test_a_key_mutes_and_unmutes(terminal, key):
     terminal.wait_for("Keys: m or space mutes the array")
     assert not terminal.echoes()
@@ -74,6 +75,16 @@ def test_a_key_mutes_and_unmutes(terminal, key):
     terminal.wait_for("The run: one-plume")
     assert terminal.run.wait(timeout=30) == 130
     assert terminal.is_as_before()
+
+
+def test_keys_without_a_character_do_not_mute(terminal):
+    """The sequences of Enter of the keypad, of a mouse and of Alt-M have an M in them."""
+    terminal.wait_for("Keys: ")
+    terminal.press("\x1bOM\x1b[M\x1b[1;2M\x1bm")
+    terminal.press("ф\xff\x1b[C")
+    terminal.press("m")
+    terminal.wait_for("The array is muted.")
+    assert terminal.seen.count("The array is") == 1
 
 
 def test_ctrl_c_is_still_a_signal(terminal):
