@@ -2,7 +2,7 @@
 
 import type { PictureMode } from "./address";
 import { find, setText } from "./dom";
-import type { View } from "./scene/view";
+import type { Graphics, View } from "./scene/view";
 import type { Frame } from "./wire";
 
 export interface Parts {
@@ -18,6 +18,15 @@ export interface Parts {
 }
 
 const kPanels = 60, kSlowPanels = 150, kStrips = 150, kSlowStrips = 400; // [ms] between drawings
+
+const kOff = "The picture in three dimensions is off; the planes show the fields.";
+const kNoGraphics: Record<Graphics, string> = {
+  ready: "The picture in three dimensions is off: drawing it here would slow the run down. The planes show the fields.",
+  lost: "The browser has taken away the graphics context (WebGL) of the picture in three dimensions. The picture " +
+    "comes back with it; reload the page if that takes long. The planes show the fields.",
+  none: "This browser has no graphics context (WebGL 2) for the picture in three dimensions. " +
+    "The planes show the fields.",
+};
 
 export class Drawing {
   pictures = 0;
@@ -38,8 +47,11 @@ export class Drawing {
   get shown(): Frame | null { return this.frame; }
   /// Draws what it has again: it looks different.
   again(): void { this.inPanels = this.inView = null; }
-  /// The picture comes back if it was off by itself.
-  begin(): void { this.off = false; }
+  /// The picture comes back if it was off by itself, or the browser had no graphics context to give.
+  begin(): void {
+    this.off = false;
+    this.view.begin();
+  }
 
   private draw(now: number): void {
     window.requestAnimationFrame((next) => this.draw(next));
@@ -59,7 +71,8 @@ export class Drawing {
     const { view } = this, mode = this.parts.mode();
     const pace = view.pace.state(now, this.parts.held());
     if (mode === "auto" && pace.off) this.off = true;
-    const drawn = this.still || mode === "on" || (mode === "auto" && !this.off);
+    const wished = this.still || mode === "on" || (mode === "auto" && !this.off);
+    const drawn = wished && view.graphics === "ready";
     this.tell(drawn, mode);
     this.parts.rate(!drawn ? 10 : view.pace.slow ? 15 : 30);
     const wanted = this.frame !== null && this.inView === null; // the first frame, and what was asked for, wait for no pace
@@ -78,8 +91,9 @@ export class Drawing {
     find("picture").dataset.drawn = String(drawn);
     find("no-picture").hidden = drawn;
     if (drawn) return;
-    setText(find("no-picture-why"), mode === "off"
-      ? "The picture in three dimensions is off; the planes show the fields."
-      : "The picture in three dimensions is off: drawing it here would slow the run down. The planes show the fields.");
+    const { graphics } = this.view;
+    setText(find("no-picture-why"), mode === "off" ? kOff : kNoGraphics[graphics]);
+    // what the browser takes away only the browser brings back
+    find("draw-anyway").hidden = mode !== "off" && graphics === "lost";
   }
 }

@@ -120,7 +120,7 @@ function takeState(state: State): void {
   controls.show(state.controls);
   transport.show(state, page);
   guide.show(state);
-  pageHand.show(state.transport.hand_page, page);
+  pageHand.show(state.transport, page);
   // the address follows the program, once it is known what an address that was opened asked for
   if (share.show(state)) address.set({ settings: changedSettings(state.controls) });
 }

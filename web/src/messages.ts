@@ -49,6 +49,7 @@ export interface Transport {
   source: string;
   base: string;
   hand_page: number | null; // the page that holds the page's hand
+  page_hand: "free" | "held" | "late" | "hidden";
 }
 /// The rates that the settings ask for.
 export interface Rates {
@@ -108,7 +109,7 @@ export type PageMessage =
   | { type: "transport"; do: "seek"; time_s: number }
   | ({ type: "hand"; take?: true } & HandPose)
   | { type: "mute"; on: boolean }
-  | { type: "hand"; release: true }
+  | { type: "hand"; release: true; hidden?: true }
   | { type: "calibration"; do: "begin" | "solve" | "save" | "cancel" }
   | { type: "calibration"; do: "take"; mark: number }
   | { type: "rate"; hz: number }
@@ -131,7 +132,7 @@ function isControl(x: unknown): boolean {
 
 function isTransport(x: unknown): boolean {
   if (!isObject(x) || typeof x.playing !== "boolean" || !isText(x.source) || !isText(x.base)) return false;
-  if (x.hand_page !== null && !Number.isFinite(x.hand_page)) return false;
+  if (!isText(x.page_hand) || (x.hand_page !== null && !Number.isFinite(x.hand_page))) return false;
   return x.recording === null || (isObject(x.recording) && Number.isFinite(x.recording.length_s));
 }
 

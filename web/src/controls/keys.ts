@@ -1,5 +1,7 @@
 /// The page's keys, wherever the focus is.
 
+import { isCommand, keyAmong, takesText } from "../keyboard";
+
 export interface Keys {
   help(): void;
   mute(): void;
@@ -15,24 +17,27 @@ const isIn = (target: EventTarget | null, parts: string) =>
 function inDialog(target: EventTarget | null): boolean {
   return isIn(target, "dialog") || document.querySelector("dialog:modal") !== null;
 }
-/// Whether somebody writes, or chooses by letters.
+/// Whether somebody enters a number, or chooses by letters.
 const takesLetters = (target: EventTarget | null) => inDialog(target) || isIn(target, 'input[type="number"], select');
 /// Whether Space means something there.
 const takesSpace = (target: EventTarget | null) => inDialog(target) || isIn(target, "input, select, button, summary");
 
 export function listen(keys: Keys): void {
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.key === "Escape" && !inDialog(event.target)) keys.letGo();
-    if (event.key === "?") return keys.help();
-    if (!takesLetters(event.target) && !event.repeat) {
-      if (event.key.toLowerCase() === "m") return keys.mute();
-      if (event.key.toLowerCase() === "f") return keys.freeze();
+    const { target } = event;
+    if (isCommand(event) || takesText(target)) return;
+    const key = keyAmong(event, ["Escape", "?", "m", "f", " "]);
+    if (key === "Escape" && !inDialog(target)) keys.letGo();
+    if (key === "?" && !event.repeat) keys.help();
+    if (key === "m") {
+      event.preventDefault(); // a list would choose by the letter
+      if (!event.repeat) keys.mute();
     }
-    if (event.key === " " && !takesSpace(event.target)) {
+    if (key === "f" && !event.repeat && !takesLetters(target)) keys.freeze();
+    if (key === " " && !takesSpace(target)) {
       event.preventDefault();
       // the strips stand still where they have the focus, the run elsewhere
-      if (isIn(event.target, "#strips-card")) keys.freeze();
+      if (isIn(target, "#strips-card")) keys.freeze();
       else keys.play();
     }
   });

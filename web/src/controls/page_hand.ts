@@ -1,23 +1,34 @@
 /// The page's own hand: mouse, touch and keys over the picture move a hand above the array.
 
 import { Vector3 } from "three";
-import { find } from "../dom";
-import type { Hello, HandPose, PageMessage } from "../messages";
+import { find, setText } from "../dom";
+import { entryOf, isCommand } from "../keyboard";
+import type { Hello, HandPose, PageMessage, Transport } from "../messages";
 import type { View } from "../scene/view";
+import { pixelsOf, zoomOf } from "../scene/wheel";
 
 const kEvery = 1000 / 60; // [ms] between messages at least
-const kAlive = 200; // [ms] between messages at most; the program lets go after 500
+const kAlive = 100; // [ms] between messages at most; the program releases the hand after 500
+const kStopped = 10_000; // [ms] between two messages, from which the page or its machine stood still
+
+const kWhy = {
+  hidden: "The hand was released because this page was hidden. Switch it on to take it again.",
+  stopped: "The hand was released because this page stood still. Switch it on to take it again.",
+  late: "The hand was released because this page's messages came late. It comes back when they are steady.",
+};
 
 export class PageHand {
   active = false;
   readonly pose: HandPose = { palm_mm: [0, 0, 190], yaw_deg: 0, pitch_deg: 0, roll_deg: 0, closure: 0, side: "right" };
   private readonly toggleBox = find<HTMLInputElement>("page-hand");
   private readonly help = find("page-hand-help");
+  private readonly why = find("page-hand-why");
   private low = [-150, -150, 40];
   private high = [150, 150, 320];
   private dragging: number | null = null;
   private at = { x: 0, y: 0 };
   private sent = 0;
+  private alive = 0; // when the hand was last known to move on [ms of the day's clock, which sleep does not stop]
   private waiting = false;
   private held = false; // the program has said so
 
@@ -28,8 +39,9 @@ export class PageHand {
     const { canvas } = view;
     this.toggleBox.addEventListener("change", () => (this.toggleBox.checked ? this.take() : this.release()));
     canvas.addEventListener("pointerdown", (e) => {
-      if (!this.active || e.button !== 0 || this.dragging !== null) return;
-      this.dragging = e.pointerId;
+      if (!this.active || e.button !== 0) return;
+      // a second finger pinches, which is the eye's
+      this.dragging = this.dragging === null ? e.pointerId : null;
       this.at = { x: e.clientX, y: e.clientY };
     });
     canvas.addEventListener("pointermove", (e) => e.pointerId === this.dragging && this.drag(e));
@@ -38,11 +50,15 @@ export class PageHand {
     }
     canvas.addEventListener("wheel", (e) => {
       e.preventDefault();
-      const up = -Math.sign(e.deltaY) * Math.min(8, Math.abs(e.deltaY) / 12); // [mm]
-      if (this.active) this.change((p) => (p.palm_mm[2] += up));
-      else view.eye.zoom(Math.exp(Math.max(-60, Math.min(60, e.deltaY)) * 0.002));
+      if (!this.active || e.ctrlKey) return view.eye.zoom(zoomOf(e, canvas.clientHeight));
+      const up = Math.max(-8, Math.min(8, -pixelsOf(e, canvas.clientHeight) / 12)); // [mm]
+      this.change((p) => (p.palm_mm[2] += up));
     }, { passive: false });
-    window.setInterval(() => this.active && performance.now() - this.sent >= kAlive && this.tell(), kAlive / 2);
+    window.setInterval(() => this.keepAlive(), kAlive / 2);
+    // a page that nobody sees has no hand: browsers run its timers seldom, and nobody is there to move it
+    document.addEventListener("visibilitychange", () => document.hidden && this.hide());
+    document.addEventListener("freeze", () => this.hide());
+    window.addEventListener("pagehide", () => this.hide());
   }
 
   setBox(hello: Hello): void {
@@ -52,10 +68,13 @@ export class PageHand {
   }
 
   take(): void {
+    this.toggleBox.checked = !document.hidden;
+    setText(this.why, document.hidden ? kWhy.hidden : "");
+    if (document.hidden) return;
     this.active = true;
     this.held = false;
+    this.alive = Date.now();
     this.view.eye.primaryTaken = true;
-    this.toggleBox.checked = true;
     this.help.hidden = false;
     this.view.canvas.focus();
     this.change(() => undefined);
@@ -65,13 +84,31 @@ export class PageHand {
     this.end();
     this.send({ type: "hand", release: true });
   }
+  private hide(): void {
+    if (!this.active) return;
+    this.end(kWhy.hidden);
+    this.send({ type: "hand", release: true, hidden: true });
+  }
+
+  /// Goes on holding the hand where it is, unless the page stood still meanwhile: whoever held it may have gone.
+  private keepAlive(): void {
+    if (!this.active) return;
+    const stopped = Date.now() - this.alive > kStopped;
+    this.alive = Date.now();
+    if (stopped) {
+      this.release();
+      setText(this.why, kWhy.stopped);
+    } else if (performance.now() - this.sent >= kAlive) {
+      this.tell();
+    }
+  }
 
   /// Who holds the hand, as the program says, and which page this one is.
-  show(holder: number | null, page: number): void {
+  show({ hand_page: holder, page_hand: state }: Transport, page: number): void {
     if (!this.active) return;
-    if (holder === page) {
-      this.held = true;
-    } else if (this.held && holder !== null) {
+    if (holder === page) this.held = true;
+    if (this.held) setText(this.why, state === "late" ? kWhy.late : "");
+    if (this.held && holder !== null && holder !== page) {
       this.end();
       this.say("Another page has the hand; switch it on here to take it back.");
     }
@@ -81,7 +118,9 @@ export class PageHand {
     if (this.active) this.end();
   }
 
-  private end(): void {
+  /// @param why it ends, where nobody asked for that.
+  private end(why = ""): void {
+    setText(this.why, why);
     this.active = this.held = false;
     this.view.eye.primaryTaken = false;
     this.toggleBox.checked = false;
@@ -98,7 +137,7 @@ export class PageHand {
       return true;
     }
     const step = event.shiftKey ? 1 : 5; // [mm], and [degrees]
-    const keys: Record<string, (p: HandPose) => void> = {
+    const change = entryOf<(p: HandPose) => void>(event, {
       ArrowLeft: (p) => (p.palm_mm[0] -= step), ArrowRight: (p) => (p.palm_mm[0] += step),
       ArrowDown: (p) => (p.palm_mm[1] -= step), ArrowUp: (p) => (p.palm_mm[1] += step),
       PageUp: (p) => (p.palm_mm[2] += step), PageDown: (p) => (p.palm_mm[2] -= step),
@@ -107,9 +146,8 @@ export class PageHand {
       a: (p) => (p.roll_deg -= step), d: (p) => (p.roll_deg += step),
       c: (p) => (p.closure += 0.02 * step), o: (p) => (p.closure -= 0.02 * step),
       l: (p) => (p.side = p.side === "left" ? "right" : "left"),
-    };
-    const change = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (change === undefined || event.ctrlKey || event.altKey || event.metaKey) return false;
+    });
+    if (change === undefined || isCommand(event)) return false;
     this.change(change);
     return true;
   }

@@ -23,6 +23,7 @@ export class Legend {
 
   constructor() {
     this.root.append(this.title, make("div", { class: "scale" }, this.low, this.bar, this.high));
+    this.bar.addEventListener("contextrestored", () => (this.shown = ""));
   }
 
   show(mode: FieldMode, scale: number, dark: boolean): void {

@@ -46,6 +46,7 @@ export class Planes {
       make("div", { class: "scale" }, make("span", {}, "0"), this.bar, this.ends.most),
       make("div", { class: "scale" }, this.ends.least, this.differenceBar, this.ends.more),
     );
+    for (const bar of [this.bar, this.differenceBar]) bar.addEventListener("contextrestored", () => this.paintBars());
     this.scale.locked = address.state.scale ?? null;
     this.lock.addEventListener("click", () => {
       this.scale.locked = this.scale.locked === null ? this.scale.end : null;
@@ -57,6 +58,9 @@ export class Planes {
 
   setDark(dark: boolean): void {
     this.dark = dark;
+    this.paintBars();
+  }
+  private paintBars(): void {
     paintBar(this.bar, kFieldTable);
     paintBar(this.differenceBar, this.differences);
   }

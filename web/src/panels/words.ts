@@ -31,9 +31,14 @@ const kSources: Record<string, string> = {
   scripted: "scripted hand", recording: "recorded hand", leap: "tracked hand (Leap)", openxr: "tracked hand (OpenXR)",
 };
 
+/// Why the page's hand was released without being asked to.
+const kReleased: Record<State["transport"]["page_hand"], string> = {
+  free: "", held: "", late: "; the page that held the hand is late", hidden: "; the page that held the hand is hidden",
+};
+
 /// Where the hands come from, for the page with this number.
-export function sourceOf({ source, hand_page: holder }: State["transport"], page: number): string {
-  if (source !== "page") return kSources[source] ?? source;
+export function sourceOf({ source, hand_page: holder, page_hand: hand }: State["transport"], page: number): string {
+  if (source !== "page") return (kSources[source] ?? source) + kReleased[hand];
   return holder === page ? "hand from this page" : "hand from another page";
 }
 

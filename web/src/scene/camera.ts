@@ -1,6 +1,7 @@
 /// The eye: it goes round a point on a sphere, by mouse, touch and keyboard; z is up.
 
 import { MathUtils, PerspectiveCamera, Vector3 } from "three";
+import { entryOf } from "../keyboard";
 
 export interface Place {
   azimuth: number; // [rad], 0 looks along +y
@@ -118,15 +119,14 @@ export class OrbitCamera {
   /// @return whether the key is one of the eye's.
   key(event: KeyboardEvent): boolean {
     const step = event.shiftKey ? 0.04 : 0.1;
-    if (event.key === "ArrowLeft") this.turn(-step, 0);
-    else if (event.key === "ArrowRight") this.turn(step, 0);
-    else if (event.key === "ArrowUp") this.turn(0, step);
-    else if (event.key === "ArrowDown") this.turn(0, -step);
-    else if (event.key === "+" || event.key === "=") this.zoom(0.9);
-    else if (event.key === "-") this.zoom(1 / 0.9);
-    else if (event.key === "Home" || event.key === "0") this.go("home");
-    else return false;
-    return true;
+    const nearer = () => this.zoom(0.9), home = () => this.go("home");
+    const act = entryOf(event, {
+      ArrowLeft: () => this.turn(-step, 0), ArrowRight: () => this.turn(step, 0),
+      ArrowUp: () => this.turn(0, step), ArrowDown: () => this.turn(0, -step),
+      "+": nearer, "=": nearer, "-": () => this.zoom(1 / 0.9), Home: home, "0": home,
+    });
+    act?.();
+    return act !== undefined;
   }
 
   /// Goes on by dt [s]. @return whether the eye moves.

@@ -64,6 +64,8 @@ export class FieldMaps {
     differenceColours: { value: this.difference.light },
   };
 
+  get textures(): DataTexture[] { return [...this.maps, this.difference.light, this.difference.dark]; }
+
   set(field: Patch[]): void {
     const u = this.uniforms;
     u.fieldCount.value = Math.min(kMaps, field.length);

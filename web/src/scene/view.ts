@@ -15,16 +15,22 @@ import { Labels } from "./labels";
 import { Pace } from "./pace";
 import { Paths } from "./paths";
 import { pick, type Hit } from "./pick";
+import { freeMaterial, freeResources } from "./resources";
 import { Ruler } from "./ruler";
 import { kScreenVertex, SmokeVolume } from "./smoke";
 import { kTogether } from "./together";
 
-function target(samples: number): WebGLRenderTarget {
+function target(): WebGLRenderTarget {
   const linear = { minFilter: LinearFilter, magFilter: LinearFilter } as const;
-  const made = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples, ...linear });
+  const made = new WebGLRenderTarget(1, 1, { type: HalfFloatType, ...linear });
   made.depthTexture = new DepthTexture(1, 1, UnsignedIntType);
   return made;
 }
+
+const kContext: WebGLContextAttributes = { alpha: false, antialias: false, powerPreference: "high-performance" };
+
+/// Whether there is a context to draw with: the browser may take it away at any time, or have none to give.
+export type Graphics = "ready" | "lost" | "none";
 
 /// Least and most share of the screen's pixels along a side; time of a picture above which there are fewer of them, and
 /// below which more [ms].
@@ -38,7 +44,6 @@ export interface Speed {
 }
 
 export class View {
-  readonly renderer: WebGLRenderer;
   readonly eye: OrbitCamera;
   readonly array = new ArrayModel();
   readonly maps = new FieldMaps();
@@ -46,7 +51,7 @@ export class View {
   readonly paths = new Paths();
   readonly smoke = new SmokeVolume();
   readonly ruler = new Ruler();
-  readonly pace: Pace;
+  pace = new Pace(false);
   readonly speed: Speed = { framesPerSecond: 0, pixelRatio: 1 };
 
   private readonly backScene = new Scene();
@@ -64,7 +69,10 @@ export class View {
   private steps = 56;
   private readonly labels = new Labels();
   private field: Frame["field"] = [];
-  readonly software: boolean; // the processor draws
+  software = false; // the processor draws
+  graphics: Graphics = "none";
+  private gl: WebGL2RenderingContext | null = null;
+  private renderer: WebGLRenderer | null = null;
   private fence: WebGLSync | null = null;
   private drawn = -Infinity; // when a picture was last allowed [ms]
   private begun = 0; // when it was begun [ms]
@@ -73,17 +81,8 @@ export class View {
   private unhurried = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false, powerPreference: "high-performance" });
-    this.renderer.autoClear = false;
-    const gl = this.renderer.getContext();
-    const info = gl.getExtension("WEBGL_debug_renderer_info");
-    const name = info === null ? "" : String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
-    this.software = /swiftshader|llvmpipe|software/i.test(name);
-    this.pace = new Pace(this.software);
-    if (this.software) this.setQuality(0.6);
-    const samples = this.software ? 0 : 4;
-    this.backTarget = target(samples);
-    this.handTarget = target(samples);
+    this.backTarget = target();
+    this.handTarget = target();
     this.smokeTarget = new WebGLRenderTarget(1, 1, {
       type: HalfFloatType, count: 2, depthBuffer: false, minFilter: LinearFilter, magFilter: LinearFilter,
     });
@@ -109,6 +108,47 @@ export class View {
     this.backScene.add(this.array.group, this.ruler.group, key, new HemisphereLight("#ffffff", "#8090a8", 1.1));
     this.handScene.add(this.hands.group, this.paths.group);
     this.eye = new OrbitCamera(canvas);
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault(); // the browser is to give it back
+      this.lose();
+    });
+    canvas.addEventListener("webglcontextrestored", () => this.begin());
+    this.begin();
+  }
+
+  /// Begins to draw where the browser has a context for it, at first, and again when it gives one back.
+  begin(): void {
+    if (this.renderer !== null) return;
+    this.gl ??= this.canvas.getContext("webgl2", kContext);
+    this.graphics = this.gl === null ? "none" : "lost";
+    if (this.gl === null || this.gl.isContextLost()) return;
+    const info = this.gl.getExtension("WEBGL_debug_renderer_info");
+    const name = info === null ? "" : String(this.gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+    this.software = /swiftshader|llvmpipe|software/i.test(name);
+    this.pace = new Pace(this.software);
+    this.setUnhurried(this.unhurried);
+    try {
+      this.renderer = new WebGLRenderer({ canvas: this.canvas, context: this.gl });
+      this.renderer.autoClear = false;
+      this.graphics = "ready";
+    } catch (error) {
+      if (this.gl.isContextLost()) return; // while it began
+      this.graphics = "none";
+      console.error(error);
+    }
+  }
+
+  /// Forgets all that the context held: a later one knows none of it.
+  private lose(): void {
+    this.graphics = "lost";
+    this.fence = null;
+    for (const scene of [this.backScene, this.handScene]) freeResources(scene);
+    for (const material of [this.smoke.material, this.together]) freeMaterial(material);
+    for (const texture of this.maps.textures) texture.dispose();
+    for (const target of [this.backTarget, this.handTarget, this.smokeTarget]) target.dispose();
+    this.screen.geometry.dispose();
+    this.renderer?.dispose();
+    this.renderer = null;
   }
 
   setHello(hello: Hello): void {
@@ -150,8 +190,9 @@ export class View {
 
   /// Whether the next picture may be drawn: the one before is done, and was begun `interval` [ms] ago.
   ready(now: number, interval: number): boolean {
+    const { gl } = this;
+    if (gl === null || this.graphics !== "ready" || gl.isContextLost()) return false;
     if (this.fence !== null) {
-      const gl = this.renderer.getContext() as WebGL2RenderingContext;
       if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
       gl.deleteSync(this.fence);
       this.fence = null;
@@ -164,14 +205,15 @@ export class View {
 
   /// Draws the next picture, dt seconds after the one before.
   render(dt: number): void {
+    const { gl, renderer } = this;
+    if (gl === null || renderer === null) return;
     this.begun = performance.now();
     this.keepPace(dt);
-    this.resize();
+    this.resize(renderer);
     const { width, height } = this.backTarget;
     this.eye.update(dt, width / height);
     this.labels.show(this.ruler.update(this.eye.camera, this.canvas.clientWidth), this.eye.camera, this.canvas);
     this.paths.advance(dt);
-    const { renderer } = this;
     const camera = this.eye.camera;
 
     renderer.setClearColor(0x000000, 0);
@@ -189,13 +231,12 @@ export class View {
       (u.eye!.value as Vector3).copy(camera.position);
       u.steps!.value = this.steps;
       renderer.setRenderTarget(this.smokeTarget);
-      this.draw(this.smoke.material);
+      this.draw(renderer, this.smoke.material);
     }
     this.together.uniforms.smoke!.value = smoky ? 1 : 0;
     this.together.uniforms.aspect!.value = width / height;
     renderer.setRenderTarget(null);
-    this.draw(this.together);
-    const gl = renderer.getContext() as WebGL2RenderingContext;
+    this.draw(renderer, this.together);
     if (this.fence === null) this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
   }
@@ -219,18 +260,18 @@ export class View {
     [this.quality, this.steps, this.unhurried] = [quality, steps, unhurried];
   }
 
-  private draw(material: RawShaderMaterial): void {
+  private draw(renderer: WebGLRenderer, material: RawShaderMaterial): void {
     this.screen.material = material;
-    this.renderer.render(this.screenScene, this.screenCamera);
+    renderer.render(this.screenScene, this.screenCamera);
   }
 
-  private resize(): void {
+  private resize(renderer: WebGLRenderer): void {
     const scale = Math.min(2, window.devicePixelRatio || 1) * this.quality;
     const pixels = (length: number) => Math.max(2, Math.round(length * scale));
     const width = pixels(this.canvas.clientWidth), height = pixels(this.canvas.clientHeight);
     this.speed.pixelRatio = scale;
     if (this.backTarget.width === width && this.backTarget.height === height && this.canvas.width === width) return;
-    this.renderer.setSize(width, height, false);
+    renderer.setSize(width, height, false);
     for (const t of [this.backTarget, this.handTarget]) t.setSize(width, height);
     const coarse = this.software && !this.unhurried ? 3 : 2;
     this.smokeTarget.setSize(Math.ceil(width / coarse), Math.ceil(height / coarse));

@@ -74,4 +74,4 @@ find("go").addEventListener("click", () => {
   leave.close();
   page.act({ type: "study", do: "withdraw" });
 });
-listen(page, answering(page, () => true), { Enter: next, " ": next, p: pause, P: pause });
+listen(page, answering(page, () => true), { Enter: next, " ": next, p: pause });

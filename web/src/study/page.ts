@@ -2,6 +2,8 @@
 
 import { Connection } from "../connection";
 import { find, setText } from "../dom";
+import { entryOf, isCommand } from "../keyboard";
+import { answerOf } from "./answer_keys";
 import { Picture } from "./picture";
 import type { Study, StudyAct, Task } from "./messages";
 
@@ -141,23 +143,13 @@ function addTuning(root: HTMLElement, ways: Answering): void {
   accept.className = "strong";
 }
 
-/// Keys of answers and of tuning: letters, digits, arrows, and those that foot switches and remote controls send.
-const kYes = ["y", "Y", "ArrowRight", "PageDown"], kNo = ["n", "N", "ArrowLeft", "PageUp"];
-const kFirst = ["1", "ArrowLeft", "PageUp"], kSecond = ["2", "ArrowRight", "PageDown"];
-const kMore = ["+", "ArrowUp", "ArrowRight", "PageDown"], kLess = ["-", "ArrowDown", "ArrowLeft", "PageUp"];
-
-/// @return whether the key is the task's.
-function press({ key, shiftKey, repeat }: KeyboardEvent, task: Task, ways: Answering): boolean {
-  if (task === "adjustment") {
-    const to = kMore.includes(key) ? "more" : kLess.includes(key) ? "less" : null;
-    if (to !== null) ways.tune(to, shiftKey && key !== "+");
-    else if (key === "Enter" && !repeat) ways.accept();
-    return to !== null || key === "Enter";
-  }
-  const [first, second] = task === "forced-choice" ? [kFirst, kSecond] : [kYes, kNo];
-  if (!first.includes(key) && !second.includes(key)) return false;
-  if (!repeat) ways.answer(first.includes(key));
-  return true;
+/// @return whether the key is the task's. One that is held down counts once, but for tuning.
+function press(event: KeyboardEvent, task: Task, ways: Answering): boolean {
+  const act = answerOf(event, task);
+  if (act?.do === "tune") ways.tune(act.to, act.coarse);
+  if (act?.do === "answer" && !event.repeat) ways.answer(act.first);
+  if (act?.do === "accept" && !event.repeat) ways.accept();
+  return act !== null;
 }
 
 /// Listens for keys that answer, tune or go on. A key that is held down counts once, but for tuning, and what is typed
@@ -165,12 +157,12 @@ function press({ key, shiftKey, repeat }: KeyboardEvent, task: Task, ways: Answe
 export function listen(page: Acting, ways: Answering, others: Record<string, () => void> = {}): void {
   document.addEventListener("keydown", (event) => {
     const element = event.target as HTMLElement;
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    if (isCommand(event)) return;
     if (element.closest("input, select, textarea, dialog")) return;
     const onButton = element.closest("button") !== null && (event.key === "Enter" || event.key === " ");
     if (onButton) return;
     const study = page.study;
-    const other = others[event.key];
+    const other = entryOf(event, others);
     if (study?.phase === "presenting" && press(event, study.task, ways)) event.preventDefault();
     else if (other && !event.repeat) {
       other();

@@ -31,9 +31,10 @@ export class Picture {
   private draw(now: number): void {
     window.requestAnimationFrame((next) => this.draw(next));
     const on = this.frame !== null && now - this.came < kKept;
-    find("picture").hidden = !on;
-    if (!on) return;
-    const view = this.view ??= this.make();
+    if (on) this.view ??= this.make();
+    const { view } = this, shown = on && view?.graphics === "ready";
+    find("picture").hidden = !shown;
+    if (!shown) return;
     if (!view.ready(now, view.pace.slow ? 100 : 0)) return;
     if (this.frame !== this.drawn) view.setFrame(this.frame!);
     this.drawn = this.frame;

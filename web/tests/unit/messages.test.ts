@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { parseMessage } from "../../src/messages";
 
 const control = { id: "paths", group: "plan", label: "Paths", kind: "number", value: 4, default: 4, min: 1, max: 8, step: 1, help: "", enabled: true };
-const transport = { playing: true, recording: null, source: "scripted", base: "scripted", hand_page: null };
+const transport = { playing: true, recording: null, source: "scripted", base: "scripted", hand_page: null, page_hand: "free" };
 const state = { type: "state", controls: [control], transport, rates: { world_hz: 50, plan_hz: 25 }, settings: "" };
 
 describe("parseMessage", () => {
@@ -24,6 +24,7 @@ describe("parseMessage", () => {
     JSON.stringify({ ...state, controls: [{ ...control, kind: "choice", value: "a" }] }),
     JSON.stringify({ ...state, transport: { ...transport, playing: 1 } }),
     JSON.stringify({ ...state, transport: { ...transport, hand_page: "1" } }),
+    JSON.stringify({ ...state, transport: { ...transport, page_hand: null } }),
     JSON.stringify({ ...state, rates: { world_hz: 50 } }),
     JSON.stringify({ ...state, rates: { world_hz: 0, plan_hz: 25 } }),
     JSON.stringify({ ...state, settings: null }),

@@ -32,6 +32,8 @@ describe("the source of the hands", () => {
     expect(sourceOf(transport, 1)).toBe("scripted hand");
     expect(sourceOf({ ...transport, source: "page", hand_page: 1 }, 1)).toBe("hand from this page");
     expect(sourceOf({ ...transport, source: "page", hand_page: 2 }, 1)).toBe("hand from another page");
+    expect(sourceOf({ ...transport, page_hand: "hidden" }, 1)).toBe("scripted hand; the page that held the hand is hidden");
+    expect(sourceOf({ ...transport, page_hand: "late" }, 1)).toBe("scripted hand; the page that held the hand is late");
   });
   it("has its own advice when no hand is in sight", () => {
     const tracker = { connected: false, sentence: "no tracker at 127.0.0.1", frames: 0, dropped: 0, repeated: 0, unsure: 0, frozen: 0 };

@@ -1,0 +1,299 @@
+/// Browsers take a page's graphics context away, hide the page, and have keyboards and wheels of all kinds.
+
+import type { Browser, Page } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import "../../src/inspection";
+import { clean, openBrowser, Program, until, Watch, type Json } from "./program";
+
+const program = new Program(["--grid", "32", "--hand", "page", "--seconds", "3600"]);
+let browser: Browser;
+const kHash = "/#folded=&picture=on";
+const kSoon = { timeout: 30_000, interval: 50 };
+
+beforeAll(async () => {
+  browser = await openBrowser();
+  await program.start();
+});
+afterAll(async () => {
+  await browser?.close();
+  await program.stop();
+  clean();
+});
+
+/// A page, once it has frames. @param prepare runs in it before its own scripts.
+async function open(prepare?: () => void): Promise<Page> {
+  const page = await browser.newPage({ viewport: { width: 1100, height: 700 }, colorScheme: "light" });
+  if (prepare !== undefined) await page.addInitScript(prepare);
+  await page.goto(program.address + kHash);
+  await until(page, () => (window.prostm?.frames ?? 0) > 2 && window.prostm.state !== null, 0, "frames and a state");
+  return page;
+}
+async function newPictures(page: Page, count = 3): Promise<void> {
+  const drawn = await page.evaluate(() => window.prostm.pictures);
+  await until(page, (n) => window.prostm.pictures >= n, drawn + count, "new pictures");
+}
+
+interface Losable extends Window { losing: WEBGL_lose_context }
+const lose = (page: Page) => page.evaluate(() => {
+  const gl = document.querySelector<HTMLCanvasElement>("#view")!.getContext("webgl2")!;
+  (window as unknown as Losable).losing = gl.getExtension("WEBGL_lose_context")!;
+  (window as unknown as Losable).losing.loseContext();
+});
+const restore = (page: Page) => page.evaluate(() => (window as unknown as Losable).losing.restoreContext());
+const sign = (page: Page, words: RegExp) => expect.poll(async () => {
+  const shown = await page.locator("#no-picture").isVisible();
+  return shown ? page.locator("#no-picture").textContent() : "no sign";
+}, kSoon).toMatch(words);
+
+/// Colours in the newest picture.
+const colours = (page: Page) => page.evaluate(() => new Promise<number>((resolve) => {
+  const small = document.createElement("canvas");
+  [small.width, small.height] = [160, 120];
+  const context = small.getContext("2d", { willReadFrequently: true })!;
+  const drawn = window.prostm.pictures;
+  const wait = () => {
+    if (window.prostm.pictures === drawn) return void requestAnimationFrame(wait);
+    context.drawImage(document.querySelector<HTMLCanvasElement>("#view")!, 0, 0, 160, 120);
+    resolve(new Set(new Uint32Array(context.getImageData(0, 0, 160, 120).data.buffer)).size);
+  };
+  requestAnimationFrame(wait);
+}));
+
+/// All that the browser says of WebGL, and errors of any kind.
+function graphicsComplaints(page: Page): string[] {
+  const said: string[] = [];
+  page.on("console", (message) => /webgl|context/i.test(message.text()) && !/ReadPixels/.test(message.text()) && said.push(message.text()));
+  page.on("pageerror", (error) => said.push(String(error)));
+  return said;
+}
+
+describe("a picture whose graphics context is taken away", () => {
+  it("says so, and comes back with it, as often as that happens", async () => {
+    const page = await open();
+    const said = graphicsComplaints(page);
+    await newPictures(page);
+    const before = await colours(page);
+    for (const theme of ["dark", "light"]) {
+      await lose(page);
+      await sign(page, /graphics context.*planes show/);
+      expect(await page.locator("#draw-anyway").isVisible()).toBe(false);
+      const { pictures, frames } = await page.evaluate(() => ({ pictures: window.prostm.pictures, frames: window.prostm.frames }));
+      await page.locator("#theme").selectOption(theme);
+      await page.setViewportSize({ width: theme === "dark" ? 900 : 1100, height: 700 });
+      await until(page, (n) => window.prostm.frames > n + 5, frames, "frames without a picture");
+      expect(await page.evaluate(() => window.prostm.pictures)).toBe(pictures);
+      await restore(page);
+      await newPictures(page, 6);
+      expect(await page.locator("#no-picture").isVisible()).toBe(false);
+    }
+    expect(await colours(page)).toBeGreaterThan(0.5 * before);
+    expect(said).toEqual([]);
+    await page.close();
+  });
+
+  it("comes back however soon it was lost", async () => {
+    const page = await open(() => {
+      const whole = HTMLCanvasElement.prototype.getContext as (this: HTMLCanvasElement, kind: string, options?: unknown) => RenderingContext | null;
+      HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, options?: unknown) {
+        const context = whole.call(this, kind, options);
+        const w = window as unknown as Losable;
+        if (kind !== "webgl2" || w.losing !== undefined) return context;
+        w.losing = (context as WebGL2RenderingContext).getExtension("WEBGL_lose_context")!;
+        w.losing.loseContext(); // before anything is drawn
+        return context;
+      } as typeof HTMLCanvasElement.prototype.getContext;
+    });
+    const said = graphicsComplaints(page);
+    await sign(page, /graphics context/);
+    await restore(page);
+    await newPictures(page);
+    expect(await colours(page)).toBeGreaterThan(100);
+    expect(said).toEqual([]);
+    await page.close();
+  });
+
+  it("is left out without a context, and may come later", async () => {
+    const page = await open(() => {
+      const whole = HTMLCanvasElement.prototype.getContext as (this: HTMLCanvasElement, kind: string, options?: unknown) => RenderingContext | null;
+      HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, options?: unknown) {
+        return kind === "webgl2" && !("allowed" in window) ? null : whole.call(this, kind, options);
+      } as typeof HTMLCanvasElement.prototype.getContext;
+    });
+    const watch = new Watch(page);
+    await sign(page, /no graphics context/);
+    await page.locator("#mute").click();
+    await until(page, () => window.prostm.frame!.run.muted, 0, "the output muted");
+    await page.locator("#mute").click();
+    await until(page, () => !window.prostm.frame!.run.muted, 0, "the output unmuted");
+    await page.locator("#screenshot").click();
+    await page.evaluate(() => Object.assign(window, { allowed: true }));
+    await page.locator("#draw-anyway").click();
+    await newPictures(page);
+    expect(watch.complaints).toEqual([]);
+    await page.close();
+  });
+});
+
+describe("keys", () => {
+  let page: Page;
+  let muted = false;
+  beforeAll(async () => { page = await open(); });
+  afterAll(() => page.close());
+
+  /// Presses a key as a keyboard of any layout has it, and lets go.
+  async function press(key: string, code: string, modifiers = 0): Promise<void> {
+    const session = await page.context().newCDPSession(page);
+    const text = [...key].length === 1 ? { text: key } : {};
+    await session.send("Input.dispatchKeyEvent", { type: "keyDown", key, code, modifiers, ...text });
+    await session.send("Input.dispatchKeyEvent", { type: "keyUp", key, code, modifiers });
+    await session.detach();
+  }
+  async function toggles(key: string, code: string, modifiers = 0): Promise<void> {
+    await press(key, code, modifiers);
+    muted = !muted;
+    await until(page, (m) => window.prostm.frame!.run.muted === m, muted, `${key} at ${code} mutes or unmutes`);
+  }
+
+  it.each([
+    ["US", "m", "KeyM", 0], ["CapsLock", "M", "KeyM", 0], ["Shift", "M", "KeyM", 8], ["AZERTY", "m", "Semicolon", 0],
+    ["Russian", "ь", "KeyM", 0], ["Greek", "μ", "KeyM", 0], ["Hebrew", "צ", "KeyM", 0], ["Thai", "ท", "KeyM", 0], ["dead", "Dead", "KeyM", 0],
+  ] as const)("mute on %s keyboards", async (_, key, code, modifiers) => toggles(key, code, modifiers));
+
+  it("mute from number fields, sliders, lists, switches and dialogs, which keep their values", async () => {
+    for (const part of ['[data-control="speed"] input[type=number]', '[data-control="speed"] input[type=range]', "#picture-mode", "#theme", "#see-through", "#mute"]) {
+      await page.locator(part).focus();
+      const value = () => page.locator(part).evaluate((e) => (e as HTMLInputElement).value);
+      const before = await value();
+      await toggles("m", "KeyM");
+      await toggles("ь", "KeyM");
+      expect(await value(), part).toBe(before);
+    }
+    await press("?", "KeyM", 8); // AZERTY
+    expect(await page.locator("#help").isVisible()).toBe(true);
+    await toggles("m", "KeyM");
+    await toggles("ь", "KeyM");
+    await page.keyboard.press("Escape");
+    expect(await page.locator("#help").isVisible()).toBe(false);
+  });
+
+  it("do nothing as commands, or when they are held", async () => {
+    await press("m", "KeyM", 2); // Ctrl
+    await press("b", "KeyB");
+    await toggles("m", "KeyM");
+    if (muted) await toggles("m", "KeyM");
+  });
+
+  it("move the hand on other keyboards", async () => {
+    await page.locator("#page-hand").check();
+    await until(page, () => window.prostm.frame!.run.pageHand, 0, "the page's hand");
+    await press("д", "KeyL"); // Russian
+    await until(page, () => window.prostm.frame!.hands[0]?.side === "left", 0, "a left hand");
+    await press("λ", "KeyL"); // Greek
+    await until(page, () => window.prostm.frame!.hands[0]?.side === "right", 0, "a right hand");
+  });
+
+  it("and wheels: a pinch goes nearer and leaves the hand", async () => {
+    const box = (await page.locator("#view").boundingBox())!;
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    const height = async (): Promise<number> => {
+      await until(page, () => window.prostm.frame!.run.pageHand && window.prostm.frame!.hands.length > 0, 0, "the page's hand");
+      return page.evaluate(() => window.prostm.frame!.hands[0]?.joints[2] ?? NaN);
+    };
+    const distance = async () => Number(/eye=([^&]*)/.exec(decodeURIComponent(await page.evaluate(() => location.hash)))?.[1]?.split(",")[2] ?? 700);
+    const lowered = await height(), far = await distance();
+    await page.keyboard.down("Control");
+    for (let i = 0; i < 10; ++i) await page.mouse.wheel(0, -5);
+    await page.keyboard.up("Control");
+    await expect.poll(distance, kSoon).toBeLessThan(0.75 * far);
+    const seen = await page.evaluate(() => window.prostm.frames);
+    await until(page, (n) => window.prostm.frames > n + 10, seen, "frames after the pinch");
+    expect(await height()).toBeCloseTo(lowered, 3);
+    await page.locator("#page-hand").uncheck();
+  });
+});
+
+describe("a page that nobody sees", () => {
+  const hand = async () => ((await program.numbers()).run as Json).page_hand as Json;
+  /// Whether the page's hand is ever in charge in so many readings, one a twentieth of a second.
+  async function everInCharge(readings: number): Promise<boolean> {
+    let ever = false;
+    for (let i = 0; i < readings; ++i) {
+      ever ||= (await hand()).state === "held";
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+    return ever;
+  }
+  async function take(page: Page): Promise<void> {
+    await page.locator("#page-hand").check();
+    await expect.poll(async () => (await hand()).state, kSoon).toBe("held");
+  }
+  /// As browsers tell pages of it.
+  const setHidden = (page: Page, hidden: boolean) => page.evaluate((h) => {
+    Object.defineProperty(document, "hidden", { configurable: true, get: () => h });
+    document.dispatchEvent(new Event("visibilitychange"));
+  }, hidden);
+
+  it("releases its hand at once, tells why, and takes it again when it is asked to", async () => {
+    const page = await open();
+    await take(page);
+    const { hidden } = await hand();
+    await setHidden(page, true);
+    await expect.poll(async () => (await hand()).state, kSoon).toBe("hidden");
+    expect((await hand()).hidden).toBe(Number(hidden) + 1);
+    expect(await everInCharge(30)).toBe(false);
+    await setHidden(page, false);
+    expect(await page.locator("#page-hand").isChecked()).toBe(false);
+    expect(await page.locator("#page-hand-why").textContent()).toMatch(/released because this page was hidden/);
+    await expect.poll(() => page.locator("#source").textContent(), kSoon).toMatch(/page that held the hand is hidden/);
+    expect(await everInCharge(10)).toBe(false);
+    await take(page);
+    expect(await page.locator("#page-hand-why").textContent()).toBe("");
+    await page.locator("#page-hand").uncheck();
+    await page.close();
+  });
+
+  it("cannot take the hand, and loses it when it is frozen or left", async () => {
+    const page = await open();
+    await setHidden(page, true);
+    await page.evaluate(() => document.getElementById("page-hand")!.click());
+    expect(await everInCharge(10)).toBe(false);
+    await setHidden(page, false);
+    for (const event of ["freeze", "pagehide"]) {
+      await take(page);
+      await page.evaluate((name) => (name === "freeze" ? document : window).dispatchEvent(new Event(name)), event);
+      await expect.poll(async () => (await hand()).state, kSoon).toBe("hidden");
+    }
+    await take(page);
+    await page.goto("about:blank");
+    await expect.poll(async () => (await hand()).state, kSoon).not.toBe("held");
+    await page.close();
+  });
+
+  it("whose messages come late loses the hand once, and gets it back when they are steady", async () => {
+    const page = await browser.newPage({ viewport: { width: 1100, height: 700 } });
+    let slow = false, last = 0;
+    await page.routeWebSocket(/live/, (socket) => {
+      const server = socket.connectToServer();
+      socket.onMessage((message) => {
+        const now = Date.now();
+        if (slow && String(message).includes('"hand"') && now - last < 1000) return;
+        last = now;
+        server.send(message);
+      });
+      server.onMessage((message) => socket.send(message));
+    });
+    await page.goto(program.address + kHash);
+    await until(page, () => window.prostm?.state != null && window.prostm.frames > 2, 0, "frames");
+    await take(page);
+    const late = Number((await hand()).late);
+    slow = true;
+    await expect.poll(async () => (await hand()).state, kSoon).toBe("late");
+    expect(await everInCharge(60)).toBe(false);
+    expect((await hand()).late).toBe(late + 1);
+    expect(await page.locator("#page-hand-why").textContent()).toMatch(/came late/);
+    slow = false;
+    await expect.poll(async () => (await hand()).state, kSoon).toBe("held");
+    await expect.poll(() => page.locator("#page-hand-why").textContent(), kSoon).toBe("");
+    await page.close();
+  });
+});
