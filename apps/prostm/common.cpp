@@ -254,6 +254,10 @@ int tell(const std::exception_ptr& failure) {
   }
 }
 
+void warn(const std::string& sentence) {
+  std::fprintf(stderr, "prostm: warning: %s\n", sentence.c_str());
+}
+
 void Progress::show(double done, double all, const char* unit) {
   if (isatty(STDERR_FILENO) == 0) return;
   const double t = steady_now();

@@ -57,6 +57,9 @@ std::string sentence_of(const std::exception_ptr& failure);
 /// Prints that to standard error. @return the exit status it asks for.
 int tell(const std::exception_ptr& failure);
 
+/// Prints a warning to standard error.
+void warn(const std::string& sentence);
+
 /// Does several things, each whatever became of the others.
 class Attempts {
  public:

@@ -13,6 +13,7 @@
 #include "common.hpp"
 #include "options.hpp"
 #include "prostm/commit.hpp"
+#include "prostm/core/advisory_lock.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"
@@ -84,7 +85,7 @@ void add_plan(CLI::App& app, Work& work) {
   auto o = std::make_shared<PlanOptionsGiven>();
   add_common(*command, o->common);
   add_input(*command, o->common.files, "field", o->field,
-            "target field (.json, .npy, .png or .h5; docs/files.md)")
+            "target field (.json, .npy, .npz, .png or .h5, or - for standard input; docs/files.md)")
       ->required();
   add_field_file(*command, o->file);
   auto* figure =
@@ -305,6 +306,7 @@ void add_report(CLI::App& app, Work& work) {
 
 /// Parses and runs a command. @return the exit status.
 int obey(int argc, char** argv) {
+  prostm::set_lock_warning(warn);
   CLI::App app(
       "prostm: touch in mid-air from pressure fields, by path routing optimisation for ultrasound");
   app.set_version_flag("--version", prostm::version_text());

@@ -129,6 +129,7 @@ struct StudyRunOptionsGiven {
   int participant = 0;
   std::string folder = "answers";  ///< of the response files
   bool resume = false;
+  bool take_over = false;            ///< replace a lock file of another machine
   std::optional<int> rehearse;       ///< trials, 0: all; nothing: people answer
   std::vector<std::string> markers;  ///< addresses that they go to
 };

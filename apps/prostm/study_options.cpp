@@ -20,6 +20,8 @@ void add_study_run(CLI::App& study, Work& work) {
       ->type_name("FOLDER")
       ->capture_default_str();
   command->add_flag("--resume", o->resume, "go on with a participant who has begun");
+  command->add_flag("--take-over", o->take_over,
+                    "replace the lock file of a run on another machine that no longer runs");
   command->add_option("--rehearse", o->rehearse,
                       "answer so many trials at random, 0 all of them, without people; the file's "
                       "name begins with rehearsal");

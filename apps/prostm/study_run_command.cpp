@@ -162,15 +162,22 @@ void tell_delays(std::FILE* out, const ResponseFile& file, int run) {
              begins.count(), words(ends), ends.count());
 }
 
+std::size_t answers_in(const std::vector<ResponseLine>& lines) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      lines, [](const ResponseLine& l) { return l.value("kind", "") == "trial"; }));
+}
+
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,
             const RunSummary& summary) {
   const Course& course = session.course();
+  const std::size_t answers = answers_in(file.lines());  // not those that could not be written
   if (course.is_open()) {
-    fmt::print(out, "Participant {}: {} answers in {}{}.\n", session.participant(), course.done(),
-               file.path(), course.is_done() ? ", which are all" : "");
+    const bool all = course.is_done() && session.unwritten().empty();
+    fmt::print(out, "Participant {}: {} answers in {}{}.\n", session.participant(), answers,
+               file.path(), all ? ", which are all" : "");
   } else {
-    fmt::print(out, "Participant {}: {} of {} answers in {}.\n", session.participant(),
-               course.done(), course.most(), file.path());
+    fmt::print(out, "Participant {}: {} of {} answers in {}.\n", session.participant(), answers,
+               course.most(), file.path());
   }
   const std::string strengths = session.strengths();
   if (!strengths.empty()) fmt::print(out, "{}\n", strengths);
@@ -199,7 +206,8 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   Pipeline pipeline(settings, std::move(hands), view.link().mute);
 
   const Interrupt interrupt;  // from here on a Ctrl-C ends in a report
-  ResponseFile file(path);
+  ResponseFile file(path, given.take_over ? ForeignLock::Replaced : ForeignLock::Respected);
+  if (!file.lock_notice().empty()) warn(file.lock_notice());
   const bool begins = file.lines().empty();
   const nlohmann::ordered_json facts = {{"prostm", version_text()},
                                         {"device", settings.device},
@@ -224,8 +232,13 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   view.stop();
   write_rest(markers, session);
   if (summary.failure) return tell(summary.failure);
+  const std::string unwritten = session.finish(study_time().time);
   report(stdout, session, file, summary);
   if (!given.markers.empty()) tell_delays(stdout, file, run_of(file));
+  if (!unwritten.empty()) {
+    throw InputError(fmt::format("{}; answers that are lost: {}; go on with --resume", unwritten,
+                                 answers_in(session.unwritten())));
+  }
   if (interrupt.requested()) return interrupt.status();
   return never_came(pipeline.world_stage().hands().tracker_status()) ? kNoFrame : 0;
 }

@@ -6,6 +6,7 @@ import json
 import math
 import random
 import re
+import resource
 import signal
 import socket
 import subprocess
@@ -236,6 +237,39 @@ def test_a_session_that_is_killed_goes_on_and_one_that_was_edited_does_not(progr
     file.write_text(text)
     (tmp_path / "short.toml").write_text(SHORT.replace("rest = 0.1", "rest = 0.2"))
     refuses(*STUDY, "7", "--resume", words=["begun with another protocol"])
+
+
+def test_answers_that_did_not_fit_on_the_disk_are_not_counted(program, prostm, tmp_path):
+    (tmp_path / "short.toml").write_text(SHORT.replace("repeats = 1", "repeats = 4"))
+    prostm(*STUDY, "1", "--rehearse", "0")
+    lines = (tmp_path / "answers" / "rehearsal-1.jsonl").read_bytes().splitlines(keepends=True)
+    trials = [i for i, line in enumerate(lines) if json.loads(line)["kind"] == "trial"]
+    limit = len(b"".join(lines[:trials[2]])) + len(lines[trials[2]]) // 2
+
+    def fill():  # stands for a full disk
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    file = tmp_path / "answers" / "rehearsal-2.jsonl"
+    process = subprocess.Popen([str(program), *STUDY, "2", "--rehearse", "0"], cwd=tmp_path, text=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               preexec_fn=fill, restore_signals=False)
+    seen = []
+
+    def tries_again():  # a line is begun and taken back: the file has its size, and another time
+        if not file.exists():
+            return False
+        now = file.stat()
+        tried = any(size == now.st_size and then != now.st_mtime_ns for size, then in seen)
+        seen.append((now.st_size, now.st_mtime_ns))
+        return tried
+
+    wait_for(tries_again)
+    process.send_signal(signal.SIGINT)
+    said, errors = process.communicate(timeout=60)
+    written = sum(json.loads(line)["kind"] == "trial" for line in file.read_text().splitlines())
+    assert f"Participant 2: {written} of 8 answers in answers/rehearsal-2.jsonl." in said
+    assert process.returncode == 2 and "could not be written" in errors and "--resume" in errors
 
 
 EXAMPLES = {"gain-as-strong-as-am": "adjusted", "continuity": "felt", "number-of-paths": "felt", "just-stronger": "right"}

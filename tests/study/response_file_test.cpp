@@ -1,6 +1,11 @@
 #include "prostm/study/response_file.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 
@@ -8,6 +13,7 @@
 #include "prostm/core/random.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"
+#include "support/no_locks.hpp"
 
 namespace prostm {
 namespace {
@@ -138,7 +144,33 @@ TEST(ResponseFile, IsForOneProgramAtATime) {
   EXPECT_THAT(test::input_error([&] { ResponseFile other(folder.file("a.jsonl")); }),
               HasSubstr("written by another program"));
   EXPECT_THAT(test::input_error([&] { ResponseFile none(folder.file("missing/a.jsonl")); }),
-              HasSubstr("cannot be opened"));
+              HasSubstr("cannot be created"));
+}
+
+TEST(ResponseFile, IsForOneProgramAtATimeWithoutLocksToo) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("a.jsonl");
+  for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP}) {
+    const test::NoLocks none(error);
+    ResponseFile file(path);
+    file.append(line_of(1));
+    EXPECT_THAT(test::input_error([&] { ResponseFile other(path); }),
+                HasSubstr("written by another program"));
+  }
+  EXPECT_EQ(ResponseFile(path).lines().size(), 3U);
+  EXPECT_EQ(folder.entries(), 1U);
+}
+
+TEST(ResponseFile, IsForOneProgramAlsoWhereThatHasNoLockFile) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("a.jsonl");
+  written(path, 1);
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(fd, LOCK_EX | LOCK_NB), 0);
+  EXPECT_THAT(test::input_error([&] { ResponseFile other(path); }),
+              HasSubstr("written by another program"));
+  ::close(fd);
+  EXPECT_EQ(ResponseFile(path).lines().size(), 1U);
 }
 
 }  // namespace

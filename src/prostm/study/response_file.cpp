@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "prostm/core/advisory_lock.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 
@@ -108,11 +108,13 @@ std::vector<ResponseLine> responses_from_text(std::string_view text, const std::
   return lines;
 }
 
-ResponseFile::ResponseFile(std::string path) : path_(std::move(path)) {
+ResponseFile::ResponseFile(std::string path, ForeignLock foreign)
+    : path_(std::move(path)), lock_(path_, foreign, "--take-over") {
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0) fail(path_, "cannot be opened to write answers");
   try {
-    if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    // beside the lock file, for versions of prostm and other programs that know none
+    if (try_lock(file_, LockKind::Exclusive, path_) == LockResult::Held) {
       throw InputError(path_ +
                        " is being written by another program; end that one, or take another "
                        "number for the participant");

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "prostm/core/lock_file.hpp"
+
 namespace prostm {
 
 inline constexpr const char* kResponseFormat = "prostm-responses/1";  ///< in the first line
@@ -27,10 +29,11 @@ std::vector<ResponseLine> responses_from_text(std::string_view text, const std::
 
 class ResponseFile {
  public:
-  /// Begins a file, or goes on with one. A last line that is not whole is appended to PATH.cut-off
-  /// and taken away. @throws InputError: it cannot be opened or written, another program has it
-  /// open, or what responses_from_text() throws; then nothing has changed.
-  explicit ResponseFile(std::string path);
+  /// Begins a file, or goes on with one, and holds its lock file (core/lock_file.hpp). A last line
+  /// that is not whole is appended to PATH.cut-off and taken away. @throws InputError: it cannot be
+  /// opened or written, another program has it open, or what responses_from_text() throws; then
+  /// nothing has changed.
+  explicit ResponseFile(std::string path, ForeignLock foreign = ForeignLock::Respected);
   ~ResponseFile();
   ResponseFile(const ResponseFile&) = delete;
   ResponseFile& operator=(const ResponseFile&) = delete;
@@ -38,6 +41,8 @@ class ResponseFile {
   const std::string& path() const { return path_; }
   const std::vector<ResponseLine>& lines() const { return lines_; }
   bool found_cut_off() const { return found_cut_off_; }
+  /// A sentence about a lock file that was replaced; empty if there was none.
+  const std::string& lock_notice() const { return lock_.notice(); }
 
   /// Writes a line, and waits until it is on the disk. @throws InputError: the disk is full, or the
   /// write failed; then the file is as before.
@@ -45,6 +50,7 @@ class ResponseFile {
 
  private:
   std::string path_;
+  LockFile lock_;
   int file_ = -1;
   std::uint64_t size_ = 0;  // [bytes]
   boost::crc_32_type sum_;  // of all of it

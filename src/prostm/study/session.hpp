@@ -105,6 +105,11 @@ class StudySession {
     return write(std::move(marker), sight);
   }
 
+  /// Tries once more to write what could not be written. @return as take() does.
+  std::string finish(double time) { return write_rest(time); }
+  /// Lines that could not be written so far.
+  const std::vector<ResponseLine>& unwritten() const { return unwritten_; }
+
   StudyPhase phase() const { return phase_; }
   const StudyWanted& wanted() const { return wanted_; }
   const Protocol& protocol() const { return protocol_; }
