@@ -60,16 +60,18 @@ void bind_fields(py::module_& m) {
   m.def(
       "read_field",
       [](const Path& path, std::optional<double> cell_mm, int frame, bool invert,
-         std::optional<double> width_mm) {
-        return read_field_file(path, file_options(cell_mm, width_mm, frame, invert));
+         std::optional<double> width_mm, const std::string& variable) {
+        FieldFileOptions options = file_options(cell_mm, width_mm, frame, invert);
+        options.variable = variable;
+        return read_field_file(path, options);
       },
       "Reads a field by the ending of its name, as the command line does: .json\n"
-      "(prostm-field/1), .npy and .png (both need cell_mm, or the width of the whole field as\n"
-      "width_mm), .h5 (frame says which). invert: a .png is drawn black on white, so that black\n"
-      "is the pressure.\n"
+      "(prostm-field/1), .npy, .npz and .png (which need cell_mm, or the width of the whole field\n"
+      "as width_mm), .h5. frame: of a .h5 or of a 3-D array. invert: a .png is drawn black on\n"
+      "white, so that black is the pressure. variable: the array of an .npz that holds several.\n"
       "Raises InputError, a ValueError, with a sentence that names the file.",
       py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = 0, py::kw_only(),
-      py::arg("invert") = false, py::arg("width_mm") = py::none());
+      py::arg("invert") = false, py::arg("width_mm") = py::none(), py::arg("variable") = "");
   m.def(
       "write_field",
       [](const Path& path, const TargetField& field) {
@@ -118,7 +120,8 @@ void bind_plans(py::module_& m) {
 
 FieldFileOptions file_options(std::optional<double> cell_mm, std::optional<double> width_mm,
                               int frame, bool invert) {
-  return {cell_mm, width_mm, frame, invert, {"cell_mm", "width_mm", "frame", "invert"}};
+  return {cell_mm, width_mm, frame, invert, {"cell_mm", "width_mm", "frame", "invert", "variable"},
+          {}};
 }
 
 py::object target_of(const py::object& target, const FieldFileOptions& options) {

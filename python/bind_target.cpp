@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "prostm/target/rounding.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm::python {
@@ -19,7 +20,8 @@ the smallest y. A field does not change once it is made: its arrays are read-onl
 field may be planned by several threads at once.)";
 
 const char* const kTargetFieldInitDoc =
-    R"(pressure: (rows, cols) numbers, NaN = no skin, else finite and >= 0 in any unit.
+    R"(pressure: (rows, cols) numbers, NaN = no skin, else finite and >= 0 in any unit; a solver's
+    rounding, negative down to 1e-6 of the largest, becomes 0.
 cell or cell_mm: edge of a cell [m] or [mm]; exactly one of them.
 origin: (2,) centre of cell (0, 0) in the plane [m].
 height: None (flat) or (rows, cols), the skin's distance from the plane along its normal [m],
@@ -99,6 +101,7 @@ TargetField make_field(const py::object& pressure, std::optional<double> cell,
     field.skin[i] = 1;
     field.pressure[i] = p.data()[i];
   }
+  clear_rounding(field);
   validate(field);
   set_heights(field, height);
   set_weights(field, weight);

@@ -2,6 +2,7 @@
 
 #include "bindings.hpp"
 #include "prostm/commit.hpp"
+#include "prostm/core/advisory_lock.hpp"
 #include "prostm/core/input_error.hpp"
 
 PYBIND11_MODULE(_prostm, m) {
@@ -11,6 +12,10 @@ PYBIND11_MODULE(_prostm, m) {
   // a class takes its module's name when it is made, and should say prostm.Plan
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "prostm";
+  prostm::set_lock_warning([](const std::string& sentence) {
+    const py::gil_scoped_acquire locked;
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, sentence.c_str(), 1) != 0) throw py::error_already_set();
+  });
   m.attr("__version__") = PROSTM_VERSION;
   m.attr("__commit__") = std::string(prostm::commit());
   py::register_exception<prostm::InputError>(m, "InputError", PyExc_ValueError).doc() =

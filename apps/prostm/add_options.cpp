@@ -49,15 +49,17 @@ CLI::Option* add_figure(CLI::App& command, CommonOptions& o, const std::string& 
 }
 
 void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option* of) {
-  auto* cell = command.add_option("--cell-mm", o.cell_mm, "edge of a cell of a .npy or .png field");
-  auto* width = command.add_option("--width-mm", o.width_mm,
-                                   "instead: width of the whole .npy or .png field");
+  auto* cell =
+      command.add_option("--cell-mm", o.cell_mm, "edge of a cell of a .npy, .npz or .png field");
+  auto* width = command.add_option("--width-mm", o.width_mm, "instead: width of the whole field");
   width->excludes(cell);
   auto* invert = command.add_flag("--invert", o.invert, "the .png field is drawn black on white");
-  auto* frame = command.add_option("--frame", o.frame, "frame of a .h5 recording");
-  frame->capture_default_str();
+  auto* frame = command.add_option("--frame", o.frame,
+                                   "frame of a .h5 recording (default: 0) or of a 3-D array");
+  auto* variable =
+      command.add_option("--variable", o.variable, "array of a .npz file that holds several");
   if (of == nullptr) return;
-  for (CLI::Option* option : {cell, width, invert, frame}) option->needs(of);
+  for (CLI::Option* option : {cell, width, invert, frame, variable}) option->needs(of);
 }
 
 void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,

@@ -83,7 +83,11 @@ std::string picture_warning(const TargetField& field, bool invert) {
         "the transparent ground with {2} if it is to be skin too",
         invert ? "white" : "black", remedy, invert ? "black" : "white");
   }
-  if (is_even(field) || !presses_on_border(field)) return {};
+  if (is_even(field)) {
+    return "the picture is the same wherever it is not transparent, so its shape lies in its "
+           "transparency alone, which is no skin; put it on a ground without pressure";
+  }
+  if (!presses_on_border(field)) return {};
   return fmt::format(
       "most of the picture's border presses on the skin, so it is probably drawn {}; {}",
       invert ? "white on black" : "black on white", remedy);
@@ -91,25 +95,24 @@ std::string picture_warning(const TargetField& field, bool invert) {
 
 }  // namespace
 
-std::string field_in_words(const std::string& path, const TargetField& field,
+std::string field_in_words(const std::string& path, FieldKind kind, const TargetField& field,
                            const FieldFileOptions& options) {
-  const FieldKind kind = field_kind(path);
   const double cell_mm = 1e3 * field.cell;
+  const bool one_of_many = kind == FieldKind::Recording || options.frame;
   const std::string frame =
-      kind == FieldKind::Recording ? fmt::format(", frame {}", options.frame) : std::string();
+      one_of_many ? fmt::format(", frame {}", options.frame.value_or(0)) : std::string();
   return fmt::format(
       "{}{}: {:.4g} × {:.4g} mm, {} × {} cells of {:.4g} mm, {}; largest pressure {}", path, frame,
       cell_mm * field.cols, cell_mm * field.rows, field.cols, field.rows, cell_mm, skin_text(field),
       pressure_text(kind, max_pressure(field), options.invert));
 }
 
-std::vector<std::string> field_warnings(const std::string& path, const TargetField& field,
+std::vector<std::string> field_warnings(FieldKind kind, const TargetField& field,
                                         const FieldFileOptions& options) {
   std::vector<std::string> warnings;
-  const FieldKind kind = field_kind(path);
   const Vec2 size = skin_size(field);
   if (size.maxCoeff() > kHandSpan) {
-    const bool sized_here = kind == FieldKind::Npy || kind == FieldKind::Png;
+    const bool sized_here = kind != FieldKind::Json && kind != FieldKind::Recording;
     const double width = kHandWidth * field.cols / std::max(field.cols, field.rows);
     warnings.push_back(fmt::format(
         "the field is {:.4g} × {:.4g} mm, larger than a hand{}", 1e3 * size.x(), 1e3 * size.y(),

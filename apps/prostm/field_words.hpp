@@ -10,11 +10,11 @@
 namespace prostm::app {
 
 /// One line about a field as it was understood: size, cells, skin, largest pressure and its unit.
-std::string field_in_words(const std::string& path, const TargetField& field,
+std::string field_in_words(const std::string& path, FieldKind kind, const TargetField& field,
                            const FieldFileOptions& options);
 
 /// A sentence for each sign that the field is not what its author had in mind.
-std::vector<std::string> field_warnings(const std::string& path, const TargetField& field,
+std::vector<std::string> field_warnings(FieldKind kind, const TargetField& field,
                                         const FieldFileOptions& options);
 
 /// One sentence that judges a plan for people who do not know the metrics. @param played metrics of

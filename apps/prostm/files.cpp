@@ -22,6 +22,7 @@ void Files::writes(const std::string& option, const std::string& path, Check als
 }
 
 void Files::check() const {
+  std::string input;  // the option that takes standard input
   for (const Entry& entry : entries_) {
     // an option that follows an option takes the place of its value
     if (entry.path.starts_with("--")) {
@@ -33,6 +34,12 @@ void Files::check() const {
           fmt::format("{} needs the name of a file, and the one given is empty", entry.option));
     }
     if (entry.output) continue;
+    if (entry.path == "-") {
+      if (!input.empty())
+        throw InputError(fmt::format("{} and {} cannot both read standard input; name a file",
+                                     input, entry.option));
+      input = entry.option;
+    }
     try {
       entry.check(entry.path);
     } catch (const InputError& error) {
@@ -43,7 +50,8 @@ void Files::check() const {
     if (!entry.output) continue;
     for (const Entry& other : entries_) {
       const bool updated = !entry.of.empty() && !other.output && other.option.starts_with(entry.of);
-      if (&other == &entry || updated) continue;
+      const bool both_ways = entry.path == "-" && !other.output;  // standard output and input
+      if (&other == &entry || updated || both_ways) continue;
       if (!is_same_file(entry.path, other.path)) continue;
       throw InputError(
           fmt::format("{} {} and {} {} are one file, which would be overwritten; give {} another "

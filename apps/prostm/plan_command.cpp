@@ -326,15 +326,16 @@ int plan_command(const PlanOptionsGiven& given) {
   PipelineSettings settings = make_settings(given.common, std::nullopt);
   if (!given.beside.empty() && is_am(settings))
     throw InputError("--beside shows the steps of --method pro-stm; leave it out with am");
-  const TargetField target = read_field(given.field, given.file);
+  FieldKind kind = FieldKind::Json;
+  const TargetField target = read_field(given.field, given.file, &kind);
   std::vector<double> other_widths;
   const std::optional<double> own_width = use_own_width(given, target, settings, other_widths);
 
   Result r = plan_field(target, settings, !given.common.figure.empty(), given.field);
   // before the scores of a large field, which take their time
   std::FILE* out = prose(given.common.json);
-  fmt::print(out, "{}\n", field_in_words(given.field, target, given.file));
-  r.warnings = field_warnings(given.field, target, given.file);
+  fmt::print(out, "{}\n", field_in_words(given.field, kind, target, given.file));
+  r.warnings = field_warnings(kind, target, given.file);
   print_warnings(out, r.warnings);
   std::fflush(out);
 

@@ -50,13 +50,15 @@ std::string about_extras(const CLI::App& command, const std::string& name,
   const auto option = std::ranges::find_if(extras, is_dashed);
   const bool is_option = option != extras.end();
   const std::string& extra = is_option ? *option : extras.front();
-  const std::vector<std::string> inner = command_names(command);
+  const std::vector<std::string> inner = command_names(command), known = option_names(command);
+  if (is_option && std::ranges::find(known, extra) != known.end())
+    return fmt::format("{} follows --, after which no word is an option; put options before it",
+                       extra);
   if (!is_option && !inner.empty())
     return fmt::format("{} has no command \"{}\"{}", name, shown_name(extra),
                        did_you_mean(extra, inner));
   return fmt::format("{} {} \"{}\"{}", name, is_option ? "has no option" : "does not expect",
-                     shown_name(extra),
-                     did_you_mean(is_option ? extra : "--" + extra, option_names(command)));
+                     shown_name(extra), did_you_mean(is_option ? extra : "--" + extra, known));
 }
 
 /// The kind of value that an option takes, for one that it cannot be.

@@ -1,7 +1,9 @@
 /// Fields as arrays (NPY) and pictures (PNG).
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "io/png_writer.hpp"
 #include "prostm/core/file.hpp"
@@ -61,6 +63,8 @@ TEST(FieldNpy, ReadsEveryTypeOfNumber) {
   EXPECT_THAT(pressure(">u4", bytes_of<std::uint32_t>({0, 1, 2, 3, 4, 100}, true)), expected);
   EXPECT_THAT(pressure("<i8", bytes_of<std::int64_t>({0, 1, 2, 3, 4, 100})), expected);
   EXPECT_THAT(pressure(">u8", bytes_of<std::uint64_t>({0, 1, 2, 3, 4, 100}, true)), expected);
+  EXPECT_THAT(pressure("<f2", bytes_of<std::uint16_t>({0, 0x3c00, 0x4000, 0x4200, 0x4400, 0x5640})),
+              expected);
   EXPECT_THAT(pressure("|b1", bytes_of<std::uint8_t>({0, 1, 1, 0, 1, 1})),
               ElementsAre(0, 1, 1, 0, 1, 1));
 }
@@ -92,13 +96,69 @@ TEST(FieldNpy, TakesNanAsNoSkinAlsoASignallingOne) {
   EXPECT_THAT(signalling.skin, ElementsAre(0, 0));
 }
 
+TEST(FieldNpy, ReadsFloat16ToItsEnds) {
+  // the smallest number, the largest below 1, the largest, and two NaN
+  const TargetField field =
+      field_from_npy(npy(dictionary(">f2", "(1, 5)"),
+                         bytes_of<std::uint16_t>({0x0001, 0x3bff, 0x7bff, 0x7e00, 0xfc01}, true)),
+                     "a", 5.0);
+  EXPECT_THAT(field.pressure,
+              ElementsAre(std::ldexp(1.0, -24), 1.0 - std::ldexp(1.0, -11), 65504.0, 0.0, 0.0));
+  EXPECT_THAT(field.skin, ElementsAre(1, 1, 1, 0, 0));
+  EXPECT_THAT(input_error([] {
+                field_from_npy(npy(dictionary("<f2", "(1, 1)"), bytes_of<std::uint16_t>({0x7c00})),
+                               "a", 5.0);
+              }),
+              HasSubstr("is inf"));
+}
+
+TEST(FieldNpy, TakesAFrameOfAnArrayOfThreeDimensions) {
+  const std::string row_major = bytes_of<double>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  const std::string column_major = bytes_of<double>({1, 7, 4, 10, 2, 8, 5, 11, 3, 9, 6, 12});
+  for (const bool fortran : {false, true}) {
+    const std::string bytes =
+        npy(dictionary("<f8", "(2, 2, 3)", fortran), fortran ? column_major : row_major);
+    EXPECT_THAT(field_from_npy(bytes, "a", 5.0, 0).pressure, ElementsAre(1, 2, 3, 4, 5, 6));
+    EXPECT_THAT(field_from_npy(bytes, "a", 5.0, 1).pressure, ElementsAre(7, 8, 9, 10, 11, 12));
+    const auto refusal = [&](std::optional<int> frame) {
+      return input_error([&] { field_from_npy(bytes, "a", 5.0, frame); });
+    };
+    EXPECT_THAT(refusal({}), HasSubstr("2 frames of 2 x 3 cells; choose one with --frame, 0 to 1"));
+    EXPECT_THAT(refusal(2), HasSubstr("has no frame 2; it has 2 frames"));
+    EXPECT_THAT(refusal(-1), HasSubstr("has no frame -1"));
+  }
+  // axes of length 1 are left out
+  for (const char* shape : {"(1, 2, 3)", "(2, 3, 1)", "(1, 2, 3, 1)"}) {
+    const TargetField field =
+        field_from_npy(npy(dictionary("<f8", shape), row_major.substr(0, 48)), "a", 5.0);
+    EXPECT_EQ(field.rows, 2);
+    EXPECT_THAT(field.pressure, ElementsAre(1, 2, 3, 4, 5, 6));
+  }
+  EXPECT_THAT(input_error([&] {
+                field_from_npy(npy(dictionary("<f8", "(2, 3)"), row_major.substr(0, 48)), "a", 5.0,
+                               1);
+              }),
+              HasSubstr("holds one field; leave out --frame"));
+}
+
+TEST(FieldNpy, TakesASolversRoundingForZero) {
+  const auto read = [](std::initializer_list<double> values) {
+    return field_from_npy(npy(dictionary("<f8", "(1, 2)"), bytes_of<double>(values)), "a", 5.0)
+        .pressure;
+  };
+  EXPECT_THAT(read({-1e-18, 1.0}), ElementsAre(0.0, 1.0));
+  EXPECT_THAT(read({-0.9e-6 * 3e5, 3e5}), ElementsAre(0.0, 3e5));
+  EXPECT_THAT(input_error([&] { read({-1.1e-6, 1.0}); }), HasSubstr("column 0 is -1.1e-06"));
+  EXPECT_THAT(input_error([&] { read({-1e-18, 0.0}); }), HasSubstr("is -1e-18"));
+}
+
 TEST(FieldNpy, SaysWhatIsWrong) {
   const std::string data = bytes_of<double>({1, 2, 3, 4, 5, 6});
   const auto sentence = [&](const std::string& bytes, double cell = 5.0) {
     return input_error([&] { field_from_npy(bytes, "a.npy", cell); });
   };
   const std::string good = npy(dictionary("<f8", "(2, 3)"), data);
-  EXPECT_THAT(sentence("PK\x03\x04 not an array"), HasSubstr("is not an NPY file"));
+  EXPECT_THAT(sentence("PK\x03\x04 not an array"), HasSubstr("is a zip archive, not an NPY file"));
   EXPECT_THAT(sentence("\x89PNG\r\n\x1a\n"), HasSubstr("is a PNG picture, not an NPY file"));
   EXPECT_THAT(sentence(good.substr(0, 30)), HasSubstr("header is cut off"));
   EXPECT_THAT(sentence(good.substr(0, good.size() - 1)), HasSubstr("holds 47 bytes of numbers"));
@@ -145,7 +205,27 @@ TEST(FieldPng, ReadsGreyOfEightAndSixteenBits) {
   EXPECT_THAT(eight.pressure, ElementsAre(0.0, 128.0 / 255.0, 1.0));
   const TargetField sixteen =
       field_from_png(test::png(3, 1, 0, 16, std::string("\x00\x00\x80\x00\xff\xff", 6)), "a", 4.0);
-  EXPECT_THAT(sixteen.pressure, ElementsAre(0.0, testing::DoubleNear(0.5, 0.005), 1.0));
+  EXPECT_THAT(sixteen.pressure, ElementsAre(0.0, 32768.0 / 65535.0, 1.0));
+}
+
+TEST(FieldPng, KeepsAllSixteenBits) {
+  const std::string weak("\x00\x01\x00\xff\x12\x34", 6);
+  EXPECT_THAT(field_from_png(test::png(3, 1, 0, 16, weak), "a", 4.0).pressure,
+              ElementsAre(1.0 / 65535.0, 255.0 / 65535.0, 4660.0 / 65535.0));
+  // red, green, blue, and an alpha that is 0 in its upper byte only
+  const std::string colour("\x00\x00\x00\x07\x00\x00\x00\x01", 8);
+  const TargetField field = field_from_png(test::png(1, 1, 6, 16, colour), "a", 4.0);
+  EXPECT_THAT(field.skin, ElementsAre(1));
+  EXPECT_THAT(field.pressure, ElementsAre(7152.0 * 7 / (10000.0 * 65535.0)));
+}
+
+TEST(FieldPng, TakesATransparentColourAsNoSkin) {
+  std::string eight = test::png(3, 1, 0, 8, std::string("\x00\x80\xff", 3));
+  eight.insert(33, test::png_chunk("tRNS", std::string("\x00\x80", 2)));
+  EXPECT_THAT(field_from_png(eight, "a", 4.0).skin, ElementsAre(1, 0, 1));
+  std::string sixteen = test::png(2, 1, 0, 16, std::string("\x12\x34\x12\x35", 4));
+  sixteen.insert(33, test::png_chunk("tRNS", "\x12\x34"));
+  EXPECT_THAT(field_from_png(sixteen, "a", 4.0).skin, ElementsAre(0, 1));
 }
 
 TEST(FieldPng, TakesAlphaZeroAsNoSkinAndIgnoresItOtherwise) {

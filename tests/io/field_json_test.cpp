@@ -184,6 +184,7 @@ TEST(ReadField, ChoosesByTheEndingAndChecksOptions) {
   options = {};
   options.frame = 2;
   EXPECT_THAT(input_error([&] { read_field(json, options); }), HasSubstr("leave out --frame"));
+  EXPECT_THAT(input_error([&] { read_field(folder.file("a.VTK")); }), HasSubstr("z, y, x"));
   EXPECT_THAT(input_error([&] { read_field(folder.file("a.tiff")); }),
               HasSubstr("of no known kind"));
   write_file(folder.file("a.npy"), "x");

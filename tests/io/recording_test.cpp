@@ -11,6 +11,7 @@
 #include "prostm/io/field_file.hpp"
 #include "prostm/io/recorder.hpp"
 #include "support/full_disk.hpp"
+#include "support/no_locks.hpp"
 
 namespace prostm {
 namespace {
@@ -192,6 +193,20 @@ TEST(Recording, SaysThatItIsStillBeingWritten) {
               HasSubstr("is open for writing in another program"));
   ::close(fd);
   EXPECT_EQ(RecordingReader(path).frames(), 3);
+}
+
+TEST(Recording, IsWrittenAndReadOnAFileSystemWithoutLocks) {
+  const test::TemporaryFolder folder;
+  const std::vector<TargetFrame> frames = random_frames(3);
+  for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP, EINVAL}) {
+    const test::NoLocks none(error);
+    const RecordingReader reader(record(folder.file("r.h5"), frames));
+    ASSERT_EQ(reader.frames(), 3);
+    expect_same(reader.frame(1), frames[1]);
+    write_file(folder.file("text.h5"), "hello");
+    EXPECT_THAT(input_error([&] { const RecordingReader other(folder.file("text.h5")); }),
+                HasSubstr("is not an HDF5 file"));
+  }
 }
 
 TEST(Recording, HasWeightsOnlyWhereAPatchHasThem) {

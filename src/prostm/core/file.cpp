@@ -69,10 +69,12 @@ void write_in_place(const std::string& path, std::string_view bytes) {
   if (const int error = file.close(); error != 0) fail_to_write(path, error);
 }
 
-/// Opens a new, empty file beside `path` for writing and sets `temporary` to its name.
+/// Opens a new, empty file beside `path` for writing and sets `temporary` to its name. That has the
+/// same length whatever the file's, which may be as long as the file system takes.
 int open_temporary(const std::string& path, std::string& temporary) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   for (int attempt = 0; attempt < 100; ++attempt) {
-    temporary = fmt::format("{}.{}.{}.tmp", path, ::getpid(), attempt);
+    temporary = (folder / fmt::format(".prostm.{}.{}.tmp", ::getpid(), attempt)).string();
     const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd >= 0 || errno != EEXIST) return fd;
   }
@@ -172,6 +174,7 @@ int fill_and_sync(Descriptor& file, std::string_view bytes) {
 }  // namespace
 
 void check_readable(const std::string& path) {
+  if (path == "-") return;
   struct stat status {};
   open_to_read(path, &status);
 }
@@ -188,7 +191,8 @@ std::string read_head(const std::string& path) {
 
 std::string read_file(const std::string& path, std::size_t limit, Empty empty) {
   struct stat status {};
-  const Descriptor file = open_to_read(path, &status);
+  const Descriptor file =
+      path == "-" ? Descriptor(::dup(STDIN_FILENO)) : open_to_read(path, &status);
   const auto too_large = [&] {
     return InputError(fmt::format("{} is larger than the {} MB that a file of its kind may have",
                                   path, limit >> 20));
@@ -208,7 +212,7 @@ std::string read_file(const std::string& path, std::size_t limit, Empty empty) {
     if (bytes.size() > limit) throw too_large();
   }
   if (bytes.empty() && empty == Empty::Refused) {
-    throw InputError(path + " is empty; it must hold data");
+    throw InputError((path == "-" ? "standard input" : path) + " is empty; it must hold data");
   }
   return bytes;
 }
@@ -222,6 +226,7 @@ void check_writable(const std::string& path) {
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {
+  if (a == "-" || b == "-") return a == b;
   const std::optional<Identity> first = identity_of(a);
   return first && first == identity_of(b);
 }

@@ -10,16 +10,16 @@ namespace prostm {
 /// Whether a file without a byte may be read.
 enum class Empty { Refused, Allowed };
 
-/// Returns the bytes of a file. Never waits: pipes and devices are refused. @throws InputError: it
-/// does not exist, cannot be read, is not an ordinary file, is empty unless that is allowed,
-/// exceeds `limit` bytes.
+/// Returns the bytes of a file; "-" is standard input, to its end. Never waits elsewhere: pipes and
+/// devices are refused. @throws InputError: it does not exist, cannot be read, is not an ordinary
+/// file, is empty unless that is allowed, exceeds `limit` bytes.
 std::string read_file(const std::string& path, std::size_t limit = std::size_t{1} << 30,
                       Empty empty = Empty::Refused);
 
 /// Returns the first bytes of a file, as many as tell what kind it is. @throws as check_readable().
 std::string read_head(const std::string& path);
 
-/// @throws InputError: it does not exist, cannot be read, is not an ordinary file.
+/// @throws InputError: it does not exist, cannot be read, is neither an ordinary file nor "-".
 void check_readable(const std::string& path);
 
 /// Checks that write_file could write there, before the work begins.

@@ -7,10 +7,11 @@ namespace prostm {
 
 std::string_view kind_by_content(std::string_view bytes) {
   constexpr std::string_view kHdf5("\x89HDF\r\n\x1a\n"), kPng("\x89PNG\r\n\x1a\n"),
-      kNpy("\x93NUMPY");
+      kNpy("\x93NUMPY"), kZip("PK\x03\x04", 4);
   if (bytes.starts_with(kHdf5)) return "an HDF5 file";
   if (bytes.starts_with(kPng)) return "a PNG picture";
   if (bytes.starts_with(kNpy)) return "an NPY file";
+  if (bytes.starts_with(kZip)) return "a zip archive";
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   if (first != bytes.npos && bytes[first] == '{') return "JSON";
   return {};

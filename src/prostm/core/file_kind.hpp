@@ -6,8 +6,8 @@
 
 namespace prostm {
 
-/// The kind of file that begins with these bytes: "an HDF5 file", "a PNG picture", "an NPY file" or
-/// "JSON"; empty if unknown.
+/// The kind of file that begins with these bytes: "an HDF5 file", "a PNG picture", "an NPY file",
+/// "a zip archive" or "JSON"; empty if unknown.
 std::string_view kind_by_content(std::string_view bytes);
 
 /// The contents of a JSON file by its "format", and what takes them: "a plan, for prostm field";

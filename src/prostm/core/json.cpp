@@ -10,6 +10,7 @@
 
 #include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/lower_case.hpp"
 #include "prostm/core/nearest_name.hpp"
 
 namespace prostm {
@@ -42,6 +43,22 @@ std::string position_text(std::string_view text, std::size_t byte) {
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
   const std::size_t line_start = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
   return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
+}
+
+/// Whether the parser stopped at a number that JSON does not have, as Python and JavaScript print
+/// it.
+bool stopped_at_no_number(std::string_view text, std::size_t byte) {
+  constexpr std::string_view kLetters = "+-abcdefghijklmnopqrstuvwxyz";
+  const std::size_t at = byte == 0 ? 0 : byte - 1;
+  std::size_t begin = std::min(at, text.size()), end = begin;
+  const auto is_letter = [&](std::size_t i) {
+    return kLetters.find(lower_case(text.substr(i, 1))) != kLetters.npos;
+  };
+  while (begin > 0 && is_letter(begin - 1)) --begin;
+  while (end < text.size() && is_letter(end)) ++end;
+  std::string word = lower_case(text.substr(begin, end - begin));
+  if (word.starts_with('-') || word.starts_with('+')) word.erase(0, 1);
+  return word == "nan" || word == "inf" || word == "infinity";
 }
 
 /// Returns a value for a message: short, and valid text whatever the file holds.
@@ -92,7 +109,11 @@ nlohmann::json parse_json(std::string_view text, const std::string& file) {
     if (e.byte > text.size()) {
       throw InputError(file + ": the JSON ends too early; the file is cut off or incomplete");
     }
-    throw InputError(fmt::format("{}: is not valid JSON at {}", file, position_text(text, e.byte)));
+    const bool no_number = stopped_at_no_number(text, e.byte);
+    throw InputError(fmt::format("{}: is not valid JSON at {}{}", file, position_text(text, e.byte),
+                                 no_number ? ": JSON has no NaN and no infinity; write null where "
+                                             "there is no value"
+                                           : ""));
   } catch (const nlohmann::json::exception& e) {
     // the only other error of the parser is a number that no double holds
     const std::string what = e.what();

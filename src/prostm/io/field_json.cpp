@@ -66,12 +66,11 @@ TargetField field_from_json(std::string_view text, const std::string& name) {
     for (int col = 0; col < field.cols; ++col) {
       const nlohmann::json& value = line[static_cast<std::size_t>(col)];
       if (value.is_null()) continue;
-      const double p = value.get<double>();
-      check_pressure(p, row, col, name);
       field.skin[field.index(row, col)] = 1;
-      field.pressure[field.index(row, col)] = p;
+      field.pressure[field.index(row, col)] = value.get<double>();
     }
   }
+  settle_pressures(field, name);
 
   if (root.has("height_mm")) read_heights(root.at("height_mm", ""), field);
   if (root.has("weight")) read_weights(root.at("weight", ""), field);

@@ -1,13 +1,16 @@
 /// NumPy's .npy, versions 1 to 3: a magic, a header that is a Python dictionary, and the array's
 /// bytes (numpy/lib/format.py describes it).
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
@@ -157,8 +160,8 @@ NpyHeader read_header(std::string_view bytes, const std::string& name) {
 }
 
 NpyType read_type(const std::string& descr, const std::string& name) {
-  constexpr std::string_view kTypes[] = {"f4", "f8", "i1", "i2", "i4", "i8",
-                                         "u1", "u2", "u4", "u8", "b1"};
+  constexpr std::string_view kTypes[] = {"f2", "f4", "f8", "i1", "i2", "i4",
+                                         "i8", "u1", "u2", "u4", "u8", "b1"};
   const std::string_view order_codes = "<>|=";
   if (descr.size() == 3 && order_codes.find(descr[0]) != order_codes.npos) {
     for (const std::string_view type : kTypes) {
@@ -169,10 +172,19 @@ NpyType read_type(const std::string& descr, const std::string& name) {
       }
     }
   }
-  fail(name,
-       fmt::format("holds numbers of type '{:.20}'; they must be float32, float64, integers or "
-                   "booleans",
-                   descr));
+  fail(name, fmt::format("holds numbers of type '{:.20}'; they must be float16, float32, float64, "
+                         "integers or booleans: convert them with numpy's astype",
+                         descr));
+}
+
+/// A float16: 1 bit for the sign, 5 for the exponent, 10 for the fraction.
+double half_value(std::uint64_t bits) {
+  const int exponent = static_cast<int>(bits >> 10 & 31U);
+  const auto fraction = static_cast<double>(bits & 1023U);
+  const double size = exponent == 31  ? std::numeric_limits<double>::infinity()
+                      : exponent == 0 ? std::ldexp(fraction, -24)
+                                      : std::ldexp(1024.0 + fraction, exponent - 25);
+  return (bits & 0x8000U) != 0 ? -size : size;
 }
 
 /// One number; nothing for NaN, which is told by its bits because a signalling one traps when it is
@@ -182,6 +194,10 @@ std::optional<double> decode(const char* bytes, const NpyType& type) {
   for (std::size_t i = 0; i < type.size; ++i) {
     const auto byte = static_cast<unsigned char>(bytes[type.big_endian ? i : type.size - 1 - i]);
     bits = bits << 8 | byte;
+  }
+  if (type.kind == 'f' && type.size == 2) {
+    if ((bits & 0x7fffU) > 0x7c00U) return std::nullopt;
+    return half_value(bits);
   }
   if (type.kind == 'f' && type.size == 4) {
     if ((bits & 0x7fffffffU) > 0x7f800000U) return std::nullopt;
@@ -197,40 +213,73 @@ std::optional<double> decode(const char* bytes, const NpyType& type) {
   return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
 }
 
+/// The frame of an array that is a field: its size, and where its numbers stand.
+struct Frame {
+  double rows = 0, cols = 0;
+  std::size_t first = 0, row_step = 0, col_step = 0;  // in numbers
+};
+
+/// @throws InputError for an array without rows and columns, or a frame that it does not have.
+Frame frame_of(const NpyHeader& header, const std::string& name, std::optional<int> frame,
+               const char* frame_option) {
+  std::vector<double> shape = header.shape;
+  while (shape.size() > 2 && shape.front() == 1) shape.erase(shape.begin());
+  while (shape.size() > 2 && shape.back() == 1) shape.pop_back();
+  if (shape.size() != 2 && shape.size() != 3) {
+    fail(name, fmt::format("holds an array of {} dimensions; it must have 2, rows and columns, or "
+                           "3, frames, rows and columns",
+                           header.shape.size()));
+  }
+  const double frames = shape.size() == 3 ? shape[0] : 1;
+  const double rows = shape[shape.size() - 2], cols = shape.back();
+  // the size is checked before anything is allocated for it
+  check_raster_size(rows, cols, name);
+  const int chosen = frame.value_or(0);
+  if (frames == 1 && chosen != 0)
+    fail(name, fmt::format("holds one field; leave out {}", frame_option));
+  if (frames > 1 && !frame) {
+    fail(name, fmt::format("holds {:.0f} frames of {} x {} cells; choose one with {}, 0 to {:.0f}",
+                           frames, rows, cols, frame_option, frames - 1));
+  }
+  if (chosen < 0 || chosen >= frames) {
+    fail(name,
+         fmt::format("has no frame {}; it has {:.0f} frames, counted from 0", chosen, frames));
+  }
+  const auto f = static_cast<std::size_t>(frames), r = static_cast<std::size_t>(rows),
+             c = static_cast<std::size_t>(cols), at = static_cast<std::size_t>(chosen);
+  return header.fortran_order ? Frame{rows, cols, at, f, f * r}
+                              : Frame{rows, cols, at * r * c, c, 1};
+}
+
 }  // namespace
 
-TargetField field_from_npy(std::string_view bytes, const std::string& name, double cell_mm) {
+TargetField field_from_npy(std::string_view bytes, const std::string& name, double cell_mm,
+                           std::optional<int> frame, const char* frame_option) {
   TargetField field;
   field.cell = checked_cell(cell_mm, name, "the cell size");
   const NpyHeader header = read_header(bytes, name);
   const NpyType type = read_type(header.descr, name);
-  if (header.shape.size() != 2) {
-    fail(name, fmt::format("holds an array of {} dimensions; it must have 2, rows and columns",
-                           header.shape.size()));
-  }
-
-  // the size is checked before anything is allocated for it
-  check_raster_size(header.shape[0], header.shape[1], name);
-  field.resize(static_cast<int>(header.shape[0]), static_cast<int>(header.shape[1]));
+  const Frame at = frame_of(header, name, frame, frame_option);
   const std::string_view data = bytes.substr(header.data_start);
-  if (data.size() != field.size() * type.size) {
-    fail(name,
-         fmt::format("holds {} bytes of numbers; {} x {} numbers of {} bytes must be {}",
-                     data.size(), field.rows, field.cols, type.size, field.size() * type.size));
+  double wanted = static_cast<double>(type.size);
+  for (const double length : header.shape) wanted *= length;
+  if (static_cast<double>(data.size()) != wanted) {
+    fail(name, fmt::format("holds {} bytes of numbers; {} numbers of {} bytes must be {:.0f}",
+                           data.size(), fmt::join(header.shape, " x "), type.size, wanted));
   }
 
+  field.resize(static_cast<int>(at.rows), static_cast<int>(at.cols));
   for (int row = 0; row < field.rows; ++row) {
     for (int col = 0; col < field.cols; ++col) {
-      const std::size_t i = field.index(row, col);
-      const std::size_t stored =
-          header.fortran_order ? static_cast<std::size_t>(col * field.rows + row) : i;
+      const std::size_t stored = at.first + static_cast<std::size_t>(row) * at.row_step +
+                                 static_cast<std::size_t>(col) * at.col_step;
       const std::optional<double> p = decode(data.data() + stored * type.size, type);
       if (!p) continue;
-      check_pressure(*p, row, col, name);
-      field.skin[i] = 1;
-      field.pressure[i] = *p;
+      field.skin[field.index(row, col)] = 1;
+      field.pressure[field.index(row, col)] = *p;
     }
   }
+  settle_pressures(field, name);
   return field;
 }
 

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -79,6 +80,24 @@ int sync(const std::string& path) {
   const int error = ::fsync(fd) == 0 ? 0 : errno;
   ::close(fd);
   return error;
+}
+
+/// The name of a file that is being recorded: `path` + ".part.h5", where `path` is cut short if the
+/// file system takes no such long name.
+std::string part_of(const std::string& path) {
+  constexpr std::string_view kEnding = ".part.h5";
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const long limit = ::pathconf(folder.empty() ? "." : folder.c_str(), _PC_NAME_MAX);
+  const std::size_t most = limit > 0 ? static_cast<std::size_t>(limit) : 255;
+  std::string name = std::filesystem::path(path).filename().string();
+  if (name.size() + kEnding.size() > most) {
+    name.resize(most - kEnding.size());
+    // no half of a character of UTF-8
+    while (!name.empty() && (static_cast<unsigned char>(name.back()) & 0xc0U) == 0x80U)
+      name.pop_back();
+    if (!name.empty() && (static_cast<unsigned char>(name.back()) & 0x80U) != 0) name.pop_back();
+  }
+  return (folder / (name + std::string(kEnding))).string();
 }
 
 }  // namespace
@@ -324,7 +343,7 @@ Recorder::Recorder(const std::string& path, const std::vector<SettingsGroup>& se
   const h5::Quiet quiet;
   Impl& r = *impl_;
   r.path = path;
-  r.part = path + ".part.h5";
+  r.part = part_of(path);
   check_recording(path);  // HDF5 does not say why a file cannot be created
   r.file = h5::create_file(r.part, r.error);
   const hid_t file = r.file.get();

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -14,8 +16,10 @@
 #include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/hdf5.hpp"
+#include "prostm/io/detail/hdf5_filters.hpp"
 #include "prostm/io/detail/recording_layout.hpp"
 #include "prostm/io/recorder.hpp"
+#include "prostm/target/rounding.hpp"
 
 namespace prostm {
 namespace {
@@ -33,6 +37,11 @@ bool is_path(const FocalPath& path, int patches) {
          std::all_of(path.pressure.begin(), path.pressure.end(), is_number);
 }
 
+bool asks_for_locks() {
+  const char* value = std::getenv("HDF5_USE_FILE_LOCKING");
+  return value != nullptr && std::string_view(value) != "FALSE" && std::string_view(value) != "0";
+}
+
 bool is_focus(const FocalPoint& focus, int patches) {
   return focus.patch >= 0 && focus.patch < patches && focus.position.allFinite() &&
          is_number(focus.pressure) && is_phase(focus.phase);
@@ -44,10 +53,16 @@ struct RecordingReader::Impl {
   std::string path;
   h5::Id file;
   std::vector<double> time, cell, origin, pose;
-  std::vector<std::int64_t> first_patch, offset;
+  std::vector<std::int64_t> first_patch, frame_of_patch, offset;
   std::vector<std::int32_t> patches, rows, cols;
 
   [[noreturn]] void broken() const {
+    if (const std::string filter = h5::missing_filter(file.get()); !filter.empty()) {
+      throw InputError(fmt::format(
+          "{}: {}, which libhdf5 cannot read here; write the dataset again without it or with "
+          "gzip, in Python: group.create_dataset(name, data=old[()], compression=\"gzip\")",
+          path, filter));
+    }
     throw InputError(path + " is broken or cut off; it must be a recording of prostm");
   }
   template <class T>
@@ -75,6 +90,9 @@ struct RecordingReader::Impl {
   }
   std::size_t checked(int i) const;
   void read_index();
+  bool is_mutual() const;
+  bool has_all_patches() const;
+  void check_references() const;
   TargetField read_patch(std::size_t i) const;
   std::vector<double> read_optional(const char* name, hsize_t first,
                                     const TargetField& field) const;
@@ -122,6 +140,7 @@ void RecordingReader::Impl::read_index() {
   read("/frame/time", H5T_NATIVE_DOUBLE, {}, 1, frames, time);
   read("/frame/first_patch", H5T_NATIVE_INT64, {}, 1, frames, first_patch);
   read("/frame/patches", H5T_NATIVE_INT32, {}, 1, frames, patches);
+  read("/target/frame", H5T_NATIVE_INT64, {}, 1, all, frame_of_patch);
   read("/target/rows", H5T_NATIVE_INT32, {}, 1, all, rows);
   read("/target/cols", H5T_NATIVE_INT32, {}, 1, all, cols);
   read("/target/offset", H5T_NATIVE_INT64, {}, 1, all, offset);
@@ -129,13 +148,54 @@ void RecordingReader::Impl::read_index() {
   read("/target/origin", H5T_NATIVE_DOUBLE, {2}, 2, all, origin);
   read("/target/pose", H5T_NATIVE_DOUBLE, {4, 4}, 16, all, pose);
 
-  // frames refer to patches that are there
-  for (std::size_t i = 0; i < frames; ++i) {
-    if (patches[i] < 0 || patches[i] > kMaxPatches || first_patch[i] < 0 ||
-        first_patch[i] > static_cast<std::int64_t>(all) - patches[i]) {
-      broken();
+  check_references();
+}
+
+/// Whether each frame's patches are in the tables and say that they are of that frame.
+bool RecordingReader::Impl::is_mutual() const {
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    for (std::int32_t k = 0; k < patches[i]; ++k) {
+      const auto at = static_cast<std::size_t>(first_patch[i] + k);
+      if (frame_of_patch[at] != static_cast<std::int64_t>(i)) return false;
     }
   }
+  return true;
+}
+
+/// Whether the patches are those of a recording from its first on, so that places in the tables are
+/// what they were.
+bool RecordingReader::Impl::has_all_patches() const {
+  std::int64_t end = 0;
+  for (std::size_t k = 0; k < offset.size(); ++k) {
+    if (offset[k] != end) return false;
+    end += std::int64_t{rows[k]} * cols[k];
+  }
+  return true;
+}
+
+/// Checks that what belongs to a frame is its own. Programs that cut frames out of a recording
+/// leave the references as they were: they still hold if all patches stay.
+void RecordingReader::Impl::check_references() const {
+  const auto all = static_cast<std::int64_t>(offset.size());
+  const long long cells = h5::row_count(file.get(), "/target/pressure");
+  bool inside = true;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (patches[i] < 0 || patches[i] > kMaxPatches || first_patch[i] < 0) broken();
+    inside = inside && first_patch[i] <= all - patches[i];
+  }
+  for (std::size_t k = 0; k < offset.size(); ++k) {
+    if (rows[k] < 1 || cols[k] < 1) broken();
+    inside = inside && offset[k] <= cells - std::int64_t{rows[k]} * cols[k];
+  }
+  for (const char* table : {"/hand/id", "/plan/paths", "/gate/passed"}) {
+    const long long count = h5::row_count(file.get(), table);
+    inside = inside && (count < 0 || count == static_cast<long long>(time.size()));
+  }
+  if (inside && (is_mutual() || has_all_patches())) return;
+  throw InputError(
+      path +
+      ": what its tables hold for a frame is not that frame's, as after another program cut frames "
+      "out; cut /frame, /hand, /plan and /gate alike and keep /target whole (docs/recordings.md)");
 }
 
 TargetField RecordingReader::Impl::read_patch(std::size_t i) const {
@@ -257,12 +317,23 @@ FieldShape RecordingReader::Impl::read_shape(std::size_t i) const {
 }
 
 RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
+  if (path == "-") throw InputError("a recording cannot come from standard input; name its file");
   check_readable(path);
   const h5::Quiet quiet;
   impl_->path = path;
+  h5::register_lzf();
   impl_->file = h5::open_to_read(path);
-  if (!impl_->file.valid() && h5::is_open_for_writing(path)) {
-    throw InputError(path + " is open for writing in another program; close it there first");
+  if (!impl_->file.valid()) {
+    const LockResult lock = h5::probe_lock(path);
+    if (lock == LockResult::Held)
+      throw InputError(path + " is open for writing in another program; close it there first");
+    if (lock == LockResult::Unavailable) impl_->file = h5::open_to_read(path, false);
+    // the environment takes precedence over what the program asks of HDF5
+    if (!impl_->file.valid() && lock == LockResult::Unavailable && asks_for_locks()) {
+      throw InputError(path +
+                       " is on a file system without locks, and HDF5_USE_FILE_LOCKING in the "
+                       "environment asks for them; unset that");
+    }
   }
   if (!impl_->file.valid()) {
     throw InputError(path + " " + is_not(read_head(path), "an HDF5 file") +
@@ -271,7 +342,9 @@ RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_uniq
   const std::string format = h5::read_text(impl_->file.get(), "format");
   if (format != "prostm-recording/1") {
     throw InputError(
-        fmt::format("{}: its attribute \"format\" is \"{:.40}\"; it must be \"prostm-recording/1\"",
+        fmt::format("{}: its attribute \"format\" is \"{:.40}\"; it must be \"prostm-recording/1\" "
+                    "(a data set of another program: numpy.save(\"field.npy\", "
+                    "h5py.File(FILE)[NAME][()]))",
                     path, format));
   }
   impl_->read_index();
@@ -300,6 +373,7 @@ TargetFrame RecordingReader::frame(int i) const {
   for (std::int32_t k = 0; k < impl_->patches[at]; ++k) {
     frame.patches.push_back(
         impl_->read_patch(static_cast<std::size_t>(impl_->first_patch[at] + k)));
+    clear_rounding(frame.patches.back());
     try {
       validate(frame.patches.back());
     } catch (const std::invalid_argument& e) {

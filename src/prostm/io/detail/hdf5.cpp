@@ -1,14 +1,14 @@
 #include "prostm/io/detail/hdf5.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <functional>
 #include <numeric>
 #include <utility>
+
+#include "prostm/core/advisory_lock.hpp"
 
 namespace prostm::h5 {
 namespace {
@@ -21,6 +21,17 @@ Id text_type() {
   H5Tset_size(type.get(), H5T_VARIABLE);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   return type;
+}
+
+/// A text of fixed length: its padding is left out. Some programs leave no room for the NUL of a
+/// type that ends with one.
+std::string read_fixed(hid_t attribute, hid_t stored) {
+  std::string text(H5Tget_size(stored), '\0');
+  if (H5Aread(attribute, stored, text.data()) < 0) return {};
+  const char padding = H5Tget_strpad(stored) == H5T_STR_SPACEPAD ? ' ' : '\0';
+  if (padding == '\0') text.resize(std::min(text.find('\0'), text.size()));
+  text.resize(text.find_last_not_of(padding) + 1);
+  return text;
 }
 
 }  // namespace
@@ -50,23 +61,24 @@ bool Id::close() {
   return id < 0 || close_(id) >= 0;
 }
 
-Id open_to_read(const std::string& path) {
+Id open_to_read(const std::string& path, bool lock) {
   // a file that is open in this process already opens again only with its own close degree
   for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG, H5F_CLOSE_SEMI}) {
     const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fclose_degree(access.get(), degree);
+    if (!lock) H5Pset_file_locking(access.get(), false, true);
     Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
     if (file.valid()) return file;
   }
   return {};
 }
 
-bool is_open_for_writing(const std::string& path) {
+LockResult probe_lock(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return false;
-  const bool locked = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (fd < 0) return LockResult::Unavailable;
+  const LockResult result = try_lock(fd, LockKind::Shared, path);
   ::close(fd);
-  return locked;
+  return result;
 }
 
 Table::Table(hid_t group, const Column& column) : type_(column.type), size_{0} {
@@ -132,9 +144,9 @@ std::string read_text(hid_t object, const char* name) {
   if (!attribute.valid()) return {};
   const Id stored(H5Aget_type(attribute.get()), H5Tclose);
   const Id space(H5Aget_space(attribute.get()), H5Sclose);
-  if (H5Tis_variable_str(stored.get()) <= 0 || H5Sget_simple_extent_npoints(space.get()) != 1) {
+  if (H5Tget_class(stored.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1)
     return {};
-  }
+  if (H5Tis_variable_str(stored.get()) <= 0) return read_fixed(attribute.get(), stored.get());
   const Id type = text_type();
   H5Tset_cset(type.get(), H5Tget_cset(stored.get()));
   char* text = nullptr;

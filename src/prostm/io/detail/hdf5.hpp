@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "prostm/core/advisory_lock.hpp"
+
 namespace prostm::h5 {
 
 /// While it lives, HDF5 does not print its errors.
@@ -44,9 +46,10 @@ class Id {
 };
 
 /// Opens a file to read it, even if this process has it open elsewhere; invalid on failure.
-Id open_to_read(const std::string& path);
-/// Returns whether anyone holds the lock that HDF5 takes to write a file.
-bool is_open_for_writing(const std::string& path);
+/// @param lock as HDF5 does by itself, which fails where the file system has no locks.
+Id open_to_read(const std::string& path, bool lock = true);
+/// Tries the lock that HDF5 takes to read a file: Held while anyone writes it.
+LockResult probe_lock(const std::string& path);
 
 /// The description of a dataset's rows.
 struct Column {
@@ -75,7 +78,8 @@ class Table {
 
 /// A text of any length; replaces one of the same name. False when the library could not.
 bool write_text(hid_t object, const char* name, const std::string& value);
-/// Empty when absent or not a text.
+/// The text of an attribute, of variable or fixed length, alone or in an array of one; empty when
+/// absent or not a text.
 std::string read_text(hid_t object, const char* name);
 
 /// Reads rows [first, first + count) of a dataset whose rows have `shape`, as native `type`; false

@@ -1,7 +1,6 @@
 #include "prostm/io/detail/hdf5_disk.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,9 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <string>
+
+#include "prostm/core/advisory_lock.hpp"
 
 namespace prostm::h5 {
 namespace {
@@ -28,6 +30,7 @@ struct Report {
 struct Disk {
   H5FD_t base{};  // first, since HDF5 knows a file by it
   int fd = -1;
+  std::string path;
   int* error = nullptr;
   haddr_t end_of_allocation = 0, end_of_file = 0;
   haddr_t on_disk = 0;                                    // size of the file on the disk
@@ -112,6 +115,7 @@ H5FD_t* open_disk(const char* name, unsigned flags, hid_t access, haddr_t) {
   auto disk = std::make_unique<Disk>();
   disk->fd = ::open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (disk->fd < 0) return nullptr;
+  disk->path = name;
   disk->error = report->error;
   return &disk.release()->base;
 }
@@ -178,11 +182,13 @@ herr_t write_disk(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size,
 
 /// File systems without locks do not keep a recording from being made.
 herr_t lock(H5FD_t* file, hbool_t exclusive) {
-  const int how = (exclusive ? LOCK_EX : LOCK_SH) | LOCK_NB;
-  return ::flock(disk_of(file).fd, how) == 0 || errno == ENOSYS ? 0 : -1;
+  const Disk& disk = disk_of(file);
+  const LockKind kind = exclusive ? LockKind::Exclusive : LockKind::Shared;
+  return try_lock(disk.fd, kind, disk.path) == LockResult::Held ? -1 : 0;
 }
-herr_t unlock(H5FD_t* file) {
-  return ::flock(disk_of(file).fd, LOCK_UN) == 0 || errno == ENOSYS ? 0 : -1;
+/// Closing the file unlocks it.
+herr_t unlock(H5FD_t*) {
+  return 0;
 }
 
 H5FD_class_t driver() {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/target/rounding.hpp"
 
 namespace prostm {
 
@@ -24,17 +25,27 @@ void check_raster_size(double rows, double cols, const std::string& file) {
   }
 }
 
-void check_pressure(double pressure, int row, int col, const std::string& file) {
-  if (!std::isfinite(pressure) || pressure < 0.0 || pressure > kMaxFilePressure) {
-    throw InputError(
-        fmt::format("{}: the pressure at row {}, column {} is {}; it must be from 0 to {}, or no "
-                    "value where there is no skin",
-                    file, row, col, pressure, kMaxFilePressure));
+void settle_pressures(TargetField& field, const std::string& file) {
+  clear_rounding(field);
+  for (int row = 0; row < field.rows; ++row) {
+    for (int col = 0; col < field.cols; ++col) {
+      const double pressure = field.pressure[field.index(row, col)];
+      if (std::isfinite(pressure) && pressure >= 0.0 && pressure <= kMaxFilePressure) continue;
+      throw InputError(
+          fmt::format("{}: the pressure at row {}, column {} is {}; it must be from 0 to {}, or no "
+                      "value where there is no skin",
+                      file, row, col, pressure, kMaxFilePressure));
+    }
   }
 }
 
 void read_raster(const JsonNode& node, TargetField& field) {
   const JsonNode cell = node.at("cell_mm", "the edge of a cell in mm");
+  if (cell.value().is_array()) {
+    cell.fail(
+        "is an array; cells are square, so resample the field onto square cells, e.g. with "
+        "scipy.ndimage.zoom");
+  }
   constexpr double kAnyNumber = 1e308;
   field.cell = checked_cell(cell.number(-kAnyNumber, kAnyNumber), node.file(), "\"cell_mm\"");
   const Vec2 origin_mm = node.at("origin_mm", "[x, y] of the centre of the first cell in mm")

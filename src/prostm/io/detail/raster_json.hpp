@@ -21,8 +21,9 @@ inline constexpr double kMaxFileWeight = 1e150;
 double checked_cell(double cell_mm, const std::string& file, const std::string& what);
 /// @throws InputError unless the raster has 1 to kMaxFieldCells cells.
 void check_raster_size(double rows, double cols, const std::string& file);
-/// @throws InputError for a pressure that is negative, not finite or above kMaxFilePressure.
-void check_pressure(double pressure, int row, int col, const std::string& file);
+/// Clears the rounding of the pressures on skin (clear_rounding). @throws InputError for one that
+/// is still negative, not finite or above kMaxFilePressure.
+void settle_pressures(TargetField& field, const std::string& file);
 
 /// Reads "cell_mm", "origin_mm", "rows" and "cols" into a cleared field.
 void read_raster(const JsonNode& node, TargetField& field);
