@@ -29,11 +29,11 @@ def warnings_of(result):
 
 
 def test_recordings_are_written_and_read_with_a_warning(prostm, tmp_path, without_locks):
-    run = prostm("run", "--grid", "32", "--stepped", "--seconds", "1", "--record", "r.h5")
+    run = prostm("run", "--grid", "32", "--stepped", "--seconds", "2", "--record", "r.h5")
     assert len(warnings_of(run)) == 1 and (tmp_path / "r.h5").exists()
-    plan = prostm("plan", "r.h5", "--frame", "20", "--preset", "fast", "--json", "plan.json")
+    plan = prostm("plan", "r.h5", "--frame", "45", "--preset", "fast", "--json", "plan.json")
     assert len(warnings_of(plan)) == 1
-    field = prostm("field", "plan.json", "--field", "r.h5", "--frame", "20")
+    field = prostm("field", "plan.json", "--field", "r.h5", "--frame", "45")
     assert len(warnings_of(field)) == 1
     bench = prostm("bench", "r.h5", "--repeats", "1", "--preset", "fast")
     assert len(warnings_of(bench)) == 1

@@ -26,7 +26,7 @@ from test_bad_input import changed, hand_lines
     (["run", "--wings"], 'run has no option "--wings"; see prostm run --help'),
     (["run", "view"], 'run does not expect "view"; did you mean "--view"? See prostm run --help'),
     (["plan", "a.npy", "b.npy"], 'plan does not expect "b.npy"; see prostm plan --help'),
-    (["plan"], "plan needs a file: target field (.json, .npy, .png or .h5; docs/files.md); see prostm plan --help"),
+    (["plan"], "plan needs a file: target field (.json, .npy, .npz, .png or .h5, or - for standard input; docs/files.md); see prostm plan --help"),
     (["bench"],
      "bench needs a file: recordings (.h5) of prostm capture or prostm run --record; see prostm bench --help"),
     (["plan", ""], "field needs the name of a file, and the one given is empty"),
@@ -144,7 +144,7 @@ def test_a_file_of_another_kind_is_named(refuses, prostm, tmp_path):
     refuses("bench", "field.json", words=["is JSON, not an HDF5 file"])
     refuses("field", "a.npy", words=["is an NPY file, not JSON"])
     refuses("run", "--settings", "field.json", words=["is JSON, not TOML"])
-    refuses("plan", "text.txt", words=[".json, .npy, .png or .h5"])
+    refuses("plan", "text.txt", words=[".json, .npy, .npz, .png or .h5"])
     refuses("plan", "me.hands.jsonl", words=[
         "me.hands.jsonl is a recording of hands, not a field; ", "prostm capture --hand me.hands.jsonl --out FILE.h5",
         "prostm run --hand me.hands.jsonl"])
