@@ -109,6 +109,20 @@ TEST(StimulusGate, RefusesHandsAndSaysWhatToDo) {
   }
 }
 
+// a value that misses its bound by little is not printed as the bound
+TEST(StimulusGate, TellsValuesFromTheirBounds) {
+  const double height = held().hands[0].position[kPalm].z();
+  const auto at = [&](double palm) {
+    return sentence(after_a_second(moved(Vec3(0, 0, palm - height)), four()));
+  };
+  EXPECT_THAT(at(0.1299), HasSubstr("the palm is 129.9 mm above the array (at least 130.0 mm)"));
+  EXPECT_THAT(at(0.2602), HasSubstr("the palm is 260.2 mm above the array (at most 260.0 mm)"));
+  HandFrame moving = held();
+  moving.hands[0].velocity[kPalm] = Vec3(0.0504, 0, 0);
+  EXPECT_THAT(sentence(after_a_second(moving, four())),
+              HasSubstr("it moves at 0.0504 m/s (at most 0.0500 m/s)"));
+}
+
 TEST(StimulusGate, RefusesFieldsAndSaysWhatIsWrong) {
   EXPECT_EQ(after_a_second(held(), four(0.0)).finding.problem, GateProblem::Maxima);
   EXPECT_EQ(after_a_second(held(), four(0.7)).finding.problem, GateProblem::Balance);

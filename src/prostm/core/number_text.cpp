@@ -1,5 +1,7 @@
 #include "prostm/core/number_text.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -21,6 +23,20 @@ std::string number_text(double value) {
   if (text[exponent] == '+') text.erase(exponent, 1);
   if (text[exponent] == '-') ++exponent;
   text.erase(exponent, text.find_first_not_of('0', exponent) - exponent);
+  return text;
+}
+
+ComparedText compared_text(double value, double bound, int decimals) {
+  constexpr int kMost = 17;
+  const auto with = [&](double number, int digits) {
+    return fmt::format("{:.{}f}", number, digits);
+  };
+  const bool differ = value != bound;
+  ComparedText text{with(value, decimals), with(bound, decimals)};
+  while (differ && text.value == text.bound && decimals < kMost) {
+    ++decimals;
+    text = {with(value, decimals), with(bound, decimals)};
+  }
   return text;
 }
 

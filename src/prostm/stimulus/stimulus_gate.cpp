@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prostm/core/number_text.hpp"
 #include "prostm/track/palm.hpp"
 
 namespace prostm {
@@ -43,6 +44,11 @@ GateFinding look_at(const FieldShape& shape, const Stimulus& wanted) {
   return {};
 }
 
+/// A finding's value and bound, times `scale`.
+ComparedText compared(const GateFinding& f, double scale, int decimals = 0) {
+  return compared_text(scale * f.value, scale * f.wanted, decimals);
+}
+
 /// "30 mm to the left and 12 mm towards you": where a palm must go that is `away` from the jets.
 std::string way_back(const Vec2& away) {
   constexpr double kLeast = 0.005;  // a shorter way is not told [m]
@@ -56,6 +62,79 @@ std::string way_back(const Vec2& away) {
   return aside + " and " + along;
 }
 
+/// Advice about the hand; empty where the problem is the field's.
+std::string hand_sentence(const GateFinding& f) {
+  switch (f.problem) {
+    case P::NoHand:
+      return "There is no hand: hold one flat over the array, palm towards it.";
+    case P::TwoHands:
+      return "There are two hands: take one away.";
+    case P::Bent: {
+      const auto [value, bound] = compared(f, 100.0);
+      return fmt::format("Stretch the fingers: one is bent to {} % of its length (at least {} %).",
+                         value, bound);
+    }
+    case P::Tilted: {
+      const auto [value, bound] = compared(f, 180.0 / kPi);
+      return fmt::format("Hold the palm level: it is tilted by {}° (at most {}°).", value, bound);
+    }
+    case P::Beside:
+      return fmt::format("Move the hand {}: it is beside the jets.", way_back(f.away));
+    case P::Low:
+    case P::High: {
+      const bool low = f.problem == P::Low;
+      const auto [value, bound] = compared(f, 1e3);
+      return fmt::format("{} the hand: the palm is {} mm above the array (at {} {} mm).",
+                         low ? "Lift" : "Lower", value, low ? "least" : "most", bound);
+    }
+    case P::Moving: {
+      const auto [value, bound] = compared(f, 1.0, 2);
+      return fmt::format("Hold the hand still: it moves at {} m/s (at most {} m/s).", value, bound);
+    }
+    default:
+      return {};
+  }
+}
+
+/// Advice about the field; empty where there is no such problem.
+std::string field_sentence(const GateFinding& f) {
+  switch (f.problem) {
+    case P::Maxima:
+      return fmt::format(
+          "Wait a second: there are {:.0f} places of pressure, not {:.0f}. If that stays, "
+          "centre the jets under the hand.",
+          f.value, f.wanted);
+    case P::Balance: {
+      const auto [value, bound] = compared(f, 100.0);
+      return fmt::format(
+          "Wait a second: the weakest place has {} % of the strongest (at least {} %). If that "
+          "stays, centre the jets under the hand.",
+          value, bound);
+    }
+    case P::Saddle: {
+      const auto [value, bound] = compared(f, 100.0);
+      return fmt::format(
+          "The places run together: the saddle between two has {} % of the strongest (at most {} "
+          "%). Spread the hand flat, or lower it.",
+          value, bound);
+    }
+    case P::Area: {
+      const auto [value, bound] = compared(f, 1e4);
+      return fmt::format(
+          "{} cm² are pressed, not {}: {}.", value, bound,
+          f.value > f.wanted ? "lower the hand" : "lift the hand, or centre the jets");
+    }
+    case P::Force: {
+      const auto [value, bound] = compared(f, 1e3, 2);
+      return fmt::format(
+          "The total force is {} mN, not {}: centre the jets under the hand, or wait a second.",
+          value, bound);
+    }
+    default:
+      return {};
+  }
+}
+
 }  // namespace
 
 std::string sentence(const GateResult& result) {
@@ -63,53 +142,12 @@ std::string sentence(const GateResult& result) {
     return fmt::format("The stimulus is as it should be: {} {} of pressure, {:.0f} cm², {:.2f} mN.",
                        result.shape.count(), result.shape.count() == 1 ? "place" : "places",
                        1e4 * result.shape.area, 1e3 * result.shape.force);
-  const GateFinding& f = result.finding;
-  switch (f.problem) {
-    case P::None:
-      break;
-    case P::NoHand:
-      return "There is no hand: hold one flat over the array, palm towards it.";
-    case P::TwoHands:
-      return "There are two hands: take one away.";
-    case P::Bent:
-      return fmt::format("Stretch the fingers: one is bent to {:.0f} % of its length.",
-                         100.0 * f.value);
-    case P::Tilted:
-      return fmt::format("Hold the palm level: it is tilted by {:.0f}°.", f.value * 180.0 / kPi);
-    case P::Beside:
-      return fmt::format("Move the hand {}: it is beside the jets.", way_back(f.away));
-    case P::Low:
-    case P::High:
-      return fmt::format(
-          "{} the hand: the palm is {:.0f} mm above the array, not {:.0f} to {:.0f}.",
-          f.problem == P::Low ? "Lift" : "Lower", 1e3 * f.value, 1e3 * B::kLow, 1e3 * B::kHigh);
-    case P::Moving:
-      return fmt::format("Hold the hand still: it moves at {:.2f} m/s.", f.value);
-    case P::Maxima:
-      return fmt::format(
-          "Wait a second: there are {:.0f} places of pressure, not {:.0f}. If that stays, "
-          "centre the jets under the hand.",
-          f.value, f.wanted);
-    case P::Balance:
-      return fmt::format(
-          "Wait a second: the weakest place has {:.0f} % of the strongest. If that stays, "
-          "centre the jets under the hand.",
-          100.0 * f.value);
-    case P::Saddle:
-      return fmt::format(
-          "The places run together: the saddle between two has {:.0f} % of the "
-          "strongest. Spread the hand flat, or lower it.",
-          100.0 * f.value);
-    case P::Area:
-      return fmt::format(
-          "{:.0f} cm² are pressed, not {:.0f}: {}.", 1e4 * f.value, 1e4 * f.wanted,
-          f.value > f.wanted ? "lower the hand" : "lift the hand, or centre the jets");
-    case P::Force:
-      return fmt::format("The total force is {:.2f} mN, not {:.2f}: {}.", 1e3 * f.value,
-                         1e3 * f.wanted, "centre the jets under the hand, or wait a second");
-  }
-  return fmt::format("Hold on: {:.0f} % of the last second is as it should be.",
-                     100.0 * result.share);
+  const std::string of_hand = hand_sentence(result.finding);
+  if (!of_hand.empty()) return of_hand;
+  const std::string of_field = field_sentence(result.finding);
+  if (!of_field.empty()) return of_field;
+  return fmt::format("Hold on: {:.0f} % of the last second is as it should be (at least {:.0f} %).",
+                     100.0 * result.share, 100.0 * B::kShare);
 }
 
 StimulusGate::StimulusGate(int updates, std::size_t max_cells)

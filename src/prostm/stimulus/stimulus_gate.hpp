@@ -54,6 +54,12 @@ struct GateResult {
   FieldShape shape;     ///< of this frame's target
 };
 
+/// Whether nothing is wrong with the hand, whatever the field is.
+inline bool is_held(const GateResult& result) {
+  return result.finding.problem == GateProblem::None ||
+         result.finding.problem >= GateProblem::Maxima;
+}
+
 /// Says what to do, in a sentence; for a pass, what was found.
 std::string sentence(const GateResult& result);
 

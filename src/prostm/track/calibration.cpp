@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "prostm/core/number_text.hpp"
+
 namespace prostm {
 namespace {
 
@@ -72,10 +74,11 @@ Calibration calibrate(std::span<const PointPair> points) {
   }
   const Means means = means_of(points);
   if (const double spread = spread_beside_line(points, means); !(spread >= kLeastSpread)) {
+    const ComparedText text = compared_text(1e3 * spread, 1e3 * kLeastSpread, 1);
     throw std::invalid_argument(
-        fmt::format("the calibration points are within {:.1f} mm rms of one line; it must be "
-                    "at least 10 mm",
-                    spread * 1e3));
+        fmt::format("the calibration points are within {} mm rms of one line; it must be at least "
+                    "{} mm",
+                    text.value, text.bound));
   }
 
   // (H20): the rotation nearest to the points' cross-covariance
