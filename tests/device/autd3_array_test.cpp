@@ -141,6 +141,10 @@ TEST(Autd3Array, GoesOnAfterACut) {
   EXPECT_GT(again, 0.3);
   EXPECT_LT(again, 1.0);
   std::printf("sounds %.0f ms after a cut of 300 ms\n", 1e3 * again);
+  const DeviceStats stats = array.stats();
+  EXPECT_GE(stats.lost_links, 1);
+  EXPECT_GE(static_cast<double>(stats.lost_blocks) * array.info().block_time(), 0.3);
+  EXPECT_LE(stats.lost_blocks + stats.slow_blocks, stats.missed_blocks);
   array.stop();
   expect_no_fault(server.report());
 }

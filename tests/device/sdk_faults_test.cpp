@@ -37,6 +37,10 @@ TEST(Autd3SdkFaults, SoundsAgainAfterACut) {
   std::printf("sounding %.0f ms after the end of a cut\n", 1e3 * gap);
   EXPECT_LT(gap, 1.0);
   EXPECT_EQ(array->problem(), "");
+  const DeviceStats stats = array->stats();
+  EXPECT_GE(stats.lost_links, 1);
+  EXPECT_GE(static_cast<double>(stats.lost_blocks) * array->info().block_time(), 0.4);
+  EXPECT_LE(stats.lost_blocks + stats.slow_blocks, stats.missed_blocks);
   EXPECT_LE(chain.report()["largest_speed_m_s"], 8.0);
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <thread>
 
@@ -144,18 +143,8 @@ void Autd3Array::Impl::keep_running(const std::stop_token& stop, Begin&& begin, 
 }
 
 void Autd3Array::Impl::run_stream(const std::stop_token& stop) {
-  std::optional<Clock::time_point> away;
   keep_running(
-      stop,
-      [&] {
-        if (away) stream->miss(std::chrono::duration<double>(Clock::now() - *away).count());
-        away = Clock::now();
-        return stream->begin();
-      },
-      [&] {
-        away = Clock::now();
-        return stream->play_block(stop);
-      });
+      stop, [&] { return stream->begin(); }, [&] { return stream->play_block(stop); });
 }
 
 void Autd3Array::Impl::run_loops(const std::stop_token& stop) {
@@ -167,6 +156,7 @@ void Autd3Array::Impl::run_loops(const std::stop_token& stop) {
 /// Tries to open the link again until it works.
 void Autd3Array::Impl::connect_again(const std::stop_token& stop) {
   link_process = 0;
+  stream->lose();
   set_status(DeviceStatus::Vanished, session.problem());
   while (!stop.stop_requested()) {
     const Clock::time_point tried = Clock::now();

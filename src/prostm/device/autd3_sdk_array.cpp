@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "prostm/device/detail/link_loss.hpp"
 #include "prostm/device/detail/sdk_session.hpp"
 #include "prostm/device/detail/segment_player.hpp"
 #include "prostm/device/thread_priority.hpp"
@@ -26,6 +27,8 @@ constexpr microseconds kMargin{300};      // after a turn, within which the cloc
 constexpr microseconds kPoll{500};        // between looks at which bank plays
 constexpr int kMostTurns = 20;            // until a bank must play
 constexpr milliseconds kRetry{50};
+// of a block's time: a missed block that its link took longer for is missed because of the link
+constexpr double kSlowLink = 0.5;
 constexpr double kUnitWidth = 192e-3;  // [m]
 
 std::vector<Pose> side_by_side(std::size_t count) {
@@ -102,6 +105,7 @@ struct Autd3SdkArray::Impl {
   DeviceStatus status = DeviceStatus::Idle;
   std::string problem;
   DeviceStats stats;
+  LinkLoss loss;
   std::int64_t turn_block = 0;  // a block, and when it began to play
   Clock::time_point turn_time;
 
@@ -163,6 +167,7 @@ bool Autd3SdkArray::Impl::begin_stream() {
   const std::lock_guard lock(mutex);
   status = DeviceStatus::Running;
   problem.clear();
+  loss.found(Clock::now(), budget.block_time, stats);
   turn_block = block - 1;
   turn_time = session.host_time(turn - block_time);
   return true;
@@ -174,13 +179,18 @@ bool Autd3SdkArray::Impl::play_block() {
   fill_block();
   const bool counts = !muted;
   const std::int64_t expected = turn;
-  if (!write_block(1 - playing) || !wait_for_turn(1 - playing)) return false;
+  const Clock::time_point begun = Clock::now();
+  if (!write_block(1 - playing)) return false;
+  const bool is_slow = Clock::now() - begun > kSlowLink * block_duration();
+  if (!wait_for_turn(1 - playing)) return false;
   const std::int64_t missed = (turn - block_time - expected) / block_time + (counts ? 0 : 1);
   {
     const std::lock_guard lock(mutex);
     stats.blocks = block;
     stats.late_blocks += missed > 0 && counts ? 1 : 0;
     stats.missed_blocks += missed;
+    // units mute themselves when too little comes over the link
+    if (is_slow || !counts) stats.slow_blocks += missed;
     turn_block = block - 1;
     turn_time = session.host_time(turn - block_time);
   }
@@ -291,6 +301,7 @@ void Autd3SdkArray::Impl::connect_again(const std::stop_token& stop) {
     const std::lock_guard lock(mutex);
     status = DeviceStatus::Vanished;
     problem = session.problem();
+    loss.lose(std::min(turn_time, Clock::now()), stats);
   };
   say();
   while (!stop.stop_requested()) {
@@ -323,6 +334,7 @@ DeviceStatus Autd3SdkArray::Impl::begin(SampleSource& from) {
   {
     const std::lock_guard lock(mutex);
     stats = {.queue_blocks = 1};
+    loss = {};
     status = DeviceStatus::Running;
     problem.clear();
     turn_block = 0;
@@ -395,7 +407,9 @@ DeviceStatus Autd3SdkArray::load_segment(std::span<const FocusSample> samples, i
 
 DeviceStats Autd3SdkArray::stats() const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->stats;
+  DeviceStats now = impl_->stats;
+  impl_->loss.add(Clock::now(), impl_->budget.block_time, now);
+  return now;
 }
 
 std::int64_t Autd3SdkArray::samples() const {

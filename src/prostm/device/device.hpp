@@ -44,6 +44,9 @@ struct DeviceStats {
   std::int64_t blocks = 0;         ///< blocks filled
   std::int64_t late_blocks = 0;    ///< blocks filled after their deadline
   std::int64_t missed_blocks = 0;  ///< block times at which the queue had run dry
+  std::int64_t lost_links = 0;     ///< times that the link to the array was lost
+  std::int64_t lost_blocks = 0;    ///< of missed_blocks, those while the link was lost
+  std::int64_t slow_blocks = 0;    ///< of missed_blocks, those that the link passed on too slowly
   int queue_blocks = 0;            ///< depth of the queue now
 };
 

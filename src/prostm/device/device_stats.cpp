@@ -5,7 +5,7 @@
 namespace prostm {
 namespace {
 
-constexpr std::array<Quantity<DeviceStats>, 4> kStats{{
+constexpr std::array<Quantity<DeviceStats>, 7> kStats{{
     {.name = "blocks",
      .unit = "",
      .help = "Blocks of samples that the device was given.",
@@ -20,6 +20,19 @@ constexpr std::array<Quantity<DeviceStats>, 4> kStats{{
      .help = "Block times at which the queue had run dry.",
      .value = &DeviceStats::missed_blocks,
      .better = Better::Less},
+    // causes of missed blocks; soak tests count only what is better when less, and each block once
+    {.name = "lost_links",
+     .unit = "",
+     .help = "Times that the link to the array was lost.",
+     .value = &DeviceStats::lost_links},
+    {.name = "lost_blocks",
+     .unit = "",
+     .help = "Of missed_blocks, those while the link was lost.",
+     .value = &DeviceStats::lost_blocks},
+    {.name = "slow_blocks",
+     .unit = "",
+     .help = "Of missed_blocks, those that the link passed on too slowly.",
+     .value = &DeviceStats::slow_blocks},
     {.name = "queue_blocks",
      .unit = "",
      .help = "Depth of the queue now.",

@@ -15,6 +15,8 @@ using Seconds = std::chrono::duration<double>;
 constexpr double kBeforeTurn = 0.3e-3;  // from when on the units are asked whether it came [s]
 constexpr double kLongestWait = 0.5;    // for a turn [s], in which the units are
 constexpr int kMostPolls = 40;          // asked so often at least
+// of a block's time: a late block that its link took longer for is late because of the link
+constexpr double kSlowLink = 0.5;
 
 Clock::duration to_duration(double seconds) {
   return std::chrono::round<Clock::duration>(Seconds(seconds));
@@ -29,6 +31,7 @@ void Stream::start(SampleSource& source) {
   block_ = 0;
   const std::lock_guard lock(mutex_);
   stats_ = {};
+  loss_ = {};
   stats_.queue_blocks = 1;
   anchor_block_ = 0;
   anchor_time_ = Clock::now() + to_duration(2.0 * budget_.block_time);
@@ -51,6 +54,8 @@ bool Stream::begin() {
   turns_.start(Clock::now(), std::max(0, session_.playing_segment()),
                to_duration(budget_.block_time));
   written_ = 1 - turns_.playing();
+  const std::lock_guard lock(mutex_);
+  loss_.found(Clock::now(), budget_.block_time, stats_);
   return true;
 }
 
@@ -67,7 +72,10 @@ bool Stream::play_block(const std::stop_token& stop) {
     anchor_time_ = next;
   }
   written_ = 1 - turns_.playing();
+  fill_time_ = {};
+  const Clock::time_point begun = Clock::now();
   if (!write_block(written_)) return false;
+  const double link_time = Seconds(Clock::now() - begun - fill_time_).count();
   ++block_;
   const bool late = turns_.turns() != turn || Clock::now() > due;
   const bool quiet = late || !output_.sound_is_in_time(next, end);
@@ -76,6 +84,7 @@ bool Stream::play_block(const std::stop_token& stop) {
     stats_.blocks = block_;
     stats_.late_blocks += late ? 1 : 0;
     stats_.missed_blocks += quiet ? 1 : 0;
+    stats_.slow_blocks += quiet && link_time > kSlowLink * budget_.block_time ? 1 : 0;
   }
   return quiet || output_.sound(next, end);
 }
@@ -106,6 +115,7 @@ bool Stream::write_block(int segment) {
 
 /// Asks for samples of the block, and encodes them.
 void Stream::fill(int from, int to) {
+  const Clock::time_point begun = Clock::now();
   const auto width = static_cast<std::size_t>(source_->foci()),
              slots = static_cast<std::size_t>(encoder_.slots());
   const auto count = static_cast<std::size_t>(to - from);
@@ -118,16 +128,19 @@ void Stream::fill(int from, int to) {
       std::copy_n(words_.begin() + static_cast<std::ptrdiff_t>(u * slots), slots,
                   output_.words(u).begin() + at);
   }
+  fill_time_ += Clock::now() - begun;
 }
 
-void Stream::miss(double time) {
+void Stream::lose() {
   const std::lock_guard lock(mutex_);
-  stats_.missed_blocks += std::lround(time / budget_.block_time);
+  loss_.lose(std::min(anchor_time_, Clock::now()), stats_);
 }
 
 DeviceStats Stream::stats() const {
   const std::lock_guard lock(mutex_);
-  return stats_;
+  DeviceStats now = stats_;
+  loss_.add(Clock::now(), budget_.block_time, now);
+  return now;
 }
 
 std::int64_t Stream::samples() const {

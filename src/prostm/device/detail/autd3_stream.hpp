@@ -6,6 +6,7 @@
 
 #include "prostm/device/autd3_budget.hpp"
 #include "prostm/device/detail/autd3_output.hpp"
+#include "prostm/device/detail/link_loss.hpp"
 #include "prostm/device/device.hpp"
 
 namespace prostm::autd3 {
@@ -25,8 +26,8 @@ class Stream {
   bool begin();
   /// Writes the next block when the segment for it is free.
   bool play_block(const std::stop_token& stop);
-  /// Counts the blocks that could not be played in a time [s].
-  void miss(double time);
+  /// The link is lost: counts the blocks that cannot be played until begin() succeeds.
+  void lose();
 
   // any thread
   DeviceStats stats() const;
@@ -48,11 +49,13 @@ class Stream {
   std::vector<FocusSample> samples_;  // of a block
   std::vector<SlotWord> words_;       // of a sample, all units
   TurnClock turns_;
-  std::int64_t block_ = 0;  // to be filled next
-  int written_ = 0;         // segment
+  Session::Clock::duration fill_time_{};  // of the block, in the source and the encoder
+  std::int64_t block_ = 0;                // to be filled next
+  int written_ = 0;                       // segment
 
   mutable std::mutex mutex_;  // guards the members below
   DeviceStats stats_;
+  LinkLoss loss_;
   std::int64_t anchor_block_ = 0;  // a block, and when it begins to play
   Session::Clock::time_point anchor_time_{};
 };
