@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/pipeline/cores.hpp"
 
 namespace prostm::app {
 namespace {
@@ -35,12 +36,12 @@ void work(const std::atomic<bool>& works, const std::atomic<bool>& ends) {
 /// The child: each byte from the pipe says whether to work; the pipe's end is its own.
 [[noreturn]] void serve(int pipe) {
   // its parent ends it, after the results of a Ctrl-C are written
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM})
+    std::signal(signal, SIG_IGN);
   std::atomic<bool> works{false}, ends{false};
   {
     std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
-      threads.emplace_back([&] { work(works, ends); });
+    for (int i = 0; i < usable_cores(); ++i) threads.emplace_back([&] { work(works, ends); });
     char order = 0;
     for (;;) {
       const ssize_t count = read(pipe, &order, 1);

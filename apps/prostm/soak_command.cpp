@@ -11,6 +11,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/device/realtime_limits.hpp"
+#include "prostm/pipeline/cores.hpp"
 #include "prostm/pipeline/soak_log.hpp"
 #include "run_summary.hpp"
 #include "view.hpp"
@@ -219,7 +220,7 @@ int soak_command(const SoakOptionsGiven& given) {
   Pipeline pipeline(settings, std::move(hands), mute);
   if (view) view->serve(pipeline, out);
 
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int cores = usable_cores();
   SoakLog log(options.seconds, given.load, cores);
   SoakObserver observer(log, pipeline, settings, options.seconds, load.get(), view.get(), interrupt,
                         out);

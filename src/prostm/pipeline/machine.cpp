@@ -17,6 +17,7 @@
 
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/device/thread_priority.hpp"
+#include "prostm/pipeline/cores.hpp"
 
 namespace prostm {
 namespace {
@@ -44,7 +45,7 @@ Machine look_at_machine(double seconds) {
   constexpr std::chrono::milliseconds kSleep{1};
   Machine machine;
   machine.cpu = cpu_model();
-  machine.cores = static_cast<int>(std::thread::hardware_concurrency());
+  machine.cores = usable_cores();
   machine.vectors = vector_target();
   Distribution late;
   std::jthread sleeper([&] {

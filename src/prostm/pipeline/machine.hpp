@@ -10,7 +10,7 @@ namespace prostm {
 
 struct Machine {
   std::string cpu;                 ///< model; empty where the system does not tell
-  int cores = 0;                   ///< that this process may use
+  int cores = 0;                   ///< that this process may use, usable_cores()
   std::string vectors;             ///< instructions that the kernels use, by Highway's name
   bool realtime_priority = false;  ///< whether the array's thread gets it
   /// How late a thread like the array's wakes up from sleeping for 1 ms [s].
