@@ -7,9 +7,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
@@ -258,8 +260,19 @@ void warn(const std::string& sentence) {
   std::fprintf(stderr, "prostm: warning: %s\n", sentence.c_str());
 }
 
+namespace {
+
+/// Whether standard error is a terminal whose lines can be erased.
+bool can_erase_lines() {
+  const char* const kind = std::getenv("TERM");
+  return isatty(STDERR_FILENO) != 0 && kind != nullptr && *kind != '\0' &&
+         std::string_view(kind) != "dumb";
+}
+
+}  // namespace
+
 void Progress::show(double done, double all, const char* unit) {
-  if (isatty(STDERR_FILENO) == 0) return;
+  if (!can_erase_lines()) return;
   const double t = steady_now();
   if (t - last_ < 0.2) return;
   last_ = t;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "prostm/core/number_text.hpp"
+
 namespace prostm::app {
 namespace {
 
@@ -61,6 +63,19 @@ bool presses_on_border(const TargetField& field) {
   return 2 * pressed > border;
 }
 
+/// Whether nearly all skin carries either full pressure or none, as in a drawing. A photo has all
+/// shades between.
+bool is_drawing(const TargetField& field) {
+  constexpr double kShade = 0.1, kMostShades = 0.25;  // of the largest pressure; of the skin
+  const double largest = max_pressure(field);
+  int shades = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const double p = field.pressure[i];
+    if (field.skin[i] != 0 && p > kShade * largest && p < (1.0 - kShade) * largest) ++shades;
+  }
+  return shades <= kMostShades * skin_cells(field);
+}
+
 /// Whether the pressure is the same on all skin: a flat field then renders it without an error.
 bool is_even(const TargetField& field) {
   double least = std::numeric_limits<double>::max();
@@ -88,6 +103,9 @@ std::string picture_warning(const TargetField& field, bool invert) {
            "transparency alone, which is no skin; put it on a ground without pressure";
   }
   if (!presses_on_border(field)) return {};
+  if (!is_drawing(field))
+    return "most of the picture's border presses on the skin: brightness is pressure, so a photo "
+           "presses nearly everywhere; cut its ground out (black, or transparent for no skin)";
   return fmt::format(
       "most of the picture's border presses on the skin, so it is probably drawn {}; {}",
       invert ? "white on black" : "black on white", remedy);
@@ -153,8 +171,9 @@ std::vector<std::string> control_warnings(const Metrics& played,
       controls.begin(), controls.end(),
       [](const auto& a, const auto& b) { return a.metrics.skill_0 < b.metrics.skill_0; });
   if (best == controls.end() || best->metrics.skill_0 <= played.skill_0) return {};
-  return {fmt::format("the plan loses to the control \"{}\", skill {:.2f} against {:.2f}: {}",
-                      best->name, played.skill_0, best->metrics.skill_0,
+  const ComparedText text = compared_text(played.skill_0, best->metrics.skill_0, 2);
+  return {fmt::format("the plan loses to the control \"{}\", skill {} against {}: {}", best->name,
+                      text.value, text.bound,
                       by_felt ? "its pressure hardly resembles the field"
                               : "what is felt will hardly resemble the field")};
 }

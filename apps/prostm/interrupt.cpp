@@ -2,11 +2,25 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
 
 namespace prostm::app {
 namespace {
+
+struct NamedSignal {
+  int number;
+  const char* words;
+  bool may_be_ignored = true;
+};
+constexpr std::array<NamedSignal, 7> kSignals{{{SIGINT, "Ctrl-C (SIGINT)", false},
+                                               {SIGTERM, "SIGTERM", false},
+                                               {SIGHUP, "SIGHUP (the terminal is gone)"},
+                                               {SIGUSR1, "SIGUSR1"},
+                                               {SIGUSR2, "SIGUSR2"},
+                                               {SIGALRM, "SIGALRM"},
+                                               {SIGXCPU, "SIGXCPU (the limit of processor time)"}}};
 
 std::atomic<int> interrupt{0};  // the signal's number; set by the handler alone
 std::atomic<void (*)()> tidy_up{nullptr};
@@ -31,14 +45,21 @@ void on_fault(int signal) {
 }  // namespace
 
 Interrupt::Interrupt() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  for (const NamedSignal& one : kSignals) {
+    const bool was_ignored = std::signal(one.number, on_signal) == SIG_IGN;
+    if (was_ignored && one.may_be_ignored) std::signal(one.number, SIG_IGN);
+  }
   std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool Interrupt::requested() const {
   return interrupt.load() != 0;
+}
+
+std::string Interrupt::cause() const {
+  for (const NamedSignal& one : kSignals)
+    if (one.number == interrupt.load()) return one.words;
+  return {};
 }
 
 int Interrupt::status() const {

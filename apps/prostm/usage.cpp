@@ -26,6 +26,24 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
+/// Whether a help text lists a word as a value: "usx (default), autd3, or an array file".
+bool lists(const std::string& help, const std::string& word) {
+  const std::size_t at = help.find(word);
+  if (at == help.npos) return false;
+  const std::string before = help.substr(0, at), after = help.substr(at + word.size());
+  return (before.empty() || before.ends_with(", ") || before.ends_with("or ")) &&
+         (after.empty() || after.starts_with(",") || after.starts_with(" ("));
+}
+
+/// '; did you mean "--array autd3"?' for a word that one option alone takes as its value.
+std::string did_you_mean_value(const std::string& word, const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    if (lists(option->get_description(), word) && !option->get_lnames().empty())
+      names.push_back(option->get_lnames().front());
+  return names.size() == 1 ? fmt::format("; did you mean \"--{} {}\"?", names.front(), word) : "";
+}
+
 std::string unknown_command(const CLI::App& program, const std::string& name) {
   return fmt::format("there is no command \"{}\"{}", shown_name(name),
                      did_you_mean(name, command_names(program)));
@@ -57,8 +75,10 @@ std::string about_extras(const CLI::App& command, const std::string& name,
   if (!is_option && !inner.empty())
     return fmt::format("{} has no command \"{}\"{}", name, shown_name(extra),
                        did_you_mean(extra, inner));
+  std::string hint = did_you_mean(is_option ? extra : "--" + extra, known);
+  if (hint.empty() && !is_option) hint = did_you_mean_value(extra, command);
   return fmt::format("{} {} \"{}\"{}", name, is_option ? "has no option" : "does not expect",
-                     shown_name(extra), did_you_mean(is_option ? extra : "--" + extra, known));
+                     shown_name(extra), hint);
 }
 
 /// The kind of value that an option takes, for one that it cannot be.

@@ -59,6 +59,15 @@ def test_a_verdict_comes_before_the_numbers(prostm, tmp_path):
     assert f"this even field with an error (RMSE) of {plan['metrics']['rmse']:.2f} of its pressure" in lines[1]
 
 
+def test_a_photo_is_no_drawing(prostm, tmp_path):
+    y, x = np.mgrid[0:40, 0:40] / 39.0
+    photo = np.uint8(90 + 60 * np.sin(5 * x + 2 * y) + 50 * np.cos(3 * x * y) + 40 * y)
+    write_grey_png(tmp_path / "photo.png", photo)
+    lines, _ = planned(prostm, "photo.png", "--width-mm", "120")
+    told = " ".join(warnings_in(lines))
+    assert "a photo presses nearly everywhere" in told and "--invert" not in told
+
+
 def test_ink_on_white_paper(prostm, tmp_path):
     write_grey_png(tmp_path / "ink.png", drawing())
     lines, plan = planned(prostm, "ink.png", "--width-mm", "120")

@@ -183,7 +183,8 @@ std::vector<Quantity<Metrics>> columns_of(const std::vector<TableRow>& rows) {
   return columns;
 }
 
-/// One row; where a control does not lose to `own`, in the colour of a warning.
+/// One row; where a control is better than `own`, as far as the printed digits show, in the colour
+/// of a warning.
 void draw_row(Canvas& canvas, const TableRow& row, const std::vector<Quantity<Metrics>>& columns,
               const Metrics& own, double y) {
   const bool bold = !row.is_control;
@@ -191,7 +192,9 @@ void draw_row(Canvas& canvas, const TableRow& row, const std::vector<Quantity<Me
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const double value = value_of(columns[c], *row.metrics), best = value_of(columns[c], own);
     const bool known = row.is_control && std::isfinite(value) && std::isfinite(best);
-    const bool wins = known && (columns[c].better == Better::Less ? value < best : value > best);
+    const bool better = columns[c].better == Better::Less ? value < best : value > best;
+    const bool wins =
+        known && better && figure::number_text(value, 3) != figure::number_text(best, 3);
     canvas.text(Vec2(kFirstColumn + kColumnStep * (static_cast<double>(c) + 0.5), y),
                 std::isfinite(value) ? figure::number_text(value, 3) : "–",
                 {.size = 12.0,
