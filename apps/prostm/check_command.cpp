@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "common.hpp"
@@ -8,6 +11,7 @@
 #include "prostm/io/quantity_json.hpp"
 #include "prostm/pipeline/machine.hpp"
 #include "prostm/pipeline/machine_check.hpp"
+#include "prostm/pipeline/scene.hpp"
 
 namespace prostm::app {
 namespace {
@@ -57,8 +61,9 @@ class Watch final : public RunObserver {
   RunSummary summary_;  // as it is at best, at the end
 };
 
-Trial make_trial(const CheckedSetup& setup, double seconds, const Interrupt& interrupt) {
-  PipelineSettings settings = make_settings({}, {}, true);
+Trial make_trial(const CheckedSetup& setup, const std::optional<std::string>& scene, double seconds,
+                 const Interrupt& interrupt) {
+  PipelineSettings settings = make_settings({}, scene, true);
   settings.scripted_hand.still = true;  // always there
   settings.fluid.cells = setup.cells;
   settings.plan.preset = setup.preset;
@@ -75,18 +80,20 @@ Trial make_trial(const CheckedSetup& setup, double seconds, const Interrupt& int
 }
 
 /// Trials from the defaults to the cheapest setup, until one holds or the time is over.
-std::vector<Trial> make_trials(std::FILE* out, const StageTimer& since_start,
+std::vector<Trial> make_trials(std::FILE* out, const std::optional<std::string>& scene,
+                               std::span<const CheckedSetup> setups, const StageTimer& since_start,
                                const Interrupt& interrupt) {
   std::vector<Trial> trials;
-  const auto setups = checked_setups();
   for (std::size_t i = 0; i < setups.size(); ++i) {
     const double left = kAll - since_start.seconds();
     const double seconds =
         std::clamp(left / static_cast<double>(setups.size() - i), kShortest, kLongest);
     if (seconds > left) break;
-    Trial trial = make_trial(setups[i], seconds, interrupt);
+    Trial trial = make_trial(setups[i], scene, seconds, interrupt);
     if (interrupt.requested()) break;
-    fmt::print(out, "{}: {}\n", options_of(setups[i]), trial.verdict.sentences.front());
+    fmt::print(out, "{}: {}, {}{}\n", options_of(setups[i]), trial.holds() ? "held" : "not held",
+               rates_text(trial.summary, {}),
+               samples_held(trial.summary) ? "" : ", and the array missed blocks");
     std::fflush(out);
     trials.push_back(std::move(trial));
     if (trials.back().holds()) break;
@@ -95,7 +102,7 @@ std::vector<Trial> make_trials(std::FILE* out, const StageTimer& since_start,
 }
 
 void print_machine(std::FILE* out, const Machine& m) {
-  fmt::print(out, "{} cores of {}; vectors: {}\n", m.cores,
+  fmt::print(out, "{} core{} of {}; vectors: {}\n", m.cores, m.cores == 1 ? "" : "s",
              m.cpu.empty() ? "an unknown processor" : m.cpu, m.vectors);
   fmt::print(
       out, "real-time priority for the array's thread: {}\n",
@@ -120,15 +127,21 @@ nlohmann::ordered_json trial_json(const Trial& trial) {
           {"plan_ms", to_json(s.plan, 1e3)}};
 }
 
+nlohmann::ordered_json setup_json(const std::optional<CheckedSetup>& setup) {
+  if (!setup) return nullptr;
+  return {{"grid", setup->cells}, {"preset", name_of(setup->preset)}};
+}
+
 nlohmann::ordered_json check_json(const Machine& m, const std::vector<Trial>& trials,
                                   const MachineAnswer& answer) {
-  nlohmann::ordered_json use = nullptr;
-  if (answer.use) use = {{"grid", answer.use->cells}, {"preset", name_of(answer.use->preset)}};
+  nlohmann::ordered_json scenes = nlohmann::ordered_json::object();
+  for (const SceneAnswer& of : answer.scenes) scenes[of.scene] = setup_json(of.use);
   nlohmann::ordered_json tried = nlohmann::ordered_json::array();
   for (const Trial& trial : trials) tried.push_back(trial_json(trial));
   return {{"format", "prostm-check/1"},
           {"defaults_hold", answer.defaults_hold},
-          {"use", use},
+          {"use", setup_json(answer.use)},
+          {"scenes", scenes},
           {"sentences", answer.sentences},
           {"cpu", m.cpu},
           {"cores", m.cores},
@@ -144,14 +157,18 @@ int check_command(const CheckOptionsGiven& given) {
   const StageTimer since_start;
   const Interrupt interrupt;
   std::FILE* out = prose(given.json);
+  const std::vector<std::string> scenes =
+      given.scene ? std::vector{std::string(scene_from_name(*given.scene).name)}
+                  : stimulus_scenes();
+  const std::vector<CheckedSetup> setups = checked_setups(scenes);
   const Machine machine = look_at_machine(kSleeps);
   print_machine(out, machine);
-  const std::vector<Trial> trials = make_trials(out, since_start, interrupt);
+  const std::vector<Trial> trials = make_trials(out, given.scene, setups, since_start, interrupt);
   if (interrupt.requested()) {
     fmt::print(out, "Stopped before the answer was known.\n");
     return interrupt.status();
   }
-  const MachineAnswer answer = answer_of(trials);
+  const MachineAnswer answer = answer_of(trials, scenes);
   for (const std::string& sentence : answer.sentences) fmt::print(out, "{}\n", sentence);
   write_json(given.json, check_json(machine, trials, answer));
   say_written(out, given.json);

@@ -276,6 +276,7 @@ void add_check(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand(
       "check", "whether this machine keeps real time, and with which options; takes 20 s at most");
   auto o = std::make_shared<CheckOptionsGiven>();
+  add_name(*command, "--scene", o->scene, "scene to check for; default: all that have a stimulus");
   add_json(*command, o->files, o->json);
   command->footer("Example:\n  prostm check");
   command->callback([o, &work] { work = {&o->files, [o] { return check_command(*o); }}; });

@@ -120,6 +120,7 @@ struct SettingsOptionsGiven {
 
 struct CheckOptionsGiven {
   Files files;
+  std::optional<std::string> scene;  ///< nothing: every scene with a stimulus
   std::string json;
 };
 

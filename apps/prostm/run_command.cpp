@@ -16,7 +16,6 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/io/recorder.hpp"
-#include "prostm/pipeline/rate_news.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/track/live/tracker_news.hpp"
 #include "run_summary.hpp"
@@ -37,7 +36,6 @@ class Observer final : public RunObserver {
       : recorder_(recorder), view_(view), picture_at_(picture_at), options_(options), out_(out) {}
 
   bool on_plan(const WorldFrame& contact, const PlanFrame& plan) override {
-    say_news_of_rates(contact, plan);
     if (recorder_ != nullptr) {
       const bool planned = plan.status == PlanStatus::Planned;
       const RecordedPlan made{plan.plan, plan.stats, plan.full_scale_pressure, plan.sigma};
@@ -70,6 +68,7 @@ class Observer final : public RunObserver {
     progress_.clear();
     report_(summary);
   }
+  void on_rates(const std::string& news) override { progress_.say(out_, news); }
   void on_abandoned_pause(double time) override {
     progress_.say(
         out_, fmt::format("No page is connected any more, so the paused run goes on, {}.",
@@ -81,7 +80,7 @@ class Observer final : public RunObserver {
     mutes_.emplace(std::move(mute), options_.mode == RunMode::RealTime);
     if (const auto help = mutes_->help()) progress_.say(out_, *help);
   }
-  /// Says what becomes of rates, and of a live tracker.
+  /// Says what becomes of the array, and of a live tracker.
   void follow(Pipeline& pipeline) { pipeline_ = &pipeline; }
   /// Sets the function to call when the run's seconds are over and it goes on.
   void on_report(std::function<void(const RunSummary&)> report) { report_ = std::move(report); }
@@ -101,12 +100,6 @@ class Observer final : public RunObserver {
   void say_whether_muted() {
     if (!mutes_) return;
     while (const auto news = mutes_->look()) progress_.say(out_, *news);
-  }
-
-  void say_news_of_rates(const WorldFrame& contact, const PlanFrame& plan) {
-    if (pipeline_ == nullptr || options_.mode != RunMode::RealTime) return;
-    if (const auto news = rate_news_.look(contact, plan, pipeline_->settings()))
-      progress_.say(out_, *news);
   }
 
   void say_news_of_tracker() {
@@ -137,7 +130,6 @@ class Observer final : public RunObserver {
   StageTimer since_start_;
   double tracker_looked_ = 0.0;  // [s]
   TrackerNews tracker_news_;
-  RateNews rate_news_;
   double away_ = std::numeric_limits<double>::infinity();
   WorldFrame contact_;
   PlanFrame plan_;
@@ -202,6 +194,8 @@ struct Ending {
     const std::optional<TrackerStatus> tracker = pipeline.world_stage().hands().tracker_status();
     const Verdict verdict = verdict_of(summary, settings, tracker);
     nlohmann::ordered_json json = summary_json(summary, settings, verdict);
+    const std::string stopped_by = summary.stopped ? observer.interrupt().cause() : "";
+    json["stopped_by"] = stopped_by.empty() ? nullptr : nlohmann::ordered_json(stopped_by);
     json["hand"] = given.hand;
     json["tracker"] = tracker_json(tracker);
     json["array"] = pipeline.device().description();
@@ -219,7 +213,7 @@ struct Ending {
     });
     attempts.add([&] { draw(summary, never_came(tracker)); });
     attempts.add([&] {
-      print_summary(out, summary, settings, verdict, tracker);
+      print_summary(out, summary, settings, verdict, tracker, stopped_by);
       say_files();
     });
     attempts.finish();

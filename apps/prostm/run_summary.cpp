@@ -64,14 +64,23 @@ void print_output(std::FILE* out, const RunSummary& s) {
                         "by the queue unless missed); queue of {} blocks at the end",
                         s.played_by.name, s.device.blocks, 1e3 * s.played_by.block_time(),
                         s.device.missed_blocks, s.device.late_blocks, s.device.queue_blocks));
+  if (s.device.lost_links > 0 || s.device.slow_blocks > 0)
+    print_row(out, "link",
+              fmt::format("lost {} times, {:.1f} s in all; {} blocks missed because it was slow",
+                          s.device.lost_links,
+                          static_cast<double>(s.device.lost_blocks) * s.played_by.block_time(),
+                          s.device.slow_blocks));
   print_levels(out, s);
   if (s.limited_samples > 0)
     print_row(out, "array", fmt::format("{} samples outside its limits", s.limited_samples));
 }
 
-void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
+void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& settings,
+                  const std::string& stopped_by) {
   fmt::print(out, "\nThe run: {}, {:.1f} s{}\n", settings.scene, s.seconds,
-             s.stopped ? ", cut short" : "");
+             !s.stopped           ? ""
+             : stopped_by.empty() ? ", cut short"
+                                  : ", cut short by " + stopped_by);
   print_row(
       out, "smoke",
       fmt::format("{} steps, {} skipped; on average the solver left {:.2g} of the divergence, and "
@@ -214,9 +223,10 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
 }
 
 void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& settings,
-                   const Verdict& verdict, const std::optional<TrackerStatus>& tracker) {
+                   const Verdict& verdict, const std::optional<TrackerStatus>& tracker,
+                   const std::string& stopped_by) {
   for (const std::string& sentence : verdict.sentences) fmt::print(out, "{}\n", sentence);
-  print_counts(out, s, settings);
+  print_counts(out, s, settings, stopped_by);
   if (tracker) print_tracker(out, *tracker);
   print_latency(out, s);
   print_stages(out, s);

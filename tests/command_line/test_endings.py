@@ -30,8 +30,9 @@ def start(program, folder, *arguments, limit=None):
         preexec_fn=prepare, restore_signals=False)
 
 
-@pytest.mark.parametrize("name, status", [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
-def test_a_signal_ends_a_run_whole(program, tmp_path, name, status):
+# batch systems warn by USR1, USR2 or ALRM before they kill, and ulimit -t by XCPU
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU"])
+def test_a_signal_ends_a_run_whole(program, tmp_path, name):
     running = start(program, tmp_path)
     part = tmp_path / "run.h5.part.h5"
     wait_for(part.exists)
@@ -39,9 +40,11 @@ def test_a_signal_ends_a_run_whole(program, tmp_path, name, status):
     wait_for(lambda: part.stat().st_size > empty)
     running.send_signal(getattr(signal, name))
     out, errors = running.communicate(timeout=60)
-    assert running.returncode == status and errors == ""
-    assert "The run: one-plume" in out
+    assert running.returncode == 128 + getattr(signal, name) and errors == ""
+    line = next(line for line in out.splitlines() if line.startswith("The run: one-plume"))
+    assert "cut short by" in line and name in line
     summary = json.loads((tmp_path / "run.json").read_text())
+    assert name in summary["stopped_by"]
     assert summary["stopped"] is True and summary["failure"] is None and summary["seconds"] < 60
     with h5py.File(tmp_path / "run.h5") as h5:
         assert json.loads(h5.attrs["summary"])["world_steps"] == summary["world_steps"]
@@ -61,13 +64,16 @@ def test_a_second_signal_ends_at_once_as_the_shell_says(program, tmp_path):
     assert running.returncode in (128 + signal.SIGTERM, 128 + signal.SIGHUP)
 
 
-def test_a_hangup_that_is_ignored_stays_ignored(program, tmp_path):
+@pytest.mark.parametrize("name", ["SIGHUP", "SIGUSR1"])
+def test_a_signal_that_is_ignored_stays_ignored(program, tmp_path, name):
+    number = getattr(signal, name)
     running = subprocess.Popen([str(program), "run", "--grid", "32", "--seconds", "2", "--json", "run.json"], cwd=tmp_path,
-                               stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+                               stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(number, signal.SIG_IGN))
     time.sleep(1.0)
-    running.send_signal(signal.SIGHUP)
+    running.send_signal(number)
     assert running.wait(timeout=60) == 0
-    assert json.loads((tmp_path / "run.json").read_text())["stopped"] is False
+    summary = json.loads((tmp_path / "run.json").read_text())
+    assert summary["stopped"] is False and summary["stopped_by"] is None
 
 
 @pytest.mark.parametrize("pace", ["--realtime", "--as-fast-as-possible", "--stepped"])

@@ -85,10 +85,11 @@ def test_a_run_that_stayed_says_at_its_end_where_its_files_are(program, tmp_path
     assert out.splitlines()[-1] == "wrote r.json" and out.count("wrote r.json") == 2
 
 
-def on_a_terminal(program, folder, *arguments):
+def on_a_terminal(program, folder, *arguments, kind="xterm"):
     """Returns what a terminal shows of a command, escape sequences included."""
     ours, theirs = pty.openpty()
-    process = subprocess.Popen([str(program), *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs)
+    process = subprocess.Popen([str(program), *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
+                               env={**os.environ, "TERM": kind})
     os.close(theirs)
     shown = b""
     try:
@@ -110,6 +111,38 @@ def test_the_progress_line_is_gone_before_anything_else_is_printed(program, tmp_
     line = next(line for line in shown.split("\n") if first_word in line)
     assert "\r\x1b[K" in line, "no progress was shown"
     assert line.split("\r\x1b[K")[-1].startswith(first_word)
+
+
+@pytest.mark.parametrize("kind", ["dumb", ""])
+def test_a_terminal_that_cannot_erase_gets_no_escape_sequences(program, tmp_path, kind):
+    shown = on_a_terminal(program, tmp_path, *SMALL, "--as-fast-as-possible", "--seconds", "3", kind=kind)
+    assert "3.0 s of the scene" in shown and "\x1b" not in shown and "running" not in shown
+
+
+def test_the_summary_begins_with_a_held_hand_without_its_stimulus(prostm, tmp_path):
+    def first(grid):
+        out = prostm("run", "--scene", "four-plumes", "--hand", "study", "--grid", str(grid), "--seconds", "8",
+                     "--as-fast-as-possible", "--json", "r.json").stdout
+        return out.splitlines()[0], json.loads((tmp_path / "r.json").read_text())
+
+    line, summary = first(32)
+    assert line.startswith("The held hand did not get the stimulus of four-plumes: 0 % of its updates passed the gate")
+    assert "--grid 32 is too coarse for this scene: use --grid 56." in line
+    assert summary["verdict"]["sentences"][0] == line and summary["held_updates"] > 60
+    # what it says helps
+    line, summary = first(56)
+    assert line.startswith("8.0 s of the scene")
+    assert summary["held_passed_updates"] >= 0.8 * summary["held_updates"]
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no affinity of processes on this system")
+def test_check_counts_the_cores_that_it_may_use(program, tmp_path):
+    one = min(os.sched_getaffinity(0))
+    running = subprocess.Popen([str(program), "check"], cwd=tmp_path, stdout=subprocess.PIPE, text=True,
+                               preexec_fn=lambda: os.sched_setaffinity(0, {one}))
+    assert running.stdout.readline().startswith("1 core of ")
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=60)
 
 
 def free_port():
@@ -220,7 +253,11 @@ def test_check_says_within_20_s_what_this_machine_holds(program, tmp_path):
     trials = check["trials"]
     assert (trials[0]["grid"], trials[0]["preset"]) == (64, "best")
     assert [trial["held"] for trial in trials[:-1]] == [False] * (len(trials) - 1)
-    assert check["use"] == ({key: trials[-1][key] for key in ("grid", "preset")} if trials[-1]["held"] else None)
+    last = trials[-1]
+    assert set(check["scenes"]) == {"one-plume", "two-plumes", "three-plumes", "four-plumes"}
+    for use in check["scenes"].values():
+        assert use is None or (last["held"] and use["grid"] <= last["grid"] and use["preset"] == last["preset"])
+    assert check["use"] in (None, check["scenes"]["four-plumes"])
     assert check["defaults_hold"] is trials[0]["held"]
     assert check["cores"] >= 1 and check["vectors"] and check["sleep_late_ms"]["n"] > 100
     for sentence in check["sentences"]:
@@ -230,7 +267,7 @@ def test_check_says_within_20_s_what_this_machine_holds(program, tmp_path):
 
 def test_check_ends_by_a_signal(program, tmp_path):
     running = start(program, tmp_path, "check", "--json", "check.json")
-    assert "cores" in running.stdout.readline()
+    assert " core" in running.stdout.readline()
     running.send_signal(signal.SIGINT)
     out, errors = running.communicate(timeout=20)
     assert running.returncode == 130 and errors == ""

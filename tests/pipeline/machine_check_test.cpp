@@ -4,22 +4,23 @@
 
 #include <gmock/gmock.h>
 
+#include <string>
 #include <vector>
 
 #include "prostm/pipeline/machine.hpp"
+#include "prostm/pipeline/scene_grids.hpp"
 
 namespace prostm {
 namespace {
 
-using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// Five seconds of the i-th setup.
-Trial trial(std::size_t i, bool holds) {
+/// Five seconds of a setup.
+Trial trial(const CheckedSetup& setup, bool holds) {
   Trial trial;
-  trial.setup = checked_setups()[i];
+  trial.setup = setup;
   RunSummary& s = trial.summary;
   s.seconds = s.took = 5.0;
   s.world_steps = holds ? 250 : 200;
@@ -33,18 +34,41 @@ Trial trial(std::size_t i, bool holds) {
   return trial;
 }
 
+/// The answer of a machine that holds what takes at most this grid and preset.
+MachineAnswer of_machine(int cells, Preset preset, const std::vector<std::string>& scenes) {
+  std::vector<Trial> trials;
+  for (const CheckedSetup& setup : checked_setups(scenes)) {
+    const bool holds = setup.cells <= cells && (setup.preset == preset || preset == Preset::Best);
+    trials.push_back(trial(setup, holds));
+    if (holds) break;
+  }
+  return answer_of(trials, scenes);
+}
+
 TEST(MachineCheck, BeginsWithTheDefaultsAndGetsCheaper) {
-  const auto setups = checked_setups();
-  const PipelineSettings defaults;
-  EXPECT_EQ(setups.front().cells, defaults.fluid.cells);
-  EXPECT_EQ(setups.front().preset, defaults.plan.preset);
-  for (std::size_t i = 1; i < setups.size(); ++i) EXPECT_LE(setups[i].cells, setups[i - 1].cells);
+  for (const auto& scenes : {stimulus_scenes(), {"four-plumes"}, {"ring"}}) {
+    const auto setups = checked_setups(scenes);
+    const PipelineSettings defaults;
+    EXPECT_EQ(setups.front().cells, defaults.fluid.cells);
+    EXPECT_EQ(setups.front().preset, defaults.plan.preset);
+    for (std::size_t i = 1; i < setups.size(); ++i) EXPECT_LE(setups[i].cells, setups[i - 1].cells);
+  }
+}
+
+TEST(MachineCheck, TriesOnlyGridsThatKeepTheStimulus) {
+  for (const std::string& scene : stimulus_scenes()) {
+    PipelineSettings settings;
+    settings.scene = scene;
+    for (const CheckedSetup& setup : checked_setups(std::vector{scene}))
+      EXPECT_EQ(grid_effect(settings, setup.cells), GridEffect::Keeps) << scene;
+  }
 }
 
 TEST(MachineCheck, TellsTheSlackOfTheDefaults) {
-  const std::vector<Trial> trials = {trial(0, true)};
-  const MachineAnswer answer = answer_of(trials);
+  const MachineAnswer answer = of_machine(64, Preset::Best, stimulus_scenes());
   EXPECT_TRUE(answer.defaults_hold);
+  ASSERT_TRUE(answer.use);
+  EXPECT_EQ(answer.use->cells, 64);
   EXPECT_THAT(
       answer.sentences,
       ElementsAre("This machine holds 50 steps and 25 plans a second with the defaults "
@@ -53,25 +77,55 @@ TEST(MachineCheck, TellsTheSlackOfTheDefaults) {
                   "99th percentile, of 20; a plan takes 2.1 and 3.0 ms, of 40."));
 }
 
-TEST(MachineCheck, TellsWhatToUseInstead) {
-  const std::vector<Trial> trials = {trial(0, false), trial(1, false), trial(2, true)};
-  const MachineAnswer answer = answer_of(trials);
+TEST(MachineCheck, TellsWhatToUseInWhichScene) {
+  const MachineAnswer answer = of_machine(48, Preset::Best, stimulus_scenes());
   EXPECT_FALSE(answer.defaults_hold);
+  EXPECT_FALSE(answer.use) << "no option is for all scenes";
+  EXPECT_THAT(
+      answer.sentences,
+      ElementsAre(
+          "This machine does not hold 50 steps and 25 plans a second with the defaults, but "
+          "it does with --grid 48 --preset best.",
+          "Use --grid 48 --preset best in one-plume, two-plumes and three-plumes, whose "
+          "stimulus it keeps.",
+          HasSubstr("No option holds the rates and keeps the stimulus in four-plumes: close"),
+          StartsWith("Slack: ")));
+  for (const SceneAnswer& of : answer.scenes) {
+    EXPECT_EQ(of.use.has_value(), of.scene != "four-plumes") << of.scene;
+  }
+}
+
+// on machines of every speed
+TEST(MachineCheck, EveryOptionKeepsTheStimulusOfItsScene) {
+  for (const int cells : {20, 32, 40, 48, 56, 64}) {
+    for (const SceneAnswer& of : of_machine(cells, Preset::Best, stimulus_scenes()).scenes) {
+      if (!of.use) continue;
+      PipelineSettings settings;
+      settings.scene = of.scene;
+      EXPECT_EQ(grid_effect(settings, of.use->cells), GridEffect::Keeps) << of.scene;
+      EXPECT_LE(of.use->cells, cells);
+    }
+  }
+}
+
+TEST(MachineCheck, AnswersForOneScene) {
+  const MachineAnswer answer = of_machine(56, Preset::Best, {"four-plumes"});
   ASSERT_TRUE(answer.use);
-  EXPECT_EQ(answer.use->cells, 48);
-  EXPECT_THAT(answer.sentences,
-              ElementsAre(AllOf(StartsWith("This machine does not hold 50 steps and 25 plans"),
-                                HasSubstr("it does with --grid 48 --preset best: use these")),
-                          StartsWith("Slack: ")));
+  EXPECT_EQ(answer.use->cells, 56);
+  EXPECT_THAT(of_machine(48, Preset::Best, {"four-plumes"}).sentences,
+              ElementsAre(HasSubstr("not even with --grid 56 --preset fast"),
+                          HasSubstr("keeps the stimulus in four-plumes")));
+  EXPECT_THAT(of_machine(40, Preset::Best, {"ring"}).sentences[1],
+              "Use --grid 40 --preset best in ring.");
 }
 
 TEST(MachineCheck, TellsThatNothingHolds) {
-  std::vector<Trial> trials;
-  for (std::size_t i = 0; i < checked_setups().size(); ++i) trials.push_back(trial(i, false));
-  const MachineAnswer answer = answer_of(trials);
+  const MachineAnswer answer = of_machine(0, Preset::Best, stimulus_scenes());
   EXPECT_FALSE(answer.use);
-  EXPECT_THAT(answer.sentences, ElementsAre(HasSubstr("not even with --grid 32 --preset fast")));
-  EXPECT_THAT(answer_of({}).sentences, ElementsAre(StartsWith("Nothing was tried")));
+  EXPECT_THAT(answer.sentences,
+              ElementsAre(HasSubstr("not even with --grid 32 --preset fast"),
+                          HasSubstr("in one-plume, two-plumes, three-plumes and four-plumes")));
+  EXPECT_THAT(answer_of({}, {}).sentences, ElementsAre(StartsWith("Nothing was tried")));
 }
 
 TEST(MachineCheck, LooksAtTheMachine) {

@@ -38,10 +38,42 @@ TEST(RateNews, TellsWhatIsMissedAndWhatToTurnDownOnce) {
   using testing::HasSubstr;
   EXPECT_THAT(told(std::vector<int>(30, 40), 24e-3),
               ElementsAre(testing::AllOf(HasSubstr("smoke 40.0 of 50 Hz, plans 20.0 of 25 Hz"),
-                                         HasSubstr("Use --grid 48"))));
+                                         HasSubstr("Use --grid 48, which keeps"))));
   EXPECT_THAT(told(std::vector<int>(30, 40), 7e-3, 39e-3),
               ElementsAre(HasSubstr("Use --preset fast.")));
-  EXPECT_THAT(told(std::vector<int>(30, 40)), ElementsAre(HasSubstr("Close what else runs")));
+  EXPECT_THAT(told(std::vector<int>(30, 40)), ElementsAre(HasSubstr("Close other programs")));
+}
+
+// seconds in which the machine is slow and seconds in which it is slower
+TEST(RateNews, NamesOneOptionInARun) {
+  RateNews news;
+  std::vector<std::string> all;
+  WorldFrame contact;
+  PlanFrame plan;
+  PipelineSettings settings;
+  const auto run_for = [&](double seconds, int rate, double step_time) {
+    contact.world_time = step_time;
+    const double begin = contact.due;
+    while (contact.due < begin + seconds) {
+      contact.due += 1.0 / rate;
+      if (++contact.step % 2 != 0) continue;
+      ++plan.id;
+      if (const auto sentence = news.look(contact, plan, settings)) all.push_back(*sentence);
+    }
+  };
+  for (const double step_time : {24e-3, 90e-3, 24e-3}) {
+    run_for(12.0, 40, step_time);
+    EXPECT_EQ(news.advice().cells, 48);
+    run_for(12.0, 50, 9e-3);
+    EXPECT_EQ(news.advice().kind, AdviceKind::None);
+  }
+  ASSERT_EQ(all.size(), 6U);
+  for (const std::size_t i : {0U, 2U, 4U}) EXPECT_THAT(all[i], testing::HasSubstr("se --grid 48"));
+  // what was advised is done
+  run_for(12.0, 40, 24e-3);
+  settings.fluid.cells = 48;
+  run_for(12.0, 40, 24e-3);
+  EXPECT_THAT(all.back(), testing::HasSubstr("Use --grid 32"));
 }
 
 TEST(RateNews, TellsThatTheyAreHeldAgain) {

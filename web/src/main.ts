@@ -150,7 +150,7 @@ function panels(frame: Frame, now: number): void {
   gate.show(frame, now);
   transport.frame(frame);
   showNoHand(frame, connection.state);
-  turnDown.show(missed, missed === "" ? null : rates.offer(connection.state!.rates, connection.state!.controls));
+  turnDown.show(missed, missed === "" ? null : connection.state!.rates.advice);
   address.set({ eye: view.eye.place });
   pointer.update(false);
 }

@@ -51,10 +51,16 @@ export interface Transport {
   hand_page: number | null; // the page that holds the page's hand
   page_hand: "free" | "held" | "late" | "hidden";
 }
+/// Advice of the program where the rates are missed; its effect on rates and stimulus is known there.
+export interface Advice {
+  sentence: string;
+  set: null | { id: string; value: Value; label: string }; // a control
+}
 /// The rates that the settings ask for.
 export interface Rates {
   world_hz: number;
   plan_hz: number;
+  advice: Advice | null;
 }
 export interface Tracker {
   connected: boolean;
@@ -136,8 +142,15 @@ function isTransport(x: unknown): boolean {
   return x.recording === null || (isObject(x.recording) && Number.isFinite(x.recording.length_s));
 }
 
+function isAdvice(x: unknown): boolean {
+  if (!isObject(x) || !isText(x.sentence)) return false;
+  return x.set === null || (isObject(x.set) && isText(x.set.id) && isText(x.set.label));
+}
+
 function isRates(x: unknown): boolean {
-  return isObject(x) && [x.world_hz, x.plan_hz].every((v) => typeof v === "number" && v > 0);
+  if (!isObject(x) || ![x.world_hz, x.plan_hz].every((v) => typeof v === "number" && v > 0)) return false;
+  x.advice ??= null;
+  return x.advice === null || isAdvice(x.advice);
 }
 
 function isCalibration(x: unknown): boolean {

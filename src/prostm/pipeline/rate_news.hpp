@@ -1,9 +1,10 @@
 #pragma once
-/// The news of a run's rates for those who watch its terminal, each change once.
+/// The news of a run's rates for those who watch it, each change once.
 
 #include <optional>
 #include <string>
 
+#include "prostm/pipeline/advice.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm {
@@ -17,6 +18,10 @@ class RateNews {
   std::optional<std::string> look(const WorldFrame& contact, const PlanFrame& plan,
                                   const PipelineSettings& settings);
 
+  /// Last advice; None while the rates are held.
+  const Advice& advice() const { return advice_; }
+  const Adviser& adviser() const { return adviser_; }
+
   static constexpr double kOver = 5.0;   ///< over which rates are taken [s]
   static constexpr double kHeld = 0.98;  ///< share of a rate that counts as kept
 
@@ -29,6 +34,8 @@ class RateNews {
   };
 
   std::optional<Span> span_;
+  Adviser adviser_;
+  Advice advice_;
   bool missed_ = false;
 };
 

@@ -8,6 +8,7 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/pipeline/detail/run_sides.hpp"
 #include "prostm/pipeline/detail/steering.hpp"
+#include "prostm/pipeline/rate_news.hpp"
 
 namespace prostm {
 namespace {
@@ -90,6 +91,10 @@ class Run {
     progress(shared_.run_time.load(std::memory_order_relaxed));
   }
   void observe(const WorldFrame& contact, const PlanFrame& plan) {
+    if (pace_.realtime) {
+      const auto news = rates_.look(contact, plan, pipeline_.settings());
+      if (news) observer_.on_rates(*news);
+    }
     if (!observer_.on_plan(contact, plan)) shared_.end.stop();
   }
   void progress(double time) {
@@ -112,7 +117,8 @@ class Run {
   PlanSide plans_;
   std::optional<Steering> steering_;
   std::shared_ptr<const PageHand> page_hand_;  // null without pages
-  std::optional<RunSummary> summary_;          // once the run's seconds are over
+  RateNews rates_;
+  std::optional<RunSummary> summary_;  // once the run's seconds are over
   bool summary_waits_ = false, watched_ = false;
   double alone_since_ = 0.0;  // while paused: when a page was last seen [s of the clock]
 };
@@ -184,7 +190,7 @@ void Run::look() {
   steering_->show(shared_.run_time.load(std::memory_order_relaxed),
                   shared_.steps.load(std::memory_order_relaxed),
                   shared_.plans.load(std::memory_order_relaxed),
-                  steady_now() - planned_at > stall_time_);
+                  steady_now() - planned_at > stall_time_, rates_.advice());
   if (steering_->pending()) shared_.halt = true;
   const bool watched = steering_->snapshots().watched();
   if (!steering_->playing()) keep_the_pause(watched);
@@ -219,6 +225,7 @@ RunSummary Run::summary() {
       pace_.realtime ? shared_.run_time.load() : static_cast<double>(s.world_steps) * pace_.dt;
   if (pace_.realtime) s.skipped_updates = world_.published() - s.plans - s.empty_updates;
   s.unobserved = plans_.unobserved();
+  s.adviser = rates_.adviser();
   s.full_scale_pressure = pipeline_.plans().full_scale_pressure();
   if (page_hand_) {
     const PageHandReport hand = page_hand_->report();

@@ -10,6 +10,7 @@
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/names.hpp"
 #include "prostm/core/quantity.hpp"
+#include "prostm/pipeline/advice.hpp"
 #include "prostm/pipeline/latency.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
@@ -59,7 +60,13 @@ struct RunSummary {
   /// Updates whose target is a stimulus, and those of them that passed its gate.
   std::int64_t judged_updates = 0, passed_updates = 0;
   std::int64_t late_page_hands = 0, hidden_page_hands = 0;  ///< PageHandReport
-  ContactStats contact_stats;                               ///< of all updates
+  /// Judged updates of a hand that had been held well for kSettled, which the air needs
+  /// to come up to it; those of them that passed; and the most frequent fault of the others.
+  std::int64_t held_updates = 0, held_passed_updates = 0;
+  GateProblem held_problem = GateProblem::None;
+  static constexpr double kSettled = 5.0;  ///< [s]
+  Adviser adviser;                         ///< options that were advised during the run
+  ContactStats contact_stats;              ///< of all updates
   DeviceInfo played_by;
   DeviceStats device;
   EmitStats emit;
@@ -96,6 +103,8 @@ class RunObserver {
   virtual bool on_plan(const WorldFrame& contact, const PlanFrame& plan) = 0;
   /// Now and then, with the run time so far [s]. @return false to stop the run.
   virtual bool on_progress(double time) = 0;
+  /// In real time: the rates are not held and what to do, or they are held again, in a sentence.
+  virtual void on_rates(const std::string& news) { static_cast<void>(news); }
   /// The run's seconds are over, and it goes on (RunOptions::stay).
   virtual void on_summary(const RunSummary& summary) { static_cast<void>(summary); }
   /// Nobody looks any more at a run that is paused, and it goes on from this run time [s].

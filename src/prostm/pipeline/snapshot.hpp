@@ -12,6 +12,7 @@
 
 #include "prostm/core/latest.hpp"
 #include "prostm/core/spsc_ring.hpp"
+#include "prostm/pipeline/advice.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/track/live/page_hand.hpp"
@@ -64,6 +65,7 @@ struct RunSnapshot {
   double world_rate = 0.0, plan_rate = 0.0;  ///< over the last second [Hz]
   bool paused = false, fading = false;
   PageHandReport page_hand;
+  Advice advice;       ///< while the rates are not held
   DeviceStats device;  ///< since the start of the run, as are the next
   EmitStats emit;
   double full_scale_pressure = 0.0;  ///< [Pa]

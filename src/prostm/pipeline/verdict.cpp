@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "prostm/core/number_text.hpp"
+#include "prostm/pipeline/scene_grids.hpp"
 
 namespace prostm {
 namespace {
@@ -14,17 +19,12 @@ constexpr std::size_t kMostSentences = 4;  // that a newcomer reads in ten secon
 constexpr double kLeastDone = 0.99;
 // A missed block is a gap: of blocks of a millisecond, one each second.
 constexpr double kMostMissed = 1e-3;
-// Share of the time there is. The rest is for other stages, for the threads to wake up, and for
-// other programs.
-constexpr double kBusy = 0.8;
-constexpr double kComfortable = 0.6;  // the same for a setting that is recommended
-constexpr int kLeastCells = 32, kCellsStep = 16;
-
 // Shares above which something is told: well above what a cycle of the scripted hand makes in the
 // scenes, at most 16 % of the samples at full scale, none limited or capped, 7 % of the joints
 // outside the box as it comes in, 11 % of its skin steep.
 constexpr double kMostSaturated = 0.25, kMostLimited = 0.1, kMostOutside = 0.25, kMostSteep = 0.5,
                  kMostCapped = 0.01;
+constexpr std::int64_t kLeastHeld = 25;  // updates of a held hand from which it is judged
 constexpr double kComesIn =
     10.0;  // a hand that comes in is outside; a short run sees little else [s]
 // Share of a tracker's frames.
@@ -38,56 +38,68 @@ std::int64_t slots(const RunSummary& s) {
   return s.world_steps + s.skipped_world_steps;
 }
 
-/// The largest grid below `cells` whose step, now `time` [s], fits well into `due` [s]; 0 where
-/// none does. The work grows with the number of cells.
-int smaller_grid(int cells, double time, double due) {
-  for (int n = cells - kCellsStep; n >= kLeastCells; n -= kCellsStep) {
-    const double edge = static_cast<double>(n) / cells;
-    if (time * edge * edge * edge <= kComfortable * due) return n;
-  }
-  return 0;
-}
-
-/// The stage that has too much to do.
-enum class Busy : std::uint8_t { Step, Plan, Neither };
-Busy busy(double step, double plan, const PipelineSettings& settings) {
-  const double due = 1.0 / settings.world_rate;
-  if (step > kBusy * due) return Busy::Step;
-  return plan > kBusy * due * settings.steps_per_plan() ? Busy::Plan : Busy::Neither;
-}
-
 /// Sentences on the most likely reason why steps or plans are missing, and what to do. @pre a step
 /// was made.
 std::string reason(const RunSummary& s, const PipelineSettings& settings) {
   const double due = 1.0 / settings.world_rate;
   const double steps_per_plan = settings.steps_per_plan();
   // what one thread does one after the other
-  const double step = s.track.p50 + s.hand.p50 + s.world.p50 + s.contact.p50 / steps_per_plan,
-               plan = s.plan.p50 + s.lift.p50;
-  const std::string what_to_do = remedy(step, plan, settings);
-  switch (busy(step, plan, settings)) {
+  const WorkTime work{s.track.p50 + s.hand.p50 + s.world.p50 + s.contact.p50 / steps_per_plan,
+                      s.plan.p50 + s.lift.p50};
+  Adviser adviser = s.adviser;  // an option that was advised during the run stays
+  const Advice advice = adviser.advise(work, settings);
+  const std::string what_to_do = sentence(advice, settings);
+  switch (advice.cause) {
     case Busy::Step:
-      return fmt::format(
-          "Half of the smoke's steps took longer than {:.1f} ms, and each has {:.0f} ms. {}",
-          1e3 * step, 1e3 * due, what_to_do);
+      return fmt::format("A step takes {:.1f} ms (median) and has {:.0f} ms. {}", 1e3 * work.step,
+                         1e3 * due, what_to_do);
     case Busy::Plan:
-      return fmt::format("Half of the plans took longer than {:.1f} ms, and each has {:.0f} ms. {}",
-                         1e3 * plan, 1e3 * due * steps_per_plan, what_to_do);
+      return fmt::format("A plan takes {:.1f} ms (median) and has {:.0f} ms. {}", 1e3 * work.plan,
+                         1e3 * due * steps_per_plan, what_to_do);
     case Busy::Neither:
       break;
   }
   return fmt::format(
-      "Each of the smoke's steps has {1:.0f} ms; half took less than {0:.1f} ms, but some up to "
-      "{2:.0f} ms: another program takes the processor now and then. {3}",
-      1e3 * step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max), what_to_do);
+      "A step takes {:.1f} ms (median) of its {:.0f} ms, but up to {:.0f} ms: another program "
+      "takes the processor now and then. {}",
+      1e3 * work.step, 1e3 * due, 1e3 * (s.track.max + s.hand.max + s.world.max), what_to_do);
+}
+
+/// "twice", "3 times".
+std::string times_text(std::int64_t n) {
+  return n == 1 ? "once" : n == 2 ? "twice" : fmt::format("{} times", n);
+}
+
+/// Why blocks were missed, by measured cause, the most frequent first.
+std::string gap_causes(const RunSummary& s) {
+  const DeviceStats& d = s.device;
+  const std::int64_t late = d.missed_blocks - d.lost_blocks - d.slow_blocks;
+  std::vector<std::pair<std::int64_t, std::string>> causes;
+  if (d.lost_blocks > 0)
+    causes.emplace_back(
+        d.lost_blocks,
+        fmt::format("its link was lost {} ({:.1f} s without a link)", times_text(d.lost_links),
+                    static_cast<double>(d.lost_blocks) * s.played_by.block_time()));
+  if (d.slow_blocks > 0)
+    causes.emplace_back(d.slow_blocks,
+                        fmt::format("its link was too slow for {} of {} blocks (use longer blocks, "
+                                    "or a faster link)",
+                                    d.slow_blocks, d.blocks));
+  if (late > 0)
+    causes.emplace_back(
+        late, fmt::format("its thread woke too late for {} of {} blocks (allow it real-time "
+                          "priority, ulimit -r 10, or close other programs)",
+                          late, d.blocks));
+  std::ranges::stable_sort(causes, std::greater{}, [](const auto& cause) { return cause.first; });
+  std::string all;
+  for (const auto& [count, text] : causes) all += (all.empty() ? "" : "; ") + text;
+  return all;
 }
 
 void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict& out) {
-  const HeldRate world = world_rate(s, settings), plans = plan_rate(s, settings);
-  const bool in_time = world.held() && plans.held();
+  const bool in_time = world_rate(s, settings).held() && plan_rate(s, settings).held();
   out.held = in_time && samples_held(s);
-  const std::string rates = fmt::format("smoke {:.1f} of {:.0f} Hz, plans {:.1f} of {:.0f} Hz",
-                                        world.done, world.due, plans.done, plans.due);
+  const std::string rates = rates_text(s, settings);
   const std::string missed =
       fmt::format("{} of {} blocks", s.device.missed_blocks, s.device.blocks);
   if (*out.held) {
@@ -102,15 +114,46 @@ void judge_rates(const RunSummary& s, const PipelineSettings& settings, Verdict&
         fmt::format("The rates were not held: {}. {}", rates, reason(s, settings)));
   }
   if (samples_held(s)) return;
-  const double silent = s.seconds * share(s.device.missed_blocks, s.device.blocks);
   out.sentences.push_back(fmt::format(
-      "{} array fell silent for {:.0f} ms in all, which is felt as gaps: {} too late for {}. Allow "
-      "it real-time priority (ulimit -r 10), or close what else runs.",
+      "{} array was silent for {:.0f} ms in all, which is felt as gaps: {}.",
       in_time ? fmt::format("Smoke and plans kept their rates ({}), but the", rates) : "The",
-      1e3 * silent,
-      settings.device == "sim" ? "its thread woke"
-                               : "its thread woke, or its link passed blocks on,",
-      missed));
+      1e3 * static_cast<double>(s.device.missed_blocks) * s.played_by.block_time(), gap_causes(s)));
+}
+
+/// The gate's fault of the fields of a held hand, in words.
+std::string fault_text(GateProblem problem) {
+  switch (problem) {
+    case GateProblem::Maxima:
+      return "another number of maxima";
+    case GateProblem::Balance:
+      return "maxima that are not alike";
+    case GateProblem::Saddle:
+      return "maxima that run into each other";
+    case GateProblem::Area:
+      return "another area";
+    case GateProblem::Force:
+      return "another force";
+    default:
+      return "faults that change";
+  }
+}
+
+/// Reports a hand that was held well for long enough and did not get the stimulus.
+void judge_stimulus(const RunSummary& s, const PipelineSettings& settings,
+                    std::vector<std::string>& out) {
+  const double passed = share(s.held_passed_updates, s.held_updates);
+  if (s.held_updates < kLeastHeld || passed >= kKeptShare) return;
+  const int cells = settings.fluid.cells;
+  const bool coarse = grid_effect(settings, cells) == GridEffect::Loses;
+  const ComparedText text = compared_text(100.0 * passed, 100.0 * kKeptShare, 0);
+  out.push_back(fmt::format(
+      "The held hand did not get the stimulus of {}: {} % of its updates passed the gate (at least "
+      "{} %), mostly for {}. {}",
+      settings.scene, text.value, text.bound, fault_text(s.held_problem),
+      coarse ? fmt::format("--grid {} is too coarse for this scene: use --grid {}.", cells,
+                           finer_grid(settings.scene, cells))
+             : "Put the jets under the hand (place = \"hand\" in [jets]), and hold it flat "
+               "(docs/hands.md)."));
 }
 
 void judge_pace(const RunSummary& s, Verdict& out) {
@@ -237,25 +280,14 @@ void judge_safety(const RunSummary& s, std::vector<std::string>& out) {
 
 }  // namespace
 
-std::string remedy(double step, double plan, const PipelineSettings& settings) {
-  switch (busy(step, plan, settings)) {
-    case Busy::Step: {
-      const int grid = smaller_grid(settings.fluid.cells, step, 1.0 / settings.world_rate);
-      return grid > 0 ? fmt::format("Use --grid {}, or close what else runs.", grid)
-                      : "Close what else runs.";
-    }
-    case Busy::Plan: {
-      const bool slow = settings.method == Method::ProStm && settings.plan.preset != Preset::Fast;
-      return slow ? "Use --preset fast." : "Use fewer --paths.";
-    }
-    case Busy::Neither:
-      break;
-  }
-  return "Close what else runs, or try a smaller --grid.";
-}
-
 bool HeldRate::held() const {
   return done >= kLeastDone * due;
+}
+
+std::string rates_text(const RunSummary& s, const PipelineSettings& settings) {
+  const HeldRate world = world_rate(s, settings), plans = plan_rate(s, settings);
+  return fmt::format("smoke {:.1f} of {:.0f} Hz, plans {:.1f} of {:.0f} Hz", world.done, world.due,
+                     plans.done, plans.due);
 }
 
 HeldRate world_rate(const RunSummary& s, const PipelineSettings& settings) {
@@ -282,6 +314,8 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
     verdict.sentences.emplace_back("The run ended before its first step.");
     return verdict;
   }
+  judge_stimulus(s, settings, verdict.sentences);
+  const bool stimulus = verdict.sentences.empty();
   if (s.mode == RunMode::RealTime) {
     judge_rates(s, settings, verdict);
   } else {
@@ -296,7 +330,7 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   }
   judge_page_hand(s, unusual);
   judge_output(s, unusual);
-  if (unusual.empty() && verdict.held.value_or(true))
+  if (unusual.empty() && stimulus && verdict.held.value_or(true))
     verdict.sentences.emplace_back("Nothing was unusual.");
   const std::size_t room = kMostSentences - verdict.sentences.size();
   unusual.resize(std::min(unusual.size(), room));

@@ -12,14 +12,10 @@ namespace prostm {
 struct Verdict {
   /// Whether smoke, plans and samples kept their rates. Nothing without a clock: no rate is due.
   std::optional<bool> held;
-  /// One to four, the most important first: the rates and why they were not held, then what was
-  /// unusual, with a remedy where one is known.
+  /// One to four, the most important first: a held hand that did not get the stimulus, the rates
+  /// and why they were not held, then what was unusual, with a remedy where one is known.
   std::vector<std::string> sentences;
 };
-
-/// A sentence on what to turn down where rates are missed.
-/// @param step time of all that a step's thread does, of a plan's as well [s].
-std::string remedy(double step, double plan, const PipelineSettings& settings);
 
 /// @param settings that the run began with.  @param tracker of hands that are tracked live.
 Verdict verdict_of(const RunSummary& summary, const PipelineSettings& settings,
@@ -31,6 +27,8 @@ struct HeldRate {
   /// Whether at most one in a hundred is missing.
   bool held() const;
 };
+/// "smoke 43.5 of 50 Hz, plans 21.8 of 25 Hz".
+std::string rates_text(const RunSummary& summary, const PipelineSettings& settings);
 HeldRate world_rate(const RunSummary& summary, const PipelineSettings& settings);
 HeldRate plan_rate(const RunSummary& summary, const PipelineSettings& settings);
 

@@ -35,6 +35,7 @@ struct PipelineView::Impl {
   bool known = false;             // the run has begun
   PageHandState told_hand = PageHandState::Free;
   std::uint32_t told_holder = 0;
+  Advice told_advice;
   std::optional<CalibrationGuide> calibration;
   std::uint32_t calibrator = 0;       // the page that it listened to last, 0: that one is gone
   Pose pose_kept = Pose::Identity();  // of the tracker: when it began, or what was saved since
@@ -241,16 +242,19 @@ bool PipelineView::refresh_state(Room room, std::string& out) {
   const PageHandState hand = i.link.snapshots.run().page_hand.state;
   i.known = i.known || fresh;  // before the run begins there is nothing to tell
   const bool same_hand = hand == i.told_hand && i.hand_holder == i.told_holder;
-  if (!i.known || (!fresh && same_hand && !i.calibration_changed)) return false;
+  const Advice advice = i.link.snapshots.run().advice;
+  const bool same = same_hand && advice == i.told_advice;
+  if (!i.known || (!fresh && same && !i.calibration_changed)) return false;
   i.calibration_changed = false;
   i.told_hand = hand;
   i.told_holder = i.hand_holder;
+  i.told_advice = advice;
   const LiveState& state = i.link.control.state();
   const Json json = {
       {"type", "state"},
       {"controls", viewer::controls_json(state.settings, i.start)},
       {"transport", viewer::transport_json(state, hand, i.hand_holder)},
-      {"rates", viewer::rates_json(state.settings.pipeline)},
+      {"rates", viewer::rates_json(state.settings.pipeline, advice)},
       {"settings", viewer::changed_settings(state.settings.pipeline)},
       {"tracker", viewer::tracker_json(state.tracker)},
       {"calibration", viewer::calibration_json(i.calibration, i.calibration_saved, i.link.pose_file,

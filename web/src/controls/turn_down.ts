@@ -1,12 +1,11 @@
-/// Says that the run does not keep its rates, with a button that turns down what is too much.
+/// Says that the run does not keep its rates and what the program advises, with a button where one control does it.
 
 import { find, setText } from "../dom";
-import type { Value } from "../messages";
-import type { Offer } from "../panels/rates";
+import type { Advice, Value } from "../messages";
 
 export class TurnDown {
   private readonly button = find<HTMLButtonElement>("turn-down");
-  private offer: Offer | null = null;
+  private offer: Advice["set"] = null;
 
   constructor(set: (id: string, value: Value) => void) {
     this.button.addEventListener("click", () => {
@@ -15,11 +14,11 @@ export class TurnDown {
   }
 
   /// @param sentence why the rates are missed; "" where they are held.
-  show(sentence: string, offer: Offer | null): void {
-    this.offer = offer;
+  show(sentence: string, advice: Advice | null): void {
+    this.offer = sentence === "" ? null : advice?.set ?? null;
     find("missed").hidden = sentence === "";
-    setText(find("rates"), sentence);
-    this.button.hidden = offer === null;
-    if (offer !== null) setText(this.button, offer.label);
+    setText(find("rates"), advice === null ? sentence : `${sentence} ${advice.sentence}`);
+    this.button.hidden = this.offer === null;
+    if (this.offer !== null) setText(this.button, this.offer.label);
   }
 }

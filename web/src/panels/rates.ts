@@ -1,21 +1,13 @@
 /// Whether the run keeps its rates, and what keeps it from that, as a sentence.
 
-import type { Control, Rates, Value } from "../messages";
+import type { Rates } from "../messages";
 import { fixed } from "../text";
 import { numberOf, type Frame } from "../wire";
 
 const kHeld = 0.98; // share of a rate that counts as kept
 const kOver = 3; // [s] over which rates and times are averaged
 const kFull = 0.85; // share of the time there is, above which the work itself is too much
-const kComfortable = 0.6; // share of the time there is that a smaller grid may take
 const kSure = 2; // [s] for which they must be missed before anything is said
-
-/// A setting that would help.
-export interface Offer {
-  id: string; // of the control
-  value: Value;
-  label: string; // of a button
-}
 
 interface Sample {
   time: number; // [s]
@@ -107,23 +99,5 @@ export class RateWatch {
     const { sum, room } = this.work(rates)[0]!;
     const others = drawing ? "this page's picture and other work have" : "other work has";
     return `${others} the processor (the stages of a step take ${fixed(sum, 0)} of ${fixed(room, 0)} ms)`;
-  }
-
-  /// Returns what to turn down while sentence() says something; null where nothing would help.
-  offer(rates: Rates, controls: Control[]): Offer | null {
-    const over = this.tooMuch(rates);
-    if (over?.name === "a plan") {
-      const preset = controls.find((c) => c.id === "preset");
-      const slow = preset?.kind === "choice" && preset.enabled && preset.value !== "fast";
-      return slow ? { id: "preset", value: "fast", label: "Use the preset Fast" } : null;
-    }
-    const grid = controls.find((c) => c.id === "grid");
-    if (grid?.kind !== "number") return null;
-    const { sum, room } = this.work(rates)[0]!;
-    // the work grows with the number of cells
-    const fits = (cells: number) => sum * (cells / grid.value) ** 3 <= kComfortable * room;
-    let cells = grid.value - grid.step;
-    while (cells > grid.min && !fits(cells)) cells -= grid.step;
-    return cells < grid.min ? null : { id: "grid", value: cells, label: `Turn the smoke's grid down to ${cells} cells` };
   }
 }

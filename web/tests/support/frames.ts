@@ -34,7 +34,7 @@ export const prediction: Control = { ...base, id: "prediction", label: "Predicti
 
 export function stateWith(controls: Control[], change: Partial<State> = {}): State {
   return {
-    type: "state", controls, rates: { world_hz: 50, plan_hz: 25 }, settings: "", tracker: null, calibration: null,
+    type: "state", controls, rates: { world_hz: 50, plan_hz: 25, advice: null }, settings: "", tracker: null, calibration: null,
     transport: { playing: true, recording: null, source: "scripted", base: "scripted", hand_page: null, page_hand: "free" }, ...change,
   };
 }

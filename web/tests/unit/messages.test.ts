@@ -9,6 +9,15 @@ describe("parseMessage", () => {
   it("takes a state, and a missing tracker or calibration as none", () => {
     expect(parseMessage(JSON.stringify(state))).toMatchObject({ tracker: null, calibration: null, controls: [control] });
   });
+  it("takes what is advised where the rates are missed", () => {
+    const advice = { sentence: "Use --grid 48.", set: { id: "grid", value: 48, label: "Turn the smoke's grid down to 48 cells" } };
+    const withAdvice = (a: unknown) => parseMessage(JSON.stringify({ ...state, rates: { ...state.rates, advice: a } }));
+    expect(withAdvice(advice)).toMatchObject({ rates: { advice } });
+    expect(withAdvice({ ...advice, set: null })).toMatchObject({ rates: { advice: { set: null } } });
+    expect(withAdvice(undefined)).toMatchObject({ rates: { advice: null } });
+    expect(withAdvice({ sentence: "Use --grid 48." })).toBeNull();
+    expect(withAdvice("Use --grid 48.")).toBeNull();
+  });
   it("takes a hello and an error", () => {
     const hello = { type: "hello", version: 1, page: 3, prostm: "0.1.0", device: "simulated usx", numbers: ["rmse"], array: { name: "usx", transducers_mm: [[0, 0, 0]] }, box_mm: { origin: [0, 0, 0], edge: 250 } };
     expect(parseMessage(JSON.stringify(hello))).toEqual(hello);

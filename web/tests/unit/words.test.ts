@@ -50,7 +50,7 @@ describe("the place in a recording", () => {
 });
 
 describe("rates that are not held", () => {
-  const rates = { world_hz: 50, plan_hz: 25 };
+  const rates = { world_hz: 50, plan_hz: 25, advice: null };
   const after = (seconds: number, numbers: Record<string, number>, drawing = false, paused = false) => {
     const watch = new RateWatch();
     let sentence = "";
@@ -68,21 +68,6 @@ describe("rates that are not held", () => {
     expect(after(10, { ...quick, world_hz: 40, plan_hz: 20, world_ms: 16.5 })).toContain("a step takes 19 of its 20 ms; the smoke alone takes 17 ms");
     expect(after(10, { ...quick, world_hz: 40, plan_hz: 20 })).toContain("because other work has the processor");
     expect(after(10, { ...quick, world_hz: 40, plan_hz: 20 }, true)).toContain("because this page's picture and other work have");
-  });
-  it("come with what to turn down", () => {
-    const offered = (numbers: Record<string, number>, controls: Control[] = [grid, preset]) => {
-      const watch = new RateWatch();
-      for (let t = 0; t < 10; t += 0.1) watch.add(frameWith({}, numbers), t);
-      return watch.offer(rates, controls);
-    };
-    const slow = { ...quick, world_hz: 43.5, plan_hz: 21.8 };
-    expect(offered({ ...slow, world_ms: 21 })).toEqual({ id: "grid", value: 48, label: "Turn the smoke's grid down to 48 cells" });
-    expect(offered({ ...slow, world_ms: 40 })?.value).toBe(32);
-    expect(offered(slow)?.value).toBe(48);
-    expect(offered({ ...slow, world_ms: 21 }, [{ ...grid, value: 32 }])).toBeNull();
-    expect(offered({ ...slow, plan_ms: 45 })).toEqual({ id: "preset", value: "fast", label: "Use the preset Fast" });
-    expect(offered({ ...slow, plan_ms: 45 }, [{ ...preset, value: "fast" }])).toBeNull();
-    expect(offered({ ...slow, plan_ms: 45 }, [{ ...preset, enabled: false }])).toBeNull();
   });
   it("are not spoken of at once, while the run is paused, and where they are held", () => {
     const slow = { ...quick, world_hz: 30, plan_hz: 15 };

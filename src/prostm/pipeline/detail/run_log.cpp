@@ -38,8 +38,7 @@ void PlanLog::add(const WorldFrame& contact, const PlanFrame& frame, double run_
   latency_.plan(contact, frame, run_start);
   plan_.add(frame.stats.total);
   lift_.add(frame.lift_time);
-  judged_ += frame.gate ? 1 : 0;
-  passed_ += frame.gate && frame.gate->pass ? 1 : 0;
+  if (frame.gate) judge(contact.due, *frame.gate);
   if (frame.status != PlanStatus::Planned) {
     ++empty_;
     return;
@@ -51,6 +50,20 @@ void PlanLog::add(const WorldFrame& contact, const PlanFrame& frame, double run_
   for (const FocalPath& path : frame.plan.paths) {
     max_path_length_ = std::max(max_path_length_, path.length);
   }
+}
+
+void PlanLog::judge(double time, const GateResult& gate) {
+  ++judged_;
+  passed_ += gate.pass ? 1 : 0;
+  if (!is_held(gate)) {
+    held_since_.reset();
+    return;
+  }
+  if (!held_since_) held_since_ = time;
+  if (time - *held_since_ < RunSummary::kSettled) return;
+  ++held_;
+  held_passed_ += gate.pass ? 1 : 0;
+  if (!gate.pass) ++held_problems_[static_cast<std::size_t>(gate.finding.problem)];
 }
 
 void PlanLog::follow(Emitter& emitter, const Device& device) {
@@ -65,6 +78,12 @@ void PlanLog::write(RunSummary& out) const {
   out.crossings = crossings_;
   out.judged_updates = judged_;
   out.passed_updates = passed_;
+  out.held_updates = held_;
+  out.held_passed_updates = held_passed_;
+  // a frame without a fault fails for those of the second before
+  const auto of_field = held_problems_.begin() + static_cast<std::ptrdiff_t>(GateProblem::Maxima);
+  const auto most = std::max_element(of_field, held_problems_.end());
+  if (*most > 0) out.held_problem = static_cast<GateProblem>(most - held_problems_.begin());
   out.max_path_length = max_path_length_;
   out.max_skin_length = max_skin_length_;
   out.plan = plan_.summary();

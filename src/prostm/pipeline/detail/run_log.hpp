@@ -1,7 +1,9 @@
 #pragma once
 /// The counters of a run's threads. Private to pipeline.
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 #include "prostm/pipeline/latency.hpp"
 #include "prostm/pipeline/runner.hpp"
@@ -43,7 +45,12 @@ class PlanLog {
   void write(RunSummary& out) const;
 
  private:
+  void judge(double time, const GateResult& gate);
+
   std::int64_t plans_ = 0, empty_ = 0, long_paths_ = 0, crossings_ = 0, judged_ = 0, passed_ = 0;
+  std::optional<double> held_since_;  // run time [s]
+  std::int64_t held_ = 0, held_passed_ = 0;
+  std::array<std::int64_t, kNames<GateProblem>.size()> held_problems_{};
   double max_path_length_ = 0.0, max_skin_length_ = 0.0;
   Distribution plan_, lift_;
   LatencyLog latency_;

@@ -118,7 +118,8 @@ void Steering::publish_state() {
   told_ = steady_now();
 }
 
-void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fading) {
+void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fading,
+                    const Advice& advice) {
   const double t = steady_now();
   if (t - shown_ < kShowPeriod) return;
   shown_ = t;
@@ -131,6 +132,7 @@ void Steering::show(double time, std::int64_t steps, std::int64_t plans, bool fa
   run.paused = !state_.playing;
   if (link_.page_hand) run.page_hand = link_.page_hand->report();
   run.fading = fading;
+  run.advice = advice;
   run.device = pipeline_.device_stats();
   run.emit = pipeline_.emit_stats();
   run.full_scale_pressure = pipeline_.plans().full_scale_pressure();

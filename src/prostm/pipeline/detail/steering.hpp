@@ -26,8 +26,8 @@ class Steering {
   Snapshots& snapshots() { return link_.snapshots; }
   /// Publishes the counters, a few dozen times a second at most. @param time run time [s].
   /// @param steps, plans of the fluid, and plan updates, so far. @param fading no plan came for a
-  /// while.
-  void show(double time, std::int64_t steps, std::int64_t plans, bool fading);
+  /// while.  @param advice while the rates are not held.
+  void show(double time, std::int64_t steps, std::int64_t plans, bool fading, const Advice& advice);
 
  private:
   void apply(const LiveSettings& wanted, const std::vector<std::uint32_t>& senders);

@@ -1,5 +1,7 @@
 #include "prostm/viewer/detail/state_json.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 namespace prostm::viewer {
@@ -49,6 +51,27 @@ Json control_json(const RunControl& control, const LiveSettings& settings,
   return json;
 }
 
+/// A button that sets a control, for pages.
+Json offer_json(const Advice& advice) {
+  switch (advice.kind) {
+    case AdviceKind::OneField:
+      return {{"id", "parts"}, {"value", false}, {"label", "Leave out both parts"}};
+    case AdviceKind::Grid:
+      return {{"id", "grid"},
+              {"value", advice.cells},
+              {"label", fmt::format("Turn the smoke's grid down to {} cells", advice.cells)}};
+    case AdviceKind::FastPreset:
+      return {{"id", "preset"}, {"value", "fast"}, {"label", "Use the preset Fast"}};
+    default:
+      return nullptr;
+  }
+}
+
+Json advice_json(const Advice& advice, const PipelineSettings& settings) {
+  if (advice.kind == AdviceKind::None) return nullptr;
+  return {{"sentence", sentence(advice, settings)}, {"set", offer_json(advice)}};
+}
+
 }  // namespace
 
 Json millimetres(const Vec3& p) {
@@ -74,9 +97,10 @@ Json transport_json(const LiveState& state, PageHandState hand, std::uint32_t ho
   return json;
 }
 
-Json rates_json(const PipelineSettings& settings) {
+Json rates_json(const PipelineSettings& settings, const Advice& advice) {
   return {{"world_hz", settings.world_rate},
-          {"plan_hz", settings.world_rate / settings.steps_per_plan()}};
+          {"plan_hz", settings.world_rate / settings.steps_per_plan()},
+          {"advice", advice_json(advice, settings)}};
 }
 
 Json tracker_json(const std::optional<TrackerStatus>& tracker) {

@@ -18,8 +18,8 @@ Json millimetres(const Vec3& p);
 Json controls_json(const LiveSettings& settings, const LiveSettings& start);
 /// @param holder the page that holds the page's hand, or 0.
 Json transport_json(const LiveState& state, PageHandState hand, std::uint32_t holder);
-/// Rates that the settings ask for.
-Json rates_json(const PipelineSettings& settings);
+/// Rates that the settings ask for. @param advice while they are not held.
+Json rates_json(const PipelineSettings& settings, const Advice& advice);
 Json tracker_json(const std::optional<TrackerStatus>& tracker);
 /// @param file that the pose is saved to. @param saved whether it has been.
 Json calibration_json(const std::optional<CalibrationGuide>& steps, bool saved,
