@@ -203,7 +203,7 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
 }
 
 void check_mode(const PipelineSettings& settings, RunMode mode) {
-  const DeviceInfo device = device_named(settings.device).kind->info(settings.device_setup());
+  const DeviceInfo device = settings.device_info();
   const std::string problem = mode_problem(device, mode);
   if (!problem.empty()) throw InputError("--device " + settings.device + problem);
 }
@@ -338,6 +338,10 @@ nlohmann::ordered_json to_json(const Summary& s, double unit) {
           {"p50", s.p50 * unit},
           {"p99", s.p99 * unit},
           {"max", s.max * unit}};
+}
+
+void print_warnings(std::FILE* out, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(out, "warning: {}\n", warning);
 }
 
 std::string thousandths(double value) {

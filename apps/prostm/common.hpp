@@ -125,6 +125,9 @@ struct MetricsRow {
 };
 void print_metrics(std::FILE* out, const std::string& heading, const std::vector<MetricsRow>& rows);
 
+/// Prints each as "warning: …".
+void print_warnings(std::FILE* out, const std::vector<std::string>& warnings);
+
 /// Three decimals; what rounds to zero has no sign.
 std::string thousandths(double value);
 

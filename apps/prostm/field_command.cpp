@@ -25,6 +25,7 @@ namespace {
 struct Input {
   Plan plan;
   TargetField raster;
+  double full_scale_pressure = 0.0;  // that the plan is played with; 0 if it does not tell
   bool has_target = false;
 };
 
@@ -40,7 +41,7 @@ Input read_input(const FieldOptionsGiven& given) {
                      ": has a path or focus on a second hand; the field is computed for plans of "
                      "one");
   }
-  Input input{file.plan, file.raster, false};
+  Input input{file.plan, file.raster, file.full_scale_pressure, false};
   if (given.target.empty()) return input;
   input.raster = read_field(given.target, given.file);
   input.has_target = true;
@@ -61,6 +62,12 @@ void print_loop(std::FILE* out, const PhysicalReport& r) {
   fmt::print(out, "{} on {}, {}: a loop of {:.1f} ms, periods within {:.1f} % of the plan's\n",
              r.plan, r.array->name, r.solver, 1e3 * r.loop->samples / r.loop->sample_rate,
              100.0 * r.loop->largest_stretch());
+  print_warnings(out, r.warnings);
+  for (std::size_t i = 0; i < r.loop->played.paths.size(); ++i) {
+    const PlayedPath& path = r.loop->played.paths[i];
+    fmt::print(out, "  path {}: {:.2f} m/s, {:.2f} ms a lap\n", i + 1, path.speed,
+               1e3 * path.period);
+  }
 }
 
 void print_levels(std::FILE* out, const PhysicalReport& r) {
@@ -227,6 +234,14 @@ void tell(const PhysicalReport& report, const Input& input, const FieldOptionsGi
   say_written(out, given.common.json);
 }
 
+/// The emission that the plan was made for, unless the settings have a full scale of their own.
+EmitSettings emission_of(const PipelineSettings& settings, const Input& input) {
+  EmitSettings emit = settings.emit;
+  if (emit.full_scale_pressure == 0.0) emit.full_scale_pressure = input.full_scale_pressure;
+  emit.power_limit = power_limit(settings);
+  return emit;
+}
+
 }  // namespace
 
 int field_command(const FieldOptionsGiven& given) {
@@ -243,7 +258,8 @@ int field_command(const FieldOptionsGiven& given) {
   const Input input = read_input(given);
   TargetFrame frame;
   frame.patches.push_back(input.raster);
-  const LoopSamples loop = plan_loop(input.plan, frame, all.emit, all.emission_rate());
+  const LoopSamples loop =
+      plan_loop(input.plan, frame, emission_of(all, input), all.emission_rate());
   const Medium air;
   const Interrupt interrupt;
   LoopDriveResult drives;
@@ -259,6 +275,7 @@ int field_command(const FieldOptionsGiven& given) {
   report.array = &array;
   report.raster = &input.raster;
   report.loop = &loop;
+  report.warnings = played_warnings(loop.played);
   report.drives = &drives;
   report.field = &field;
   report.focus = focus_accuracy(packed, loop, drives, input.raster.X_DP);

@@ -135,6 +135,11 @@ struct StudyRunOptionsGiven {
   std::vector<std::string> markers;  ///< addresses that they go to
 };
 
+struct StudyCheckOptionsGiven {
+  CommonOptions common;
+  std::string protocol;
+};
+
 struct AnalyseOptionsGiven {
   Files files;
   std::vector<std::string> answers;
@@ -180,6 +185,7 @@ int selftest_command(const SelftestOptionsGiven& options);
 int soak_command(const SoakOptionsGiven& options);
 int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);
+int study_check_command(const StudyCheckOptionsGiven& options);
 int study_run_command(const StudyRunOptionsGiven& options);
 int analyse_command(const AnalyseOptionsGiven& options);
 int simulate_command(const SimulateOptionsGiven& options);

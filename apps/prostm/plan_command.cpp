@@ -14,10 +14,12 @@
 #include "prostm/core/random.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/emit/played.hpp"
+#include "prostm/emit/played_plan.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/digitised_figure.hpp"
 #include "prostm/io/field_file.hpp"
 #include "prostm/io/plan_file.hpp"
+#include "prostm/pipeline/playable.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static.hpp"
 #include "prostm/score/felt_skill.hpp"
@@ -174,6 +176,18 @@ PlanQuality quality_of(const TargetField& target, const Plan& plan, const Segmen
   return quality;
 }
 
+/// Sets speeds and periods of the plan to those of the emission.
+void play(const TargetField& target, const PipelineSettings& settings, Result& r) {
+  TargetFrame frame;
+  frame.patches.push_back(target);
+  LiftedPlan lifted;
+  lift(r.plan, frame, lifted);
+  const DeviceInfo device = settings.device_info();
+  const PlayedPlan played = played_plan(lifted, device.emission_rate(), device.max_focus_speed());
+  take_played(played, r.plan);
+  r.warnings = played_warnings(played);
+}
+
 /// @throws InputError for a field that cannot be planned. @param path names it.
 Result plan_field(const TargetField& target, const PipelineSettings& settings, bool traced,
                   const std::string& path) {
@@ -185,6 +199,7 @@ Result plan_field(const TargetField& target, const PipelineSettings& settings, b
     throw InputError(
         path + ": the field has a value that cannot be planned; pressures must be finite and >= 0");
   }
+  play(target, settings, r);
   return r;
 }
 
@@ -236,7 +251,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   PlanFileExtras extras;
   PowerShare power;
   if (!r.plan.empty()) {
-    power = power_share(r.plan, settings.emit.power_limit);
+    power = power_share(r.plan, power_limit(settings));
     extras.power = &power;
   }
   extras.method = settings.method;
@@ -267,10 +282,6 @@ double felt_skill_of(const TargetField& target, const Plan& plan,
                     settings.emission_rate(), settings.transducers, pool);
 }
 
-void print_warnings(std::FILE* out, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) fmt::print(out, "warning: {}\n", warning);
-}
-
 void print_plan(std::FILE* out, const Result& r, const TargetField& target,
                 const PipelineSettings& settings, std::optional<double> own_width) {
   const std::string felt = felt_words(settings);
@@ -289,7 +300,7 @@ void print_plan(std::FILE* out, const Result& r, const TargetField& target,
   if (r.weighted) {
     fmt::print(out, "  {:<44} {:>7.3f}\n", "this plan, by the field's weights", *r.weighted);
   }
-  print_power(out, r.plan, settings.emit.power_limit);
+  print_power(out, r.plan, power_limit(settings));
 }
 
 void write_results(const Result& r, const TargetField& target, const PipelineSettings& settings,
@@ -324,6 +335,7 @@ std::optional<double> use_own_width(const PlanOptionsGiven& given, const TargetF
 
 int plan_command(const PlanOptionsGiven& given) {
   PipelineSettings settings = make_settings(given.common, std::nullopt);
+  require_playable(settings, settings.device_info());
   if (!given.beside.empty() && is_am(settings))
     throw InputError("--beside shows the steps of --method pro-stm; leave it out with am");
   FieldKind kind = FieldKind::Json;
@@ -335,7 +347,8 @@ int plan_command(const PlanOptionsGiven& given) {
   // before the scores of a large field, which take their time
   std::FILE* out = prose(given.common.json);
   fmt::print(out, "{}\n", field_in_words(given.field, kind, target, given.file));
-  r.warnings = field_warnings(kind, target, given.file);
+  const auto doubts = field_warnings(kind, target, given.file);
+  r.warnings.insert(r.warnings.begin(), doubts.begin(), doubts.end());
   print_warnings(out, r.warnings);
   std::fflush(out);
 

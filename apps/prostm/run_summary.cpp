@@ -28,6 +28,11 @@ void print_paths(std::FILE* out, const RunSummary& s, const PipelineSettings& se
   print_row(out, "laps",
             fmt::format("{:.1f} % completed; --switch {}", 100.0 * laps_completed(s.emit),
                         name_of(settings.emit.switch_at)));
+  if (s.lap.n == 0) return;
+  print_row(
+      out, "played",
+      fmt::format("focal points at {:.2f} m/s (median), laps of {:.1f} ms (median) to {:.1f} ms",
+                  s.focus_speed.p50, 1e3 * s.lap.p50, 1e3 * s.lap.max));
 }
 
 void print_foci(std::FILE* out, const RunSummary& s, const PipelineSettings& settings) {
@@ -214,6 +219,8 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
   json.update(quantities_to_json(s.emit));
   json.update(quantities_to_json(s.safety));
   json.update(quantities_to_json(s.contact_stats));
+  json["lap_ms"] = to_json(s.lap, 1e3);
+  json["focus_speed_m_s"] = to_json(s.focus_speed, 1.0);
   json["latency_ms"] = to_json(s.latency, 1e3);
   json["latency_parts_ms"] = parts_json(s.latency_parts);
   json["redraw_ms"] = to_json(s.redraw, 1e3);

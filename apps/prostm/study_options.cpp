@@ -49,6 +49,25 @@ void add_study_run(CLI::App& study, Work& work) {
   });
 }
 
+void add_study_check(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand(
+      "check",
+      "validate a protocol and print what is presented; every level must be played as written");
+  auto o = std::make_shared<StudyCheckOptionsGiven>();
+  add_input(*command, o->common.files, "protocol", o->protocol,
+            "what is presented and asked (.toml, docs/study.md)")
+      ->required();
+  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+            "settings that all methods begin with, a TOML file (docs/files.md)");
+  add_device(*command, o->common);
+  add_array(*command, o->common, "usx (default), autd3, or an array file (.json)");
+  add_json(*command, o->common.files, o->common.json);
+  command->footer("Example:\n  prostm study check data/protocols/continuity.toml");
+  command->callback([o, &work] {
+    work = {&o->common.files, [o] { return study_check_command(*o); }};
+  });
+}
+
 void add_analyse(CLI::App& study, Work& work) {
   auto* command = study.add_subcommand("analyse", "what answers do and do not support");
   auto o = std::make_shared<AnalyseOptionsGiven>();
@@ -120,6 +139,7 @@ void add_simulate(CLI::App& study, Work& work) {
 void add_study(CLI::App& app, Work& work) {
   auto* study = app.add_subcommand("study", "a perceptual study, from its trials to its figures");
   study->require_subcommand(1);
+  add_study_check(*study, work);
   add_study_run(*study, work);
   add_analyse(*study, work);
   add_simulate(*study, work);

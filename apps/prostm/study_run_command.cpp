@@ -10,6 +10,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/study/session.hpp"
+#include "study_protocol.hpp"
 #include "view.hpp"
 
 namespace prostm::app {
@@ -58,25 +59,6 @@ class PagesEnd {
  private:
   View& view_;
 };
-
-/// The settings that all methods begin with.
-PipelineSettings base_settings(const RunOptionsGiven& given) {
-  if (given.hand == "page")
-    throw InputError("--hand page is moved on the page of a run, and those of a study have none");
-  PipelineSettings settings = make_settings(given.common, std::nullopt, true);
-  settle_hand(given.hand, given.hand_size, settings);
-  settings.simulated_array.realtime = true;
-  settings.jets.place = JetPlace::Hand;  // a stimulus is centred under the palm
-  check_mode(settings, RunMode::RealTime);
-  return settings;
-}
-
-Protocol protocol_of(const StudyRunOptionsGiven& given, const PipelineSettings& base) {
-  Protocol protocol = read_protocol(given.protocol, base);
-  for (StudyMethod& method : protocol.methods) set_live_budget(method.settings);
-  if (protocol.standard) set_live_budget(protocol.standard->settings);
-  return protocol;
-}
 
 /// Returns the participant's file. @throws InputError: they have begun and are not to be resumed,
 /// or the other way round; there can be no such folder.
@@ -192,8 +174,12 @@ void report(std::FILE* out, const StudySession& session, const ResponseFile& fil
 }  // namespace
 
 int study_run_command(const StudyRunOptionsGiven& given) {
-  const PipelineSettings base = base_settings(given.run);
-  const Protocol protocol = protocol_of(given, base);
+  if (given.run.hand == "page")
+    throw InputError("--hand page is moved on the page of a run, and those of a study have none");
+  PipelineSettings base = study_settings(given.run.common);
+  settle_hand(given.run.hand, given.run.hand_size, base);
+  check_mode(base, RunMode::RealTime);
+  const Protocol protocol = live_protocol(given.protocol, base);
   const std::string path = file_of(given);
   std::vector<OpenTarget> targets = open_marker_targets(given.markers);
   PipelineSettings settings = protocol.methods.front().settings;

@@ -200,7 +200,7 @@ def test_bad_options(refuses, args, words):
         ("[plan]\npaths = 99\n", ["99"]),
         ("[plan]\nsigma = nan\n", ["sigma"]),
         ("[plan]\nseed = -1\n", ["plan.seed", "-1"]),
-        ("[plan]\n\nspeed = 800\n", ["s.toml, line 3: plan.speed = 800 m/s must be between 0.1 and 100 m/s"]),
+        ("[plan]\n\nspeed = 800\n", ["s.toml, line 3: plan.speed = 800 m/s must be between 0.1 and 8 m/s"]),
         ("[fluid]\ncells = 30\n", ["s.toml, line 2: fluid.cells = 30 must be between 32 and 160"]),
         ("speed = 8\n",
          ['s.toml, line 1: "speed" stands outside a group of settings; did you mean [plan] speed?']),

@@ -42,7 +42,7 @@ def test_the_table(prostm):
     flat = " ".join(text.split())
     assert all(row["help"].split()[0] in flat for row in rows)
     assert "paths 4 1 to 8 largest number of paths" in flat
-    assert "speed 7 0.1 to 100 m/s speed of the focal points (v)" in flat
+    assert "speed 7 0.1 to 8 m/s speed of the focal points (v)" in flat
 
 
 def test_a_group_and_a_key_alone(prostm, refuses):

@@ -21,7 +21,7 @@ using Do = StudyAct::Do;
 const nlohmann::ordered_json kFacts = {{"prostm", "test"}, {"rehearsal", false}};
 const std::string kShort = "[training]\nseconds = 0\n[trials]\nrest = 0.1\nsettle = 0.5\n";
 const std::string kScene = "[scene.one-plume]\nquestion = \"Stronger?\"\n";
-const std::string kLinear = "setting = \"plan.speed\"\nlow = 2\nhigh = 10\nstep = 0.3\n";
+const std::string kLinear = "setting = \"plan.speed\"\nlow = 2\nhigh = 8\nstep = 0.3\n";
 const std::string kAm = "[method.am.pipeline]\nmethod = \"am\"\n[method.stm]\n";
 
 Protocol protocol(const std::string& trials, const std::string& level,

@@ -138,7 +138,7 @@ TEST(Protocol, LevelsThatAreWrongAreRefused) {
   EXPECT_THAT(refused("plan.speed", "low = 0\nhigh = 2\n", "scale = \"log\"\n" + step),
               HasSubstr("above 0, since scale is log"));
   EXPECT_THAT(refused("plan.speed", "low = 2\nhigh = 800\n", step),
-              HasSubstr("speed = 800 m/s must be between 0.1 and 100 m/s"));
+              HasSubstr("speed = 800 m/s must be between 0.1 and 8 m/s"));
   EXPECT_THAT(refused("plan.speed", fine, step + "start = 9\n"), HasSubstr("level.start = 9"));
   EXPECT_THAT(refused("plan.speed", fine, "step = 50\n"), HasSubstr("step = 50"));
   EXPECT_THAT(refused("plan.speed", fine, step + "coarse = 20\n"), HasSubstr("reversals = 12"));

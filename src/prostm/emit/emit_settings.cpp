@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "prostm/core/require.hpp"
 #include "prostm/emit/emitter.hpp"
 
@@ -40,6 +42,16 @@ void EmitSettings::visit(SettingsReader& v) const {
 }
 void EmitSettings::visit(SettingsWriter& v) {
   list(*this, v);
+}
+
+int am_period(const EmitSettings& settings, double sample_rate) {
+  // Both waveforms change by at most π/n a sample: with n = 126 by less than 1/40
+  constexpr double kShortestPeriod = 126.0;  // [samples]
+  constexpr double kLowestFrequency = 25.0;  // [Hz], so that a loss is silent within 40 ms
+  require_between("sample_rate", sample_rate, kShortestPeriod * kLowestFrequency, 1e6, "Hz");
+  require_between("am_frequency", settings.am_frequency, kLowestFrequency,
+                  sample_rate / kShortestPeriod, "Hz");
+  return static_cast<int>(std::lround(sample_rate / settings.am_frequency));
 }
 
 void validate(const EmitSettings& settings, double sample_rate) {

@@ -10,13 +10,11 @@
 #include "prostm/core/settings.hpp"
 #include "prostm/emit/focus_sample.hpp"
 #include "prostm/emit/mute.hpp"
+#include "prostm/plan/focus_speed.hpp"
 #include "prostm/plan/lifted_plan.hpp"
 #include "prostm/plan/method.hpp"
 
 namespace prostm {
-
-/// Maximum speed of an audible focal point [m/s]; faster paths are slowed down.
-inline constexpr double kMaxFocusSpeed = 8.0;
 
 /// Moment when a new plan takes over: at each path's lap end, or at the next block.
 enum class SwitchAt : std::uint8_t { Lap, Now };
@@ -59,6 +57,11 @@ struct EmitSettings {
 /// the sample rate [Hz] must be 1 kHz to 1 MHz.
 void validate(const EmitSettings& settings, double sample_rate);
 
+/// Returns the samples of a period of the modulation of method am, (B4), rounded. Of 25 Hz up to a
+/// 126th of the sample rate, where the intensity changes by less than 1/40 a sample.
+/// @throws std::invalid_argument with a sentence for other frequencies.
+int am_period(const EmitSettings& settings, double sample_rate);
+
 /// The drive law, (E4): intensity = sqrt(pressure / full scale), since radiation pressure goes with
 /// the square of acoustic pressure; clipped to 1, 0 below the silent share and for negative
 /// pressure. `saturated` is set when it was clipped. @pre full_scale > 0, both finite.
@@ -86,6 +89,8 @@ struct EmitStats {
   std::int64_t stalls = 0;         ///< fade-outs because no plan came
   std::int64_t refused_plans = 0;  ///< plans with a number not finite or out of bounds
   std::int64_t dropped_paths = 0;  ///< paths beyond the number of focal points, not drawn
+  std::int64_t changed_paths = 0;  ///< paths played at another period than planned, PlayedPath
+  std::int64_t silenced = 0;       ///< samples with a pressure above 0 and under silent_below
   double max_focus_step = 0.0;     ///< largest, between samples with intensity > 1 % [m]
 };
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "prostm/emit/detail/focus_emitter.hpp"
-#include "prostm/emit/detail/in_step.hpp"
 #include "prostm/emit/drive.hpp"
 
 namespace prostm {
@@ -17,15 +16,6 @@ namespace {
 constexpr double kSmallStretch = 0.01;
 constexpr int kLongestLaps = 8;      // of the longest lap, that a loop may have
 constexpr double kLongestLap = 1.0;  // [s]
-
-/// As the plan says [s]; 0 for a focal point at rest.
-/// @param loop of the plan [s].
-double lap_of(const LiftedPath& path, double loop) {
-  if (path.p_D.empty() || path.length <= 0.0 || path.speed <= kSlowest) return 0.0;
-  const double lap = path.length / std::min(path.speed, kMaxFocusSpeed);
-  if (loop <= 0.0) return lap;
-  return std::max(loop / std::max(1.0, std::round(loop / lap)), path.length / kMaxFocusSpeed);
-}
 
 int laps_in(int samples, double lap) {
   return lap > 0.0 ? std::max(1, static_cast<int>(std::lround(samples / lap))) : 0;
@@ -53,16 +43,20 @@ int loop_length(const std::vector<double>& laps) {
   return best;
 }
 
-void check(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
-  validate(settings, sample_rate);
-  require_loop(plan.loop);
+double longest_of(const PlayedPlan& played) {
+  double longest = 0.0;
+  for (const PlayedPath& path : played.paths) longest = std::max(longest, path.period);
+  return longest;
+}
+
+void check(const LiftedPlan& plan, const PlayedPlan& played, const EmitSettings& settings) {
   const std::size_t count = plan.paths.size() + plan.foci.size();
   if (count < 1 || count > static_cast<std::size_t>(settings.foci)) {
     throw std::invalid_argument("a plan has " + std::to_string(count) +
                                 (plan.foci.empty() ? " paths" : " foci") + "; a loop is of 1 to " +
                                 std::to_string(settings.foci) + ", the number of focal points");
   }
-  if (longest_lap(plan) > kLongestLap) {
+  if (longest_of(played) > kLongestLap) {
     throw std::invalid_argument(
         "a path takes more than 1 s; for a loop it must be shorter or its focal point faster");
   }
@@ -91,27 +85,25 @@ LoopSamples loop_of_foci(const LiftedPlan& plan, EmitSettings settings, double s
 }
 
 /// Sets the length of the loop, and the laps in it, of a plan whose paths go round on their own.
-void set_laps(const LiftedPlan& plan, LoopSamples& loop) {
+void set_laps(LoopSamples& loop) {
   std::vector<double> laps;
-  for (const LiftedPath& path : plan.paths) laps.push_back(lap_of(path, 0.0) * loop.sample_rate);
+  for (const PlayedPath& path : loop.played.paths) laps.push_back(path.period * loop.sample_rate);
   loop.samples = loop_length(laps);
-  for (const double lap : laps) {
-    loop.laps.push_back(laps_in(loop.samples, lap));
-    loop.stretch.push_back(stretch_in(loop.samples, lap));
+  for (std::size_t f = 0; f < laps.size(); ++f) {
+    const int count = laps_in(loop.samples, laps[f]);
+    const double planned = count * loop.played.paths[f].planned_period * loop.sample_rate;
+    loop.laps.push_back(count);
+    loop.stretch.push_back(count > 0 ? loop.samples / planned - 1.0 : 0.0);
   }
 }
 
 /// The same for a plan in step.
-void set_laps_in_step(const LiftedPlan& plan, LoopSamples& loop) {
-  const double max_step = kStepMargin * kMaxFocusSpeed / loop.sample_rate;
-  const InStep shared = shared_loop(plan, loop.sample_rate, max_step);
-  const double samples = static_cast<double>(shared.samples);
+void set_laps_in_step(LoopSamples& loop) {
+  const double samples = loop.played.loop * loop.sample_rate;
   loop.samples = kLoopUnit * std::max(1, static_cast<int>(std::lround(samples / kLoopUnit)));
-  for (const LiftedPath& path : plan.paths) {
-    const bool empty = path.p_D.empty();
-    const std::int64_t laps = empty ? 0 : with_laps(shared, path, loop.sample_rate, max_step).laps;
-    loop.laps.push_back(static_cast<int>(laps));
-    loop.stretch.push_back(laps > 0 ? loop.samples / samples - 1.0 : 0.0);
+  for (const PlayedPath& path : loop.played.paths) {
+    loop.laps.push_back(path.laps);
+    loop.stretch.push_back(path.laps > 0 ? loop.samples / samples - 1.0 : 0.0);
   }
 }
 
@@ -139,22 +131,23 @@ double LoopSamples::largest_stretch() const {
   return largest;
 }
 
-double longest_lap(const LiftedPlan& plan) {
-  double longest = 0.0;
-  for (const LiftedPath& path : plan.paths) longest = std::max(longest, lap_of(path, plan.loop));
-  return longest;
+double longest_lap(const LiftedPlan& plan, double sample_rate) {
+  return longest_of(played_plan(plan, sample_rate));
 }
 
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate) {
-  check(plan, settings, sample_rate);
-  if (!plan.foci.empty()) return loop_of_foci(plan, settings, sample_rate);
+  validate(settings, sample_rate);
+  require_loop(plan.loop);
   LoopSamples loop;
+  loop.played = played_plan(plan, sample_rate);
+  check(plan, loop.played, settings);
+  if (!plan.foci.empty()) return loop_of_foci(plan, settings, sample_rate);
   loop.foci = static_cast<int>(plan.paths.size());
   loop.sample_rate = sample_rate;
   if (plan.loop > 0.0) {
-    set_laps_in_step(plan, loop);
+    set_laps_in_step(loop);
   } else {
-    set_laps(plan, loop);
+    set_laps(loop);
   }
   loop.sample.resize(plan.paths.size() * static_cast<std::size_t>(loop.samples));
 

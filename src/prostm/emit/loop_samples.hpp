@@ -5,6 +5,7 @@
 
 #include "prostm/emit/emitter.hpp"
 #include "prostm/emit/focus_sample.hpp"
+#include "prostm/emit/played_plan.hpp"
 #include "prostm/plan/lifted_plan.hpp"
 
 namespace prostm {
@@ -18,14 +19,15 @@ struct LoopSamples {
   std::vector<int> laps;            ///< that each focal point plays in the loop; 0 at rest
   /// How much longer each lap is than the plan says, as a share of it: below 0, shorter.
   std::vector<double> stretch;
+  PlayedPlan played;  ///< what PathEmitter makes of the plan; without paths for foci
 
   double largest_stretch() const;  ///< in magnitude; 0 without foci
 };
 
 /// Returns the samples of a plan that goes on, as PathEmitter plays them, each path from its first
-/// point. Periods are adjusted so that all paths play whole laps in one loop, (E7). Its length is a
-/// multiple of kLoopUnit samples, from one to eight of the longest laps: the shortest in which no
-/// lap changes by more than 1 %, or else the one with the least change.
+/// point. The periods of played_plan() are adjusted so that all paths play whole laps in one loop,
+/// (E7). Its length is a multiple of kLoopUnit samples, from one to eight of the longest laps: the
+/// shortest in which no lap changes by more than 1 %, or else the one with the least change.
 /// A plan in step has its own loop, (E10), rounded to a multiple of kLoopUnit samples.
 /// A plan of foci is played as FocusEmitter does once all sound, for the fewest whole periods of
 /// the modulation, (B4), that are a multiple of kLoopUnit samples.
@@ -36,8 +38,9 @@ struct LoopSamples {
 /// more than a second.
 LoopSamples loop_samples(const LiftedPlan& plan, const EmitSettings& settings, double sample_rate);
 
-/// Returns the time of the longest lap of a plan [s]; 0 if every focal point is at rest.
-double longest_lap(const LiftedPlan& plan);
+/// Returns the time of the longest lap of a plan as it is played [s]; 0 if every focal point is at
+/// rest. @pre is_loop(plan.loop).
+double longest_lap(const LiftedPlan& plan, double sample_rate = 40e3);
 
 /// Loops can be cut in parts of this many samples, 0.2 ms at 40 kHz.
 inline constexpr int kLoopUnit = 8;

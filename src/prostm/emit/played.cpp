@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "prostm/emit/compensation.hpp"
-#include "prostm/emit/detail/focus_motion.hpp"
-#include "prostm/emit/detail/in_step.hpp"
 #include "prostm/emit/drive.hpp"
 #include "prostm/emit/loop_samples.hpp"
+#include "prostm/emit/played_plan.hpp"
 
 namespace prostm {
 namespace {
@@ -28,22 +27,16 @@ struct Lap {
   std::size_t stride = 1;
 };
 
-/// Sets how many places a lap has, and the stride.
-void set_places(const LiftedPath& path, const InStep& loop, double sample_rate, Lap& lap) {
+/// Sets how many places a lap has, and the stride. @param loop samples of the plan's loop, or 0.
+void set_places(const PlayedPath& path, std::int64_t loop, double sample_rate, Lap& lap) {
   std::int64_t places = 1;
-  if (loop.samples > 0) {
-    const InStep part =
-        with_laps(loop, path, sample_rate, kStepMargin * kMaxFocusSpeed / sample_rate);
-    const std::int64_t common = std::gcd(part.laps, part.samples);
-    if (part.laps > 0) {
-      places = part.samples / common;
-      lap.stride = static_cast<std::size_t>(part.laps / common);
-    }
-  } else {
-    FocusMotion motion;
-    motion.configure(sample_rate, kMaxFocusSpeed / sample_rate);
+  if (path.laps > 0 && loop > 0) {
+    const std::int64_t common = std::gcd(std::int64_t{path.laps}, loop);
+    places = loop / common;
+    lap.stride = static_cast<std::size_t>(path.laps / common);
+  } else if (path.laps > 0) {
     const auto most = static_cast<std::int64_t>(std::ceil(kLongestLap * sample_rate));
-    places = std::min(motion.lap_samples(path), most);
+    places = std::min<std::int64_t>(std::llround(path.period * sample_rate), most);
   }
   const auto count = static_cast<std::size_t>(places);
   lap.wanted.resize(count);
@@ -52,10 +45,10 @@ void set_places(const LiftedPath& path, const InStep& loop, double sample_rate, 
 }
 
 /// Returns the lap with the intensities that the path wants.
-Lap lap_of(const LiftedPath& path, const InStep& loop, const EmitSettings& settings,
-           double sample_rate) {
+Lap lap_of(const LiftedPath& path, const PlayedPath& played, std::int64_t loop,
+           const EmitSettings& settings, double sample_rate) {
   Lap lap;
-  set_places(path, loop, sample_rate, lap);
+  set_places(played, loop, sample_rate, lap);
   const std::size_t samples = lap.wanted.size();
   for (std::size_t k = 0; k < samples; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(samples);
@@ -188,11 +181,12 @@ SegmentPressures played_pressures(const Plan& plan, const TargetFrame& frame, Em
   const LiftedPlan factors = tilt_factors(lifted, frame, settings.tilt_bound);
   compensate_tilt(lifted, frame, settings.tilt_bound);
   std::vector<Lap> laps;
-  const InStep loop = shared_loop(lifted, sample_rate, kStepMargin * kMaxFocusSpeed / sample_rate);
-  for (const LiftedPath& path : lifted.paths) {
-    laps.push_back(lap_of(path, loop, settings, sample_rate));
+  const PlayedPlan played = played_plan(lifted, sample_rate);
+  const std::int64_t loop = std::llround(played.loop * sample_rate);
+  for (std::size_t k = 0; k < lifted.paths.size(); ++k) {
+    laps.push_back(lap_of(lifted.paths[k], played.paths[k], loop, settings, sample_rate));
   }
-  if (!laps.empty()) play(settings, sample_rate, loop.samples, laps);
+  if (!laps.empty()) play(settings, sample_rate, loop, laps);
   for (Lap& lap : laps) average_laps(lap);
 
   SegmentPressures out;

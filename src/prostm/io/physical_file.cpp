@@ -38,6 +38,17 @@ Json loop_json(const LoopSamples& loop) {
           {"stretch", loop.stretch}};
 }
 
+Json paths_json(const LoopSamples& loop) {
+  Json list = Json::array();
+  for (const PlayedPath& path : loop.played.paths) {
+    list.push_back({{"speed_m_s", path.speed},
+                    {"period_ms", to_milli(path.period)},
+                    {"planned_speed_m_s", path.planned_speed},
+                    {"planned_period_ms", to_milli(path.planned_period)}});
+  }
+  return list;
+}
+
 Json drives_json(const LoopDriveResult& drives) {
   return {{"full_scale_pa", drives.full_scale_pa}, {"short_samples", drives.short_samples},
           {"largest_drive", drives.largest_drive}, {"mean_power", drives.mean_power},
@@ -100,6 +111,8 @@ std::string physical_to_json(const PhysicalReport& report) {
                    {"amplitude_interval_pa_m", {array.amplitude_low, array.amplitude_high}},
                    {"solver", report.solver}};
   document["loop"] = loop_json(*report.loop);
+  document["paths"] = paths_json(*report.loop);
+  document["warnings"] = report.warnings;
   document["drives"] = drives_json(*report.drives);
   document["foci"] = focus_json(report.focus);
   document["envelope"] = {{"largest_pa", report.field->largest},

@@ -16,6 +16,7 @@ struct PhysicalReport {
   const TransducerArray* array = nullptr;
   const TargetField* raster = nullptr;
   const LoopSamples* loop = nullptr;
+  std::vector<std::string> warnings;  ///< about paths that are not played as planned
   const LoopDriveResult* drives = nullptr;
   const PhysicalField* field = nullptr;
   FocusAccuracy focus;

@@ -183,6 +183,11 @@ PlanFile plan_from_json(std::string_view text, const std::string& name) {
     file.plan.loop = read_loop(root);
   }
 
+  if (root.has("full_scale_pressure")) {
+    file.full_scale_pressure =
+        root.at("full_scale_pressure", "a number").number(0.0, kMaxFilePressure);
+  }
+
   // the raster's skin is where it has a height
   const JsonNode raster = root.at("raster", "the raster with the heights of the skin");
   read_raster(raster, file.raster);

@@ -53,6 +53,8 @@ struct PlanFile {
   Method method = Method::ProStm;  ///< am where the file has foci
   Plan plan;
   TargetField raster;  ///< plane and heights (pressure 0 where the file repeats none)
+  /// That the plan is played with [unit of the target]; 0 where the file has none.
+  double full_scale_pressure = 0.0;
 };
 /// @throws InputError with a sentence.
 PlanFile plan_from_json(std::string_view text, const std::string& name);

@@ -191,6 +191,17 @@ std::vector<std::string> settings_from_toml(std::string_view text, const std::st
   return given;
 }
 
+int line_in_toml(std::string_view text, const std::string& name,
+                 const std::vector<std::string>& keys) {
+  const toml::table document = parse_toml(text, name);
+  const toml::node* node = &document;
+  for (const std::string& key : keys) {
+    node = node->is_table() ? node->as_table()->get(key) : nullptr;
+    if (node == nullptr) return 0;
+  }
+  return static_cast<int>(node->source().begin.line);
+}
+
 std::vector<std::string> tables_in_toml(std::string_view text, const std::string& name,
                                         const std::string& table) {
   const toml::table document = parse_toml(text, name);

@@ -23,6 +23,11 @@ std::vector<std::string> settings_from_toml(std::string_view text, const std::st
                                             const std::vector<std::string>& inside = {},
                                             const std::vector<std::string>& others = {});
 
+/// Returns the line of a key or table of the document, {"method", "am", "plan"}; 0 where it is
+/// missing. @throws InputError: no TOML.
+int line_in_toml(std::string_view text, const std::string& name,
+                 const std::vector<std::string>& keys);
+
 /// Returns the names of the tables inside a table of the document, in the order of their lines;
 /// none where it is missing. @throws InputError: it, or something in it, is no table.
 std::vector<std::string> tables_in_toml(std::string_view text, const std::string& name,

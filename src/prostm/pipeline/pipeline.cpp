@@ -10,6 +10,7 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/emit/compensation.hpp"
+#include "prostm/pipeline/playable.hpp"
 
 namespace prostm {
 namespace {
@@ -55,6 +56,12 @@ std::unique_ptr<Device> device_of(const PipelineSettings& settings, std::unique_
 double sigma_on(const TargetField& target, const std::variant<Planner, AmPlanner>& planner) {
   if (const auto* of_foci = std::get_if<AmPlanner>(&planner)) return of_foci->settings().sigma;
   return std::get<Planner>(planner).settings().sigma_on(target);
+}
+
+/// Settings that the device plays as they are. @throws as require_playable() does.
+const PipelineSettings& playable(const PipelineSettings& settings, const DeviceInfo& device) {
+  require_playable(settings, device);
+  return settings;
 }
 
 /// The planner of the method.
@@ -173,13 +180,14 @@ void WorldStage::view_from_side(SideView& out) const {
 
 PlanStage::PlanStage(const PipelineSettings& settings, std::size_t max_cells, double full_scale,
                      const DeviceInfo& device, std::shared_ptr<const SafetyLevels> levels)
-    : planner_(make_planner(settings, max_cells, full_scale, device.emission_rate())),
+    : planner_(
+          make_planner(playable(settings, device), max_cells, full_scale, device.emission_rate())),
       emit_settings_(emit_settings(settings, full_scale)),
       emission_rate_(device.emission_rate()),
+      max_speed_(device.max_focus_speed()),
       gate_(static_cast<int>(std::lround(settings.world_rate / settings.steps_per_plan())),
             max_cells),
-      emitter_(
-          make_emitter(settings.method, emit_settings_, emission_rate_, device.max_focus_speed())),
+      emitter_(make_emitter(settings.method, emit_settings_, emission_rate_, max_speed_)),
       samples_(make_sample_chain(*emitter_, device,
                                  {.power = emit_settings_.power_limit,
                                   .caps = settings.safety,
@@ -195,6 +203,7 @@ void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
   out.id = ++updates_;
   out.start = contact.taken;
   out.max_skin_length = 0.0;
+  out.played = {};
   out.full_scale_pressure = full_scale_pressure();
   out.emission_rate = emission_rate_;
   out.status = std::visit(
@@ -211,6 +220,8 @@ void PlanStage::run(const WorldFrame& contact, PlanFrame& out) {
     lifted.id = out.id;
     for (const LiftedPath& path : lifted.paths)
       out.max_skin_length = std::max(out.max_skin_length, path.length);
+    out.played = played_plan(lifted, emission_rate_, max_speed_);
+    take_played(out.played, out.plan);
     emitter_->submit();
   }
   out.lift_time = timer.lap();

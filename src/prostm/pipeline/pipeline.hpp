@@ -14,6 +14,7 @@
 #include "prostm/device/device.hpp"
 #include "prostm/device/sample_chain.hpp"
 #include "prostm/emit/emitter.hpp"
+#include "prostm/emit/played_plan.hpp"
 #include "prostm/hand/hand_raster.hpp"
 #include "prostm/pipeline/settings.hpp"
 #include "prostm/pipeline/world.hpp"
@@ -113,8 +114,10 @@ struct PlanFrame {
   double start = 0.0;                       ///< of the update; run time [s]
   double plan_time = 0.0, lift_time = 0.0;  ///< [s]
   double max_skin_length = 0.0;             ///< longest path on the skin [m]
-  double full_scale_pressure = 0.0;         ///< rendered, at intensity 1 [Pa]
-  double emission_rate = 0.0;               ///< samples of the emission [Hz]
+  /// What the emission makes of it; speeds, periods and loop of `plan` are these.
+  PlayedPlan played;
+  double full_scale_pressure = 0.0;  ///< rendered, at intensity 1 [Pa]
+  double emission_rate = 0.0;        ///< samples of the emission [Hz]
   /// σ that each patch was planned with, if there is a plan [m].
   std::array<double, kMaxPatches> sigma = {};
   /// Whether the target is the stimulus that it should be; nothing where nothing is asked of it.
@@ -153,7 +156,7 @@ class PlanStage {
  private:
   std::variant<Planner, AmPlanner> planner_;
   EmitSettings emit_settings_;
-  double emission_rate_;  // [Hz]
+  double emission_rate_, max_speed_;  // [Hz], [m/s]
   StimulusGate gate_;
   std::unique_ptr<Emitter> emitter_;
   std::unique_ptr<SampleChain> samples_;

@@ -82,6 +82,8 @@ struct RunSummary {
   std::array<Summary, kLatencyParts> latency_parts;  ///< by LatencyPart; their means add up to the
                                                      ///< mean latency
   Summary track, hand, world, contact, plan, lift;   ///< of the stages
+  /// Of all paths of all plans, as played: period of a lap [s], speed of the focal point [m/s].
+  Summary lap, focus_speed;
 };
 
 template <>

@@ -48,8 +48,8 @@ int PipelineSettings::steps_per_plan() const {
   return method == Method::Am ? 1 : 2;
 }
 
-double PipelineSettings::emission_rate() const {
-  return device_named(device).kind->info(device_setup()).emission_rate();
+DeviceInfo PipelineSettings::device_info() const {
+  return device_named(device).kind->info(device_setup());
 }
 
 double PipelineSettings::sigma() const {
@@ -98,11 +98,15 @@ std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings) 
                                               settings.safety.head_distance);
 }
 
+double power_limit(const PipelineSettings& settings) {
+  return std::min(settings.emit.power_limit, settings.safety.power);
+}
+
 EmitSettings emit_settings(const PipelineSettings& settings, double largest) {
   EmitSettings emit = settings.emit;
   if (emit.full_scale_pressure == 0.0)
     emit.full_scale_pressure = own_full_scale(settings.plan.gain, largest);
-  emit.power_limit = std::min(emit.power_limit, settings.safety.power);
+  emit.power_limit = power_limit(settings);
   return emit;
 }
 

@@ -66,8 +66,10 @@ struct PipelineSettings {
     return {simulated_array, transducers, Medium{}, {}, emit.foci, autd3, stream};
   }
 
+  /// The device that these settings name, before it is made.
+  DeviceInfo device_info() const;
   /// Samples of an emission for it [Hz].
-  double emission_rate() const;
+  double emission_rate() const { return device_info().emission_rate(); }
 
   /// The fall-off of a focal point that the method counts on [m].
   double sigma() const;
@@ -92,8 +94,11 @@ AmSettings am_settings(const PipelineSettings& settings, double emission_rate);
 /// The levels that the array of the settings can reach, for its limiter.
 std::shared_ptr<const SafetyLevels> levels_of(const PipelineSettings& settings);
 
+/// The largest Σ intensity² that is emitted: [emit] power_limit within the cap of [safety].
+double power_limit(const PipelineSettings& settings);
+
 /// The emission's settings, with a full scale: where they give none, γ times `largest`, the largest
-/// pressure that is to be rendered [Pa]. Its power is within the cap of [safety], too.
+/// pressure that is to be rendered [Pa]. Its power limit is power_limit().
 EmitSettings emit_settings(const PipelineSettings& settings, double largest);
 
 /// Every stage's settings under its name in files: "pipeline", "track", "scripted_hand", "fluid", …

@@ -104,6 +104,7 @@ void Snapshots::plan(const WorldFrame& contact, const PlanFrame& plan, double la
   s.planned = plan.status == PlanStatus::Planned;
   s.target = contact.target;
   s.plan = plan.plan;
+  s.played = plan.played;
   s.settings = settings_;
   s.full_scale_pressure = plan.full_scale_pressure;
   s.emission_rate = plan.emission_rate;

@@ -50,6 +50,7 @@ struct PlanSnapshot {
   bool planned = false;
   TargetFrame target;
   Plan plan;
+  PlayedPlan played;                                      ///< what the emission makes of it
   std::shared_ptr<const PipelineSettings> settings;       ///< that it was planned with
   double full_scale_pressure = 0.0;                       ///< rendered, at intensity 1 [Pa]
   double emission_rate = 0.0;                             ///< samples of the emission [Hz]

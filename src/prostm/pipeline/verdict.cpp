@@ -252,6 +252,23 @@ void judge_page_hand(const RunSummary& s, std::vector<std::string>& out) {
   }
 }
 
+/// Reports plans that were not played as they are.
+void judge_played(const RunSummary& s, std::vector<std::string>& out) {
+  if (s.emit.changed_paths > 0) {
+    out.push_back(
+        fmt::format("{} paths were played at another speed than planned, {:.2f} m/s at most: focal "
+                    "points move at {:.4g} m/s at most.",
+                    s.emit.changed_paths, s.focus_speed.max, s.played_by.max_focus_speed()));
+  }
+  if (s.emit.dropped_paths > 0) {
+    out.push_back(
+        fmt::format("{} paths or foci of plans were not played, since there were fewer focal "
+                    "points: raise foci "
+                    "in [emit] (--settings), or use fewer --paths.",
+                    s.emit.dropped_paths));
+  }
+}
+
 /// Reports faults that should never occur.
 void judge_faults(const RunSummary& s, std::vector<std::string>& out) {
   if (s.world_resets > 0) {
@@ -324,6 +341,7 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   std::vector<std::string> unusual;
   judge_faults(s, unusual);
   judge_safety(s, unusual);
+  judge_played(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
   if (!tracker || tracker->frames > 0) {
     judge_contact(s.contact_stats, s.seconds, s.plans > 0, settings.box.follow, unusual);

@@ -20,9 +20,9 @@ struct FocalPath {
   boost::container::static_vector<double, kMaxPathPoints> pressure;
   double length = 0.0;  ///< length of the closed polygon of the points, in the plane [m]
   double speed = 0.0;   ///< speed of the focal point [m/s]
-  /// Duration of a lap [s]: length / speed. Presets `best` and `fast`, which know the skin's
-  /// heights, take the length on the skin instead, since that is what is played; it is longer where
-  /// the skin is uneven.
+  /// Duration of a lap [s]: the length on the skin over the speed. The length on the skin is what
+  /// is played; it is longer than `length` where the skin is uneven. Of a plan that an emission
+  /// plays, take_played(), speed and period are those of its samples.
   double period = 0.0;
 };
 

@@ -53,7 +53,7 @@ void list(Settings& s, Visitor& v) {
   v.field({"clusters", "", 1, kMostClusters, "k of the weighted k-means"}, s.clusters);
   v.field({"samples", "", 8, kPoints, "points of a path (N); preset best has fit_samples"},
           s.samples);
-  v.field({"speed", "m/s", 0.1, 100, "speed of the focal points (v)"}, s.speed);
+  v.field({"speed", "m/s", 0.1, kMaxFocusSpeed, "speed of the focal points (v)"}, s.speed);
   v.field({"draw_rate", "Hz", 0.1, 1e4, "laps a second of the longest path"}, s.draw_rate);
   v.field({"sigma", "m", 1e-4, 0.1, "fall-off of a focal point in Eqs. (1) and (4)"}, s.sigma);
   v.field({"gain", "", 0.01, 100, "gamma of the longest path: rendered over effective pressure"},

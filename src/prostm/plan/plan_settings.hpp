@@ -1,11 +1,13 @@
 #pragma once
 /// The planner's settings.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
 
 #include "prostm/core/settings.hpp"
+#include "prostm/plan/focus_speed.hpp"
 #include "prostm/plan/focus_widths.hpp"
 #include "prostm/plan/gain.hpp"
 #include "prostm/target/target_field.hpp"
@@ -74,8 +76,12 @@ struct PlanSettings {
   /// Returns the σ that a target is planned with [m]. @pre the target is valid.
   double sigma_on(const TargetField& target) const;
 
+  /// v of the paths that are planned [m/s]: `speed` within the margin that samples need,
+  /// kStepMargin of kMaxFocusSpeed, so that plans have the periods that are played.
+  double path_speed() const { return std::min(speed, kStepMargin * kMaxFocusSpeed); }
+
   /// L [m], the length of a path that is drawn draw_rate times a second, (P9a).
-  double max_length() const { return speed / draw_rate; }
+  double max_length() const { return path_speed() / draw_rate; }
 
   /// The law that gives γ of each path by its period.
   GainLaw gain_law() const { return {gain, gain_exponent, draw_rate, gain_from_skin}; }

@@ -11,6 +11,7 @@
 #include "prostm/plan/detail/paper/refine.hpp"
 #include "prostm/plan/detail/tours.hpp"
 #include "prostm/plan/detail/validity.hpp"
+#include "prostm/plan/lifted_plan.hpp"
 #include "prostm/plan/patches.hpp"
 #include "prostm/target/pressure_share.hpp"
 
@@ -140,8 +141,8 @@ void Planner::Scratch::append(const TargetField& target, int patch, double maxim
     const std::span<const Vec2> loop = all.subspan(begin, n);
     for (const Vec2& sample : loop) path.points.push_back(target.origin + sample / kMmPerMetre);
     path.length = closed_length(path);
-    path.speed = settings.speed;
-    path.period = path.length / path.speed;
+    path.speed = settings.path_speed();
+    path.period = skin_length(path, target) / path.speed;
     const double gain = settings.gain_law().of(path.period);
     for (const Vec2& sample : loop) {
       // a Catmull-Rom spline undershoots beside steep edges; pressure cannot be negative

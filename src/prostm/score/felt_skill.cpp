@@ -57,7 +57,8 @@ double felt_skill(const Plan& plan, const TargetFrame& frame, int patch,
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const LiftedPlan on_skin = lifted(plan, frame, settings);
   if (!(largest_pressure(on_skin) > 0.0) || !(max_pressure(target) > 0.0)) return kUnknown;
-  if (longest_lap(on_skin) > kLongestFelt) return kUnknown;
+  require_loop(plan.loop);
+  if (longest_lap(on_skin, sample_rate) > kLongestFelt) return kUnknown;
   const LoopSamples loop = loop_of(on_skin, settings, sample_rate);
   if (is_silent(loop) || !is_felt(target, loop)) return kUnknown;
   const Medium air;

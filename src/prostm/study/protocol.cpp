@@ -187,8 +187,9 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
     const auto given =
         settings_from_toml(text, file, settings_groups(method.settings), {"method", name});
     refuse_settings_of_the_run(given, file, name);
+    study::require_playable_method(method, file, text);
   }
-  study::settle_level(given_above, file, protocol);
+  study::settle_level(given_above, file, text, protocol);
   const std::size_t conditions = protocol.methods.size() * protocol.scenes.size();
   if (protocol.markers.conditions && conditions > kMostMarkedConditions) {
     throw InputError(fmt::format(

@@ -196,6 +196,7 @@ void StudySession::settle(const StudySight& sight) {
   changes_ = nlohmann::ordered_json::array();
   gate_at_onset_ = gate_;
   strength_ = {};
+  played_ = {};
   hand_ = nlohmann::ordered_json::array();
   hand_at_ = sight.time;
   hand_gone_ = 0.0;
@@ -211,10 +212,28 @@ void StudySession::present(const StudySight& sight) {
     strength_.target += sight.target_force;
     strength_.rendered += sight.rendered_force;
     ++strength_.looks;
+    add_played(sight);
   }
   if (!sight.palm || sight.time < hand_at_) return;
   hand_.push_back(study::pose_json(time, *sight.palm));
   hand_at_ = std::max(hand_at_ + kHandPeriod, sight.time);
+}
+
+/// Adds how the newest plan is played.
+void StudySession::add_played(const StudySight& sight) {
+  if (!sight.played) return;
+  played_.speed += sight.played->speed;
+  played_.period += sight.played->period;
+  played_.changed = std::max(played_.changed, sight.played->changed);
+  ++played_.looks;
+}
+
+/// Means over the trial; null without a plan.
+nlohmann::ordered_json StudySession::played_json() const {
+  if (played_.looks == 0) return nullptr;
+  return {{"speed_m_s", rounded(played_.speed / played_.looks, 4)},
+          {"period_ms", rounded(1e3 * played_.period / played_.looks, 4)},
+          {"changed_paths", played_.changed}};
 }
 
 /// Wants the trial's level, or the standard.
@@ -266,6 +285,7 @@ ResponseLine StudySession::trial_line(std::optional<bool> chosen, const StudySig
   line["anyway"] = anyway_;
   line["target_mn"] = rounded(1e3 * strength_.target / looks, 4);
   line["rendered_mn"] = rounded(1e3 * strength_.rendered / looks, 4);
+  line["played"] = played_json();
   line["hand_gone_s"] = rounded(hand_gone_, 3);
   line["hand"] = hand_;
   return line;

@@ -64,15 +64,23 @@ inline constexpr std::array<std::string_view, 11> kNames<StudyAct::Do> = {
     "next",  "anyway",  "answer",   "correct", "pause", "consent",
     "about", "explore", "withdraw", "tune",    "accept"};
 
+/// What the emission makes of a plan.
+struct StudyPlayed {
+  double speed = 0.0;   ///< mean of its focal points [m/s]; 0 where they stand still
+  double period = 0.0;  ///< of its longest lap, or of the modulation [s]
+  int changed = 0;      ///< paths that are played at another period than planned
+};
+
 /// The run as it is now.
 struct StudySight {
-  double time = 0.0;               ///< of a clock that never jumps [s]
-  double utc = 0.0;                ///< since 1970 [s]
-  bool in_force = false;           ///< whether the run plays what is wanted
-  std::optional<Pose> palm;        ///< in D; none without a hand
-  std::optional<GateResult> gate;  ///< of the newest target
-  double target_force = 0.0;       ///< of it [N]
-  double rendered_force = 0.0;     ///< of what is rendered for it [N]
+  double time = 0.0;                       ///< of a clock that never jumps [s]
+  double utc = 0.0;                        ///< since 1970 [s]
+  bool in_force = false;                   ///< whether the run plays what is wanted
+  std::optional<Pose> palm;                ///< in D; none without a hand
+  std::optional<GateResult> gate;          ///< of the newest target
+  double target_force = 0.0;               ///< of it [N]
+  double rendered_force = 0.0;             ///< of what is rendered for it [N]
+  std::optional<StudyPlayed> played = {};  ///< of the newest plan; none without one
 };
 
 /// The stimulus that is to be presented.
@@ -144,6 +152,10 @@ class StudySession {
     double target = 0.0, rendered = 0.0;  // sums over looks [N]
     int looks = 0;
   };
+  struct Played {
+    double speed = 0.0, period = 0.0;  // sums over looks [m/s], [s]
+    int looks = 0, changed = 0;        // changed: most paths
+  };
 
   StudyPhase replay();
   void pass_consent(double time);
@@ -154,6 +166,8 @@ class StudySession {
   void repeat_trial(const ResponseLine& line);
   void repeat_correction(const ResponseLine& line);
   void want(bool level);
+  void add_played(const StudySight& sight);
+  nlohmann::ordered_json played_json() const;
   std::string answer(const StudyAct& act, const StudySight& sight);
   std::string tune(const StudyAct& act, const StudySight& sight);
   std::string accept(const StudySight& sight);
@@ -189,6 +203,7 @@ class StudySession {
   double tried_ = 0.0;                      // to write them [s]
   double utc_offset_ = 0.0;                 // of the two clocks [s]
   Strength strength_;                       // of the trial
+  Played played_;                           // of the trial
   std::vector<Strength> strengths_;         // of each method and scene, over trials
   std::optional<double> begun_with_;        // level of the trial
   nlohmann::ordered_json changes_;          // of it: [s, level]

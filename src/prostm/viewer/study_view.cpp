@@ -58,6 +58,22 @@ bool is_allowed(Room room, const StudyAct& act, AnswersFrom answers) {
          act.what == Do::Withdraw;
 }
 
+/// How a plan is played.
+std::optional<StudyPlayed> played_of(const PlanSnapshot& plan) {
+  if (!plan.planned || !plan.settings) return std::nullopt;
+  StudyPlayed out;
+  if (!plan.plan.foci.empty()) {
+    out.period = am_period(plan.settings->emit, plan.emission_rate) / plan.emission_rate;
+    return out;
+  }
+  for (const PlayedPath& path : plan.played.paths) {
+    out.speed += path.speed / static_cast<double>(plan.played.paths.size());
+    out.period = std::max(out.period, path.period);
+  }
+  out.changed = plan.played.changed_paths();
+  return out;
+}
+
 /// Whether a plan was made with these settings.
 bool is_planned_with(const PipelineSettings& plan, const PipelineSettings& settings) {
   return plan.scene == settings.scene && plan.method == settings.method &&
@@ -96,6 +112,7 @@ StudySight StudyView::sight() {
   const double force = static_cast<double>(frame_.numbers[kForceMn]);
   s.target_force = force > 0.0 ? 1e-3 * force : 0.0;
   s.rendered_force = rendered_force(frame_);
+  s.played = played_of(plan);
   return s;
 }
 

@@ -6,24 +6,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "prostm/core/require.hpp"
 #include "prostm/emit/detail/envelope.hpp"
 #include "prostm/emit/detail/exchange.hpp"
 #include "prostm/emit/detail/matching.hpp"
 
 namespace prostm {
 namespace {
-
-// Both waveforms change by at most π/n a sample: with n = 126 by less than 1/40
-constexpr double kShortestPeriod = 126.0;  // [samples]
-constexpr double kLowestFrequency = 25.0;  // [Hz], so that a loss is silent within 40 ms
-
-int period_samples(const EmitSettings& settings, double sample_rate) {
-  require_between("sample_rate", sample_rate, kShortestPeriod * kLowestFrequency, 1e6, "Hz");
-  require_between("am_frequency", settings.am_frequency, kLowestFrequency,
-                  sample_rate / kShortestPeriod, "Hz");
-  return static_cast<int>(std::lround(sample_rate / settings.am_frequency));
-}
 
 std::vector<double> envelope_of(const EmitSettings& settings, int period) {
   const Waveform waveform = settings.am_waveform;
@@ -46,6 +34,7 @@ struct Part {
   std::size_t delay = 0;           // samples from the clock's zero to its own
   bool saturated = false;          // clipped at full scale
   bool limited = false;            // by the power limit
+  bool silenced = false;           // below the silent share
 };
 
 struct Focus {
@@ -62,7 +51,7 @@ struct FocusEmitter::Impl {
   Impl(Exchange& e, double sample_rate)
       : exchange(e),
         settings(e.settings),
-        envelope(envelope_of(settings, period_samples(settings, sample_rate))),
+        envelope(envelope_of(settings, am_period(settings, sample_rate))),
         stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * sample_rate))) {
     for (Focus& f : focus) f.last.p_D = f.now.p_D.cast<float>();
   }
@@ -138,6 +127,7 @@ void FocusEmitter::Impl::place(const LiftedPlan& plan) {
     part.p_D = given.p_D;
     part.amplitude = drive_intensity(given.pressure, settings.full_scale_pressure,
                                      settings.silent_below, part.saturated);
+    part.silenced = given.pressure > 0.0 && part.amplitude == 0.0;
     const auto delay = std::lround(given.phase * static_cast<double>(envelope.size()));
     part.delay = static_cast<std::size_t>(delay) % envelope.size();
   }
@@ -162,7 +152,7 @@ void FocusEmitter::Impl::assign(std::int64_t sample) {
   if (silent()) clock = 0;
   for (Focus& f : foci()) {
     f.state = State::Waits;
-    f.wanted = {f.now.p_D, 0.0, f.now.delay, false, false};
+    f.wanted = {f.now.p_D, 0.0, f.now.delay, false, false, false};
   }
   to_rest = next == Next::Rest;
   if (!to_rest) {
@@ -223,6 +213,7 @@ void FocusEmitter::Impl::write(Focus& f, FocusSample& out) {
   const bool sounds = out.intensity > 0.0F;
   stats.saturated += sounds && f.now.saturated ? 1 : 0;
   stats.limited += sounds && f.now.limited ? 1 : 0;
+  stats.silenced += f.now.silenced ? 1 : 0;
 }
 
 /// Whether the clock is to stand: a focal point at its zero goes over in the next sample.

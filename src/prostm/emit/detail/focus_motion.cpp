@@ -10,7 +10,19 @@ namespace {
 constexpr double kRounding = 1e-6;
 constexpr double kNothing = 1e-9;  // an offset that counts as zero [m]
 
+/// Step of a path that goes round on its own [m].
+double own_step(const LiftedPath& path, double sample_rate, double max_step) {
+  return std::min(path.speed / sample_rate, max_step);
+}
+
 }  // namespace
+
+std::int64_t lap_samples(const LiftedPath& path, double sample_rate, double max_step) {
+  if (path.speed <= kSlowest) return 1;
+  const double step = own_step(path, sample_rate, max_step);
+  return std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(std::ceil(path.length / step - kRounding)));
+}
 
 void FocusMotion::configure(double sample_rate, double max_step) {
   sample_rate_ = sample_rate;
@@ -21,13 +33,7 @@ double FocusMotion::step_of(const LiftedPath& path, const InStep& in_step) const
   if (in_step.samples > 0) {
     return path.length * static_cast<double>(in_step.laps) / static_cast<double>(in_step.samples);
   }
-  return std::min(path.speed / sample_rate_, max_step_);
-}
-
-std::int64_t FocusMotion::lap_samples(const LiftedPath& path) const {
-  if (path.speed <= kSlowest) return 1;
-  return std::max<std::int64_t>(
-      1, static_cast<std::int64_t>(std::ceil(path.length / step_of(path, {}) - kRounding)));
+  return own_step(path, sample_rate_, max_step_);
 }
 
 bool FocusMotion::reaches(const LiftedPath& path, const PathPlace& place,

@@ -16,12 +16,14 @@ struct InStep {
   std::int64_t count = 0;    ///< sample of the clock, any whole number
 };
 
-/// Largest step between samples, as a share of that at the largest speed: steps stay in bounds when
-/// positions become floats.
-inline constexpr double kStepMargin = 0.999;
-
 /// Below this speed a focal point is at rest [m/s].
 inline constexpr double kSlowest = 1e-6;
+
+/// Returns how many samples a lap of a path takes that goes round on its own, (E2): the fewest
+/// whose steps are within the path's speed and max_step [m]; 1 if a focal point would be at rest on
+/// it.
+/// @param sample_rate [Hz]. @pre the path is measured.
+std::int64_t lap_samples(const LiftedPath& path, double sample_rate, double max_step);
 
 /// A focal point on a closed path. Sample k of a lap lies at arc length s₀ ± L k/n, where n = ⌈L /
 /// step⌉ samples make a lap, (E2); so positions depend on integer counts and never drift.
@@ -69,7 +71,9 @@ class FocusMotion {
   /// Samples of a lap; 1 at rest, rounded down in step.
   std::int64_t lap_samples() const { return lap_; }
   /// Returns how many samples a lap on `path` takes; 1 if it would be at rest on it.
-  std::int64_t lap_samples(const LiftedPath& path) const;
+  std::int64_t lap_samples(const LiftedPath& path) const {
+    return prostm::lap_samples(path, sample_rate_, max_step_);
+  }
 
   static constexpr double kMaxTransit = 20e-3;  ///< longest move from path to path [s]
   static constexpr double kMaxOffset = 10e-3;   ///< about the diameter of a focus [m]

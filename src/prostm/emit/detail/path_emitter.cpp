@@ -14,6 +14,7 @@
 #include "prostm/emit/detail/matching.hpp"
 #include "prostm/emit/detail/start_place.hpp"
 #include "prostm/emit/drive.hpp"
+#include "prostm/emit/played_plan.hpp"
 
 namespace prostm {
 namespace {
@@ -49,14 +50,14 @@ PathPlace meeting_place(const LiftedPath& path, const InStep& in_step, const Vec
 }  // namespace
 
 struct PathEmitter::Impl {
-  Impl(Exchange& e, double rate, double max_speed);
+  Impl(Exchange& e, double rate, double fastest);
 
   Exchange& exchange;
 
   // constant
   const EmitSettings& settings;
-  const bool at_once;                  // switch_at = "now"
-  const double sample_rate, max_step;  // [Hz], [m]
+  const bool at_once;                             // switch_at = "now"
+  const double sample_rate, max_speed, max_step;  // [Hz], [m/s], [m]
   const double fade_slew, stall_slew;
   const std::int64_t stall_samples, longest_lap;
 
@@ -105,12 +106,13 @@ struct PathEmitter::Impl {
   void count(Focus& f, const Drive& d, std::int64_t sample);
 };
 
-PathEmitter::Impl::Impl(Exchange& e, double rate, double max_speed)
+PathEmitter::Impl::Impl(Exchange& e, double rate, double fastest)
     : exchange(e),
       settings(e.settings),
       at_once(settings.switch_at == SwitchAt::Now),
       sample_rate(rate),
-      max_step(max_speed / rate * kStepMargin),
+      max_speed(fastest),
+      max_step(fastest / rate * kStepMargin),
       fade_slew(largest_slew(settings.fade_time, rate)),
       stall_slew(largest_slew(settings.stall_fade_time, rate)),
       stall_samples(static_cast<std::int64_t>(std::ceil(settings.stall_time * rate))),
@@ -133,6 +135,7 @@ void PathEmitter::Impl::receive(std::int64_t sample) {
   fed = true;
   since_plan = 0;
   loop = shared_loop(plan(), sample_rate, max_step);
+  stats.changed_paths += played_plan(plan(), sample_rate, max_speed).changed_paths();
   if (std::none_of(foci().begin(), foci().end(), [](const Focus& f) {
         return f.state != State::Resting && f.motion.is_in_step();
       })) {
@@ -332,6 +335,7 @@ void PathEmitter::Impl::move(Focus& f, Drive& d, std::int64_t sample) {
       drive_intensity(pressure, settings.full_scale_pressure, settings.silent_below, saturated);
   d.max_fall = fade_slew;
   stats.saturated += saturated ? 1 : 0;
+  stats.silenced += pressure > 0.0 && d.wanted == 0.0 ? 1 : 0;
 }
 
 /// Updates the statistics of one focal point after a sample.

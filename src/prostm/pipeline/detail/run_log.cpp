@@ -50,6 +50,11 @@ void PlanLog::add(const WorldFrame& contact, const PlanFrame& frame, double run_
   for (const FocalPath& path : frame.plan.paths) {
     max_path_length_ = std::max(max_path_length_, path.length);
   }
+  for (const PlayedPath& path : frame.played.paths) {
+    if (path.laps == 0) continue;
+    lap_.add(path.period);
+    focus_speed_.add(path.speed);
+  }
 }
 
 void PlanLog::judge(double time, const GateResult& gate) {
@@ -88,6 +93,8 @@ void PlanLog::write(RunSummary& out) const {
   out.max_skin_length = max_skin_length_;
   out.plan = plan_.summary();
   out.lift = lift_.summary();
+  out.lap = lap_.summary();
+  out.focus_speed = focus_speed_.summary();
   out.latency = latency_.total();
   out.redraw = latency_.redraw();
   for (int part = 0; part < kLatencyParts; ++part) {

@@ -52,7 +52,7 @@ class PlanLog {
   std::int64_t held_ = 0, held_passed_ = 0;
   std::array<std::int64_t, kNames<GateProblem>.size()> held_problems_{};
   double max_path_length_ = 0.0, max_skin_length_ = 0.0;
-  Distribution plan_, lift_;
+  Distribution plan_, lift_, lap_, focus_speed_;
   LatencyLog latency_;
 };
 

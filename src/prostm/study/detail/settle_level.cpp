@@ -6,6 +6,9 @@
 #include <stdexcept>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/io/settings_file.hpp"
+#include "prostm/pipeline/playable.hpp"
+#include "prostm/pipeline/scene.hpp"
 #include "prostm/study/track.hpp"
 
 namespace prostm::study {
@@ -13,8 +16,9 @@ namespace {
 
 class LevelChecks {
  public:
-  LevelChecks(const std::string& file, const std::vector<std::string>& given, Protocol& protocol)
-      : file_(file), given_(given), protocol_(protocol), level_(protocol.level) {}
+  LevelChecks(const std::string& file, std::string_view text, const std::vector<std::string>& given,
+              Protocol& protocol)
+      : file_(file), text_(text), given_(given), protocol_(protocol), level_(protocol.level) {}
 
   void check() {
     const std::string_view task = name_of(protocol_.trials.task);
@@ -98,17 +102,53 @@ class LevelChecks {
       fail("level.against is the only method: give another one, whose level is varied");
   }
 
-  void check_method(const StudyMethod& method) {
-    std::vector<double> levels = {level_.low, level_.high};
-    if (gives("reference")) levels.push_back(level_.reference);
+  /// Checks that a level is played as it is written, in every scene.
+  void check_level(const StudyMethod& method, const char* key, double level) const {
     try {
-      for (const double level : levels) {
-        PipelineSettings settings = method.settings;
-        set_level(settings, level_.setting, level);
+      PipelineSettings settings = method.settings;
+      const double set = set_level(settings, level_.setting, level);
+      if (set != level) {
+        throw std::invalid_argument(
+            fmt::format("{} takes whole numbers, and would be {:g}", level_.setting, set));
       }
+      require_playable(settings, settings.device_info());
+      if (level_.setting == "plan.gain" || level_.setting == "emit.full_scale_pressure")
+        check_scale(settings);
     } catch (const std::invalid_argument& error) {
-      fail(fmt::format("[level], with method {}: {}", method.name, error.what()));
+      const int line = line_in_toml(text_, file_, {"level", key});
+      throw InputError(fmt::format("{}{}: level.{} = {:g} cannot be played with method {}: {}",
+                                   file_, line > 0 ? fmt::format(", line {}", line) : "", key,
+                                   level, method.name, error.what()));
     }
+  }
+
+  /// Checks that full scale holds the largest pressure of each scene, and that it sounds.
+  void check_scale(const PipelineSettings& settings) const {
+    const double full = settings.emit.full_scale_pressure, gain = settings.plan.gain;
+    if (full == 0.0 || settings.method == Method::Am) return;
+    for (const StudyScene& scene : protocol_.scenes) {
+      const double pressure = gain * scene_from_name(scene.name).full_scale_pressure;
+      const double share = pressure / full;
+      if (share > 1.0 + kRounding) {
+        throw std::invalid_argument(fmt::format(
+            "scene {} renders up to {:.3g} Pa with gain {:g}, which full_scale_pressure = {:g} Pa "
+            "clips",
+            scene.name, pressure, gain, full));
+      }
+      if (share < settings.emit.silent_below) {
+        throw std::invalid_argument(fmt::format(
+            "scene {} renders up to {:.3g} Pa with gain {:g}, {:.2g} of full_scale_pressure, and "
+            "shares under silent_below = {:g} are silent",
+            scene.name, pressure, gain, share, settings.emit.silent_below));
+      }
+    }
+  }
+
+  void check_method(const StudyMethod& method) {
+    check_level(method, "low", level_.low);
+    check_level(method, "high", level_.high);
+    if (gives("start")) check_level(method, "start", level_.start);
+    if (gives("reference")) check_level(method, "reference", level_.reference);
     if (protocol_.trials.task == StudyTask::ForcedChoice && gives("reference") &&
         level_.reference > level_.low) {
       fail(
@@ -134,7 +174,10 @@ class LevelChecks {
     }
   }
 
+  static constexpr double kRounding = 1e-6;
+
   const std::string& file_;
+  const std::string_view text_;
   const std::vector<std::string>& given_;
   Protocol& protocol_;
   LevelSettings& level_;
@@ -143,8 +186,20 @@ class LevelChecks {
 }  // namespace
 
 void settle_level(const std::vector<std::string>& given, const std::string& file,
-                  Protocol& protocol) {
-  LevelChecks(file, given, protocol).check();
+                  std::string_view text, Protocol& protocol) {
+  LevelChecks(file, text, given, protocol).check();
+}
+
+void require_playable_method(const StudyMethod& method, const std::string& file,
+                             std::string_view text) {
+  try {
+    require_playable(method.settings, method.settings.device_info());
+  } catch (const std::invalid_argument& error) {
+    const int line = line_in_toml(text, file, {"method", method.name});
+    throw InputError(fmt::format("{}{}: method {}: {}", file,
+                                 line > 0 ? fmt::format(", line {}", line) : "", method.name,
+                                 error.what()));
+  }
 }
 
 }  // namespace prostm::study

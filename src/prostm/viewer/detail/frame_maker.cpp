@@ -109,7 +109,8 @@ void fill_paths(const PlanSnapshot& plan, ViewFrame& out) {
     to.patch = static_cast<std::uint32_t>(focus.patch);
     to.length = to.speed = to.loop = 0.0F;
     to.phase = static_cast<float>(focus.phase);
-    to.period = static_cast<float>(1.0 / plan.settings->emit.am_frequency);
+    to.period =
+        static_cast<float>(am_period(plan.settings->emit, plan.emission_rate) / plan.emission_rate);
     to.points.assign(1, fill_point(target, focus.position, focus.pressure));
   }
 }

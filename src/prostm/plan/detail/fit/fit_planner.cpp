@@ -260,7 +260,7 @@ int FitPlanner::mend_between(const TargetField& target, int paths) {
 /// Copies the paths of points_ to plan_, and sets bounds_ to what the emission can play on them.
 void FitPlanner::take_plan(const TargetField& target, int paths) {
   plan_.loops.reset(samples_, paths);
-  bounds_ = play_bounds(settings_.gain, settings_.speed);
+  bounds_ = play_bounds(settings_.gain, settings_.path_speed());
   for (int k = 0; k < paths; ++k) {
     const auto place = static_cast<std::size_t>(k);
     const std::span<Vec2> loop = path_at(k);
@@ -271,7 +271,7 @@ void FitPlanner::take_plan(const TargetField& target, int paths) {
     }
     factor_[place] = skin_factor(target, loop);
     length_[place] = loop_length(loop) / kMmPerMetre * factor_[place];
-    period_[place] = length_[place] / settings_.speed;
+    period_[place] = length_[place] / settings_.path_speed();
   }
   if (felt_) step_together(paths);
   for (int k = 0; k < paths; ++k) {
@@ -319,7 +319,7 @@ bool FitPlanner::leave_out_silent(int& paths) {
       own = std::max(own, plan_.reconstruction.pressure[plan_.loops.node(i, k)]);
   }
   const auto [least, most] = std::minmax_element(highest.begin(), highest.begin() + paths);
-  const float sounds = play_bounds(settings_.gain, settings_.speed).least[0];
+  const float sounds = play_bounds(settings_.gain, settings_.path_speed()).least[0];
   const auto weak = static_cast<float>(settings_.weak_pressure);
   if (paths == 1 || *least >= (*most >= sounds ? std::max(weak, sounds) : weak)) return false;
   const auto silent = static_cast<int>(least - highest.begin());
@@ -386,8 +386,8 @@ void FitPlanner::append(const TargetField& target, int patch, Plan& plan, PlanSt
     }
     path.length = closed_length(path);
     const double on_skin = path.length * factor_[place];
-    path.period = felt_ ? period_[place] : on_skin / settings_.speed;
-    path.speed = felt_ ? on_skin / path.period : settings_.speed;
+    path.period = felt_ ? period_[place] : on_skin / settings_.path_speed();
+    path.speed = felt_ ? on_skin / path.period : settings_.path_speed();
     const double gain = settings_.gain_law().of(path.period);
     for (int i = 0; i < n; ++i) {
       const std::size_t node = plan_.loops.node(start.sample(i, n), k);
@@ -407,7 +407,7 @@ void FitPlanner::plan_patch(const TargetField& target, double maximum, double fu
   full_scale_ = full_scale;
   is_alone_ = is_alone;
   rendered_ = std::min(maximum, kAmple * (full_scale / settings_.gain));
-  search_.set_bounds(play_bounds(settings_.gain, settings_.speed));
+  search_.set_bounds(play_bounds(settings_.gain, settings_.path_speed()));
   is_flat_ = is_constant(target.height);
   if (!settings_.widths.empty()) {
     settings_.sigma = settings_.widths.on(target);

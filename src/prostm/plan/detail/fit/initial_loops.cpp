@@ -11,6 +11,19 @@ namespace {
 
 constexpr float kRelaxation = 1.5F;  // centres overshoot their means, which saves passes
 
+/// Rounds coordinates below 4 m to multiples of 1/1024 mm. Many cells of a raster are at equal
+/// distances from two centres, which begin at cells and may be the mean of one. With these
+/// multiples such ties are broken alike, whatever the last digits of the raster's geometry and
+/// pressures are, as in copies in single precision.
+float snapped(float millimetres) {
+  constexpr float kCoarse = 12288.0F;  // floats beside it are 1/1024 apart
+  return (millimetres + kCoarse) - kCoarse;
+}
+
+void snap(std::span<float> millimetres) {
+  for (float& x : millimetres) x = snapped(x);
+}
+
 }  // namespace
 
 InitialLoops::InitialLoops(std::size_t max_cells) {
@@ -40,6 +53,8 @@ void InitialLoops::set(const CellTiles& cells, float weak,
     size_ += list_strong_cells(cells.tiles()[t], cells.mean_weights(t), threshold, allowed,
                                {x_.data() + size_, y_.data() + size_, pressure_.data() + size_});
   }
+  snap(std::span(x_).first(size_));
+  snap(std::span(y_).first(size_));
 }
 
 /// Weighs cells by the root of their pressure. Stops are then spread farther over weak areas than
@@ -93,8 +108,8 @@ void InitialLoops::cluster(Group group, int k, int passes, Random& random) {
       const Moments sum = sums[0][c] + sums[1][c];
       mass[c] = sum[0];
       if (mass[c] == 0.0F) continue;
-      cx[c] += relaxation * (sum[1] / mass[c] - cx[c]);
-      cy[c] += relaxation * (sum[2] / mass[c] - cy[c]);
+      cx[c] += relaxation * (snapped(sum[1] / mass[c]) - cx[c]);
+      cy[c] += relaxation * (snapped(sum[2] / mass[c]) - cy[c]);
     }
   }
   centres_.centre.clear();
