@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is presented with these settings: the limits of speeds and periods, as they are played.
+/// The stimulus of these settings: the limits of speeds and periods, as they are played.
 Json stimulus_json(const PipelineSettings& s) {
   Json json = {{"method", name_of(s.method)}, {"full_scale_pressure", nullptr}};
   if (s.emit.full_scale_pressure > 0.0) json["full_scale_pressure"] = s.emit.full_scale_pressure;

@@ -1,5 +1,5 @@
 #pragma once
-/// What an emitter makes of a plan: speeds and periods as played.
+/// The emission of a plan: speeds and periods as played.
 
 #include <boost/container/static_vector.hpp>
 #include <string>

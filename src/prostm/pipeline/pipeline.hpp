@@ -114,7 +114,7 @@ struct PlanFrame {
   double start = 0.0;                       ///< of the update; run time [s]
   double plan_time = 0.0, lift_time = 0.0;  ///< [s]
   double max_skin_length = 0.0;             ///< longest path on the skin [m]
-  /// What the emission makes of it; speeds, periods and loop of `plan` are these.
+  /// Emission of the plan; speeds, periods and loop of `plan` are these.
   PlayedPlan played;
   double full_scale_pressure = 0.0;  ///< rendered, at intensity 1 [Pa]
   double emission_rate = 0.0;        ///< samples of the emission [Hz]

@@ -82,7 +82,7 @@ struct RunSummary {
   std::array<Summary, kLatencyParts> latency_parts;  ///< by LatencyPart; their means add up to the
                                                      ///< mean latency
   Summary track, hand, world, contact, plan, lift;   ///< of the stages
-  /// Of all paths of all plans, as played: period of a lap [s], speed of the focal point [m/s].
+  /// Period of a lap [s] and speed of the focal point [m/s] as played, over all paths of all plans.
   Summary lap, focus_speed;
 };
 

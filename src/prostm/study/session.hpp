@@ -64,7 +64,7 @@ inline constexpr std::array<std::string_view, 11> kNames<StudyAct::Do> = {
     "next",  "anyway",  "answer",   "correct", "pause", "consent",
     "about", "explore", "withdraw", "tune",    "accept"};
 
-/// What the emission makes of a plan.
+/// Emission of a plan.
 struct StudyPlayed {
   double speed = 0.0;   ///< mean of its focal points [m/s]; 0 where they stand still
   double period = 0.0;  ///< of its longest lap, or of the modulation [s]
