@@ -47,7 +47,7 @@ void print_foci(std::FILE* out, const Plan& plan, const PlanStats& stats, double
   }
 }
 
-void print_paths(std::FILE* out, const Plan& plan, const PlanStats& stats,
+void print_paths(std::FILE* out, const Plan& plan, const PlayedPlan& played, const PlanStats& stats,
                  const std::string& felt) {
   const std::string work = stats.clusters > 0
                                ? fmt::format("{} clusters, {} leaves", stats.clusters, stats.leaves)
@@ -61,8 +61,9 @@ void print_paths(std::FILE* out, const Plan& plan, const PlanStats& stats,
   }
   for (std::size_t i = 0; i < plan.paths.size(); ++i) {
     const FocalPath& path = plan.paths[i];
+    const double period = played.paths[i].laps > 0 ? played.paths[i].period : path.period;
     fmt::print(out, "  path {}: {:.1f} mm, {:.1f} ms, {:.1f} Hz, {} points\n", i + 1,
-               path.length * 1e3, path.period * 1e3, 1.0 / path.period, path.points.size());
+               path.length * 1e3, period * 1e3, 1.0 / period, path.points.size());
   }
 }
 
@@ -126,6 +127,7 @@ struct Result {
   Plan plan;
   PlanStats stats;
   PlanTrace trace;
+  PlayedPlan played;
   PlanQuality quality;
   std::optional<double> weighted;  ///< RMSE by the target's weights, where it has some
   std::vector<Control> controls;
@@ -176,16 +178,15 @@ PlanQuality quality_of(const TargetField& target, const Plan& plan, const Segmen
   return quality;
 }
 
-/// Sets speeds and periods of the plan to those of the emission.
+/// Fills in the emission of the plan.
 void play(const TargetField& target, const PipelineSettings& settings, Result& r) {
   TargetFrame frame;
   frame.patches.push_back(target);
   LiftedPlan lifted;
   lift(r.plan, frame, lifted);
   const DeviceInfo device = settings.device_info();
-  const PlayedPlan played = played_plan(lifted, device.emission_rate(), device.max_focus_speed());
-  take_played(played, r.plan);
-  r.warnings = played_warnings(played);
+  r.played = played_plan(lifted, device.emission_rate(), device.max_focus_speed());
+  r.warnings = played_warnings(r.played);
 }
 
 /// @throws InputError for a field that cannot be planned. @param path names it.
@@ -261,6 +262,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
   extras.controls = &r.controls;
   extras.warnings = &r.warnings;
   extras.program = version_text();
+  if (extras.method == Method::ProStm) extras.played = &r.played;
   write_file(json, plan_to_json(r.plan, target, extras, settings_groups(settings)));
 }
 
@@ -290,7 +292,7 @@ void print_plan(std::FILE* out, const Result& r, const TargetField& target,
   if (is_am(settings)) {
     print_foci(out, r.plan, r.stats, max_pressure(target), felt);
   } else {
-    print_paths(out, r.plan, r.stats, felt);
+    print_paths(out, r.plan, r.played, r.stats, felt);
   }
   print_quality(out, r.quality, r.controls);
   if (own_width) {

@@ -5,6 +5,7 @@
 #include "prostm/core/json.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/io/detail/raster_json.hpp"
+#include "prostm/io/plan_file.hpp"
 #include "prostm/io/quantity_json.hpp"
 #include "prostm/io/settings_file.hpp"
 
@@ -36,17 +37,6 @@ Json loop_json(const LoopSamples& loop) {
           {"duration_ms", to_milli(loop.samples / loop.sample_rate)},
           {"laps", loop.laps},
           {"stretch", loop.stretch}};
-}
-
-Json paths_json(const LoopSamples& loop) {
-  Json list = Json::array();
-  for (const PlayedPath& path : loop.played.paths) {
-    list.push_back({{"speed_m_s", path.speed},
-                    {"period_ms", to_milli(path.period)},
-                    {"planned_speed_m_s", path.planned_speed},
-                    {"planned_period_ms", to_milli(path.planned_period)}});
-  }
-  return list;
 }
 
 Json drives_json(const LoopDriveResult& drives) {
@@ -111,7 +101,7 @@ std::string physical_to_json(const PhysicalReport& report) {
                    {"amplitude_interval_pa_m", {array.amplitude_low, array.amplitude_high}},
                    {"solver", report.solver}};
   document["loop"] = loop_json(*report.loop);
-  document["paths"] = paths_json(*report.loop);
+  document["paths"] = played_to_json(report.loop->played);
   document["warnings"] = report.warnings;
   document["drives"] = drives_json(*report.drives);
   document["foci"] = focus_json(report.focus);

@@ -9,6 +9,7 @@
 #include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/quantity_json.hpp"
 #include "prostm/io/settings_file.hpp"
+#include "prostm/score/felt_skill.hpp"
 
 namespace prostm {
 namespace {
@@ -126,6 +127,17 @@ void read_list(const JsonNode& node, const char* what, const Read& read, List& o
 
 }  // namespace
 
+nlohmann::ordered_json played_to_json(const PlayedPlan& played) {
+  Json list = Json::array();
+  for (const PlayedPath& path : played.paths) {
+    list.push_back({{"speed_m_s", path.speed},
+                    {"period_ms", to_milli(path.period)},
+                    {"planned_speed_m_s", path.planned_speed},
+                    {"planned_period_ms", to_milli(path.planned_period)}});
+  }
+  return list;
+}
+
 std::string plan_to_json(const Plan& plan, const TargetField& target, const PlanFileExtras& extras,
                          const std::vector<SettingsGroup>& settings) {
   Json document = {{"format", "prostm-plan/1"}, {"method", name_of(extras.method)}};
@@ -135,6 +147,7 @@ std::string plan_to_json(const Plan& plan, const TargetField& target, const Plan
   for (const FocalPath& path : plan.paths) list.push_back(path_json(path));
   for (const FocalPoint& focus : plan.foci) list.push_back(focus_json(focus));
 
+  if (extras.played != nullptr) document["played"] = played_to_json(*extras.played);
   if (extras.power != nullptr) {
     document["power"] = {{"share_of_array", extras.power->array},
                          {"share_of_full_scale", extras.power->pressure},

@@ -1,6 +1,7 @@
 #pragma once
 /// Plans in files: prostm-plan/1.
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,8 @@
 #include "prostm/score/score.hpp"
 
 namespace prostm {
+
+struct PlayedPlan;
 
 /// The share of power of each focal point of a plan, all drawn at the same time.
 struct PowerShare {
@@ -41,8 +44,12 @@ struct PlanFileExtras {
   const std::vector<Control>* controls = nullptr;
   const PowerShare* power = nullptr;                   ///< writes "power", when given
   const std::vector<std::string>* warnings = nullptr;  ///< writes "warnings", when given
+  const PlayedPlan* played = nullptr;                  ///< writes "played", when given
   std::string program;  ///< writes "prostm", the program's version, when not empty
 };
+
+/// Speeds and periods of each path as played and as planned, for files.
+nlohmann::ordered_json played_to_json(const PlayedPlan& played);
 
 /// @param target the field that was planned: its plane and heights are repeated in the file.
 /// @param settings empty: none are written.
