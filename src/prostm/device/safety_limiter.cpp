@@ -11,7 +11,7 @@ namespace {
 constexpr float kRounding = 1e-4F;    // rounding of floats, which is no excess
 constexpr float kSilence = 0.01F;     // intensity
 constexpr float kFarthest = 100.0F;   // [m], beyond which there are no focal points
-constexpr double kStepMargin = 1e-3;  // of a step, for places in floats
+constexpr double kPlaceRounding = 1e-3;  // of a step, for places in floats
 constexpr double kRampTime = 0.050, kSilenceTime = 0.100, kMuteTime = 0.010;  // [s]
 
 // The mean over time has this time constant, so that over a second it is at most
@@ -71,7 +71,7 @@ SafetyLimiter::SafetyLimiter(const SampleLimits& limits)
     : limits_(limits),
       change_(static_cast<float>(limits.change) * (1.0F + kRounding)),
       power_(static_cast<float>(std::min(limits.power, limits.caps.power)) * (1.0F + kRounding)),
-      step_(static_cast<float>(kMaxFocusSpeed / limits.sample_rate * (1.0 + kStepMargin))),
+      step_(static_cast<float>(kMaxFocusSpeed / limits.sample_rate * (1.0 + kPlaceRounding))),
       ramp_(static_cast<float>(1.0 / (kRampTime * limits.sample_rate))),
       mute_fall_(static_cast<float>(1.0 / (kMuteTime * limits.sample_rate))),
       weight_(static_cast<float>(1.0 / (kMeanTime * limits.sample_rate))),
