@@ -30,7 +30,9 @@ from test_bad_input import changed, hand_lines
      'run does not expect "four-plumes"; did you mean "--scene four-plumes"? See prostm run --help'),
     (["levels", "or"], 'levels does not expect "or"; see prostm levels --help'),
     (["plan", "a.npy", "b.npy"], 'plan does not expect "b.npy"; see prostm plan --help'),
-    (["plan"], "plan needs a file: target field (.json, .npy, .npz, .png or .h5, or - for standard input; docs/files.md); see prostm plan --help"),
+    (["plan"],
+     "plan needs a file: target field (.json, .npy, .npz, .png or .h5, or - for standard input; docs/files.md); see prostm "
+     "plan --help"),
     (["bench"],
      "bench needs a file: recordings (.h5) of prostm capture or prostm run --record; see prostm bench --help"),
     (["plan", ""], "field needs the name of a file, and the one given is empty"),

@@ -324,9 +324,13 @@ TEST(StudySession, KeepsAnswersWhileTheDiskIsFull) {
     EXPECT_THAT(s.answer(true), HasSubstr("could not be written"));
     EXPECT_THAT(s.session.problem(), HasSubstr("could not be written"));
     EXPECT_FALSE(s.until(StudyPhase::Presenting)) << "no trial before the answer is on the disk";
+    EXPECT_THAT(s.session.finish(s.sight.time), HasSubstr("could not be written"));
+    EXPECT_EQ(s.session.unwritten().size(), 1U);
+    EXPECT_EQ(lines_of(s.file, "trial").size(), 0U) << "only what is on the disk is counted";
   }
   ASSERT_TRUE(s.until(StudyPhase::Presenting));
   EXPECT_EQ(s.session.problem(), "");
+  EXPECT_TRUE(s.session.unwritten().empty());
   EXPECT_EQ(lines_of(s.file, "trial").size(), 1U);
 }
 
