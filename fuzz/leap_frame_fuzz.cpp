@@ -8,10 +8,10 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   prostm::HandFrame frame;
-  std::string problem;
+  prostm::HandFaults faults;
   const auto kind =
-      prostm::leap_message({reinterpret_cast<const char*>(data), size}, frame, problem);
-  if ((kind == prostm::LeapMessage::Refused) == problem.empty()) std::abort();
+      prostm::leap_message({reinterpret_cast<const char*>(data), size}, frame, faults);
+  if ((kind == prostm::LeapMessage::Refused) != (faults.frames() == 1)) std::abort();
   if (kind != prostm::LeapMessage::Frame) return 0;
   for (const prostm::Hand& hand : frame.hands) {
     for (const prostm::Vec3& p : hand.position) {

@@ -123,7 +123,8 @@ TEST(HandsJsonl, SaysWhatIsWrongAndWhere) {
   expect_jsonl_error(whole.substr(0, whole.size() - 100), "ends too early");
   json three = neutral_frame(0.0);
   three["hands"] = {neutral_hand(1, 0.1), neutral_hand(2, 0.2), neutral_hand(3, 0.3)};
-  expect_jsonl_error(jsonl({neutral_header(), three}), "has 3 hands; it must have at most 2");
+  expect_jsonl_error(jsonl({neutral_header(), three}),
+                     "is one of 3 hands of its frame; there must be at most 2");
   three["hands"] = {neutral_hand(1, 0.1), neutral_hand(1, 0.2)};
   expect_jsonl_error(jsonl({neutral_header(), three}), "ids must differ");
 }
@@ -262,13 +263,13 @@ TEST(LeapJson, SaysWhatIsWrongAndWhere) {
   expect_error([] { hands_from_leap_json(" ", "x.json"); }, "is empty");
   expect_leap_error({{"metadata", 1}}, "frames");
   expect_leap_error({{"frames", json::array()}}, "holds 0 frames");
-  expect_leap_error(with("/frames/1/timestamp", 999), "\"frames\"[1]");
+  expect_leap_error(with("/frames/1/timestamp", 999), "frames[1]");
   expect_leap_error(with("/frames/1/timestamp", 999), "time must increase");
   expect_leap_error(with("/frames/1/timestamp", "soon"), "must be a number");
   expect_leap_error(with("/frames/0/pointables/2/mcpPosition", {1, 2}), "it must have 3");
   expect_leap_error(with("/frames/0/pointables/2/mcpPosition", {1, 2, nullptr}),
                     "must be a number");
-  expect_leap_error(with("/frames/0/pointables/2/type", 1), "second finger of type 1");
+  expect_leap_error(with("/frames/0/pointables/2/type", 1), "has no finger of type 2");
   expect_leap_error(with("/frames/0/pointables/2/handId", 7), "has no finger of type 2");
   expect_leap_error(with("/frames/0/pointables/2/tipPosition", {0, 400, 0}),
                     "bones must be from 8 to 120 mm");

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <vector>
+
 #include "leap_json.hpp"
 #include "prostm/track/hand_source.hpp"
 
@@ -28,10 +31,10 @@ TEST(LeapFrame, BasesOfLeftHandsMayBeOfEitherHand) {
     const HandFrame sent = scripted(left);
     for (const bool mirrored : {false, true}) {
       HandFrame frame;
-      std::string problem;
-      ASSERT_EQ(leap_message(test::leap_json(sent, mirrored).dump(), frame, problem),
-                LeapMessage::Frame)
-          << problem;
+      HandFaults faults;
+      ASSERT_EQ(leap_message(test::leap_json(sent, mirrored).dump(), frame, faults),
+                LeapMessage::Frame);
+      ASSERT_FALSE(faults.any()) << faults.first;
       const Hand &a = frame.hands.at(0), &b = sent.hands.at(0);
       EXPECT_EQ(a.side, b.side);
       EXPECT_EQ(a.inferred, 0u);
@@ -47,20 +50,90 @@ TEST(LeapFrame, BasesOfLeftHandsMayBeOfEitherHand) {
 
 TEST(LeapFrame, GreetingsAndEventsAreNoFrames) {
   HandFrame frame;
-  std::string problem;
+  HandFaults faults;
   for (const char* text :
        {R"({"serviceVersion":"2.3.1+33747","version":6})", R"({"version":6})",
         R"({"event":{"type":"deviceEvent","state":{"attached":true,"id":"x"}}})"}) {
-    EXPECT_EQ(leap_message(text, frame, problem), LeapMessage::Other) << text;
+    EXPECT_EQ(leap_message(text, frame, faults), LeapMessage::Other) << text;
   }
-  EXPECT_EQ(leap_message(R"({"timestamp":5,"hands":[],"pointables":[]})", frame, problem),
+  EXPECT_EQ(leap_message(R"({"timestamp":5,"hands":[],"pointables":[]})", frame, faults),
             LeapMessage::Frame);
   EXPECT_TRUE(frame.hands.empty());
   EXPECT_DOUBLE_EQ(frame.time, 5e-6);
-  EXPECT_EQ(leap_message(R"({"hands":[]})", frame, problem), LeapMessage::Refused);
-  EXPECT_EQ(problem,
+  EXPECT_EQ(leap_message(R"({"hands":[]})", frame, faults), LeapMessage::Refused);
+  EXPECT_EQ(faults.count[static_cast<std::size_t>(HandFault::Time)], 1);
+  EXPECT_EQ(faults.first,
             "a message of the tracker: \"timestamp\" is missing; it must be the time in "
             "microseconds");
+}
+
+/// Returns the message of a flat hand without bases, whose fingers are bent at the knuckle by
+/// `bend` and swung by `swing` [rad], with noise of `noise` [m] at each joint.
+nlohmann::json bent_fingers(Side side, double bend, double swing, double noise, unsigned seed) {
+  HandFrame frame;
+  make_study_hand({.side = side})->sample(0.0, frame);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, noise);
+  Hand& hand = frame.hands.at(0);
+  for (std::size_t base = kIndexMetacarpal; base < kJointCount; base += 5) {
+    const Quat q = hand.orientation[base];
+    const Vec3 along = q * Eigen::AngleAxisd(swing, Vec3::UnitY()) *
+                       Eigen::AngleAxisd(-bend, Vec3::UnitX()) * -Vec3::UnitZ();
+    for (std::size_t j = base + 2; j < base + 5; ++j) {
+      hand.position[j] = hand.position[j - 1] + (j == base + 2 ? 0.04 : 0.02) * along;
+      for (double& x : hand.position[j]) x += normal(random);
+    }
+  }
+  nlohmann::json message = test::leap_json(frame);
+  for (nlohmann::json& finger : message["pointables"]) finger.erase("bases");
+  return message;
+}
+
+TEST(LeapFrame, FingersMayBendByAnyAngle) {
+  constexpr double kDegree = 3.14159265358979 / 180.0;
+  std::vector<Quat> last(kJointCount, Quat::Identity());
+  for (const Side side : {Side::Left, Side::Right}) {
+    for (const double swing : {-20.0, 0.0, 15.0}) {
+      for (int bend = -30; bend <= 125; ++bend) {
+        const auto seed = static_cast<unsigned>(bend + 30);
+        HandFrame frame;
+        HandFaults faults;
+        const auto message =
+            bent_fingers(side, bend * kDegree, swing * kDegree, bend % 2 == 0 ? 0.0 : 3e-4, seed);
+        ASSERT_EQ(leap_message(message.dump(), frame, faults), LeapMessage::Frame);
+        ASSERT_FALSE(faults.any()) << bend << ": " << faults.first;
+        const Hand& hand = frame.hands.at(0);
+        for (std::size_t base = kIndexMetacarpal; base < kJointCount; base += 5) {
+          const std::size_t knuckle = base + 1;
+          const Vec3 bone = (hand.position[knuckle + 1] - hand.position[knuckle]).normalized();
+          EXPECT_GT(bone.dot(hand.orientation[knuckle] * -Vec3::UnitZ()), 0.9999);
+          // the frame turns with the finger and never flips over
+          if (bend > -30) {
+            EXPECT_LT(hand.orientation[knuckle].angularDistance(last[knuckle]), 25.0 * kDegree)
+                << bend << " " << swing;
+          }
+          last[knuckle] = hand.orientation[knuckle];
+        }
+      }
+    }
+  }
+}
+
+TEST(LeapFrame, AFistCostsNoHand) {
+  nlohmann::json fist = bent_fingers(Side::Right, 1.72, 0.0, 0.0, 1),
+                 flat = bent_fingers(Side::Left, 0.0, 0.0, 0.0, 1);
+  flat["hands"][0]["id"] = 9;
+  for (nlohmann::json& finger : flat["pointables"]) {
+    finger["handId"] = 9;
+    finger["id"] = 90 + finger["type"].get<int>();
+    fist["pointables"].push_back(finger);
+  }
+  fist["hands"].push_back(flat["hands"][0]);
+  HandFrame frame;
+  HandFaults faults;
+  EXPECT_EQ(leap_message(fist.dump(), frame, faults), LeapMessage::Frame);
+  EXPECT_EQ(frame.hands.size(), 2u);
+  EXPECT_FALSE(faults.any()) << faults.first;
 }
 
 }  // namespace

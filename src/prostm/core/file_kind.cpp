@@ -5,6 +5,11 @@
 
 namespace prostm {
 
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kMark("\xEF\xBB\xBF");
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 std::string_view kind_by_content(std::string_view bytes) {
   constexpr std::string_view kHdf5("\x89HDF\r\n\x1a\n"), kPng("\x89PNG\r\n\x1a\n"),
       kNpy("\x93NUMPY"), kZip("PK\x03\x04", 4);
@@ -12,6 +17,9 @@ std::string_view kind_by_content(std::string_view bytes) {
   if (bytes.starts_with(kPng)) return "a PNG picture";
   if (bytes.starts_with(kNpy)) return "an NPY file";
   if (bytes.starts_with(kZip)) return "a zip archive";
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+    return "text in UTF-16 (save it as UTF-8)";
+  bytes = without_mark(bytes);
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   if (first != bytes.npos && bytes[first] == '{') return "JSON";
   return {};

@@ -8,7 +8,8 @@
 #include "prostm/core/file.hpp"
 #include "prostm/core/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/detail/hand_file_parts.hpp"
+#include "prostm/io/detail/hand_collector.hpp"
+#include "prostm/io/detail/hand_lines.hpp"
 #include "prostm/track/hand_json.hpp"
 
 namespace prostm {
@@ -34,8 +35,9 @@ Quat unit_quaternion(const JsonNode& node, std::size_t joint) {
   const Quat q(part(3), part(0), part(1), part(2));
   const double norm = q.norm();
   if (!(std::abs(norm - 1.0) <= 0.01)) {
-    node.fail(fmt::format("has a quaternion of length {} at joint {}; it must be 1 within 0.01",
-                          norm, joint_name(static_cast<int>(joint))));
+    fail_as(HandFault::Axes, node,
+            fmt::format("has a quaternion of length {} at joint {}; it must be 1 within 0.01", norm,
+                        joint_name(static_cast<int>(joint))));
   }
   return Quat(q.coeffs() / norm);
 }
@@ -67,7 +69,6 @@ Hand neutral_hand(const JsonNode& node) {
     hand.radius[j] = r.at(j).number(-1.0, 1.0);
     hand.velocity[j] = Vec3::Zero();
   }
-  check_hand(node, hand);
   return hand;
 }
 
@@ -89,41 +90,47 @@ void check_header(const JsonNode& header) {
   }
 }
 
-/// The next line that is not blank, cut from `text`; empty at the end. `line` counts from 1.
-std::string_view next_line(std::string_view& text, std::size_t& line) {
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view found = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    ++line;
-    if (found.find_first_not_of(" \t\r") != found.npos) return found;
+constexpr double kMostLength = 1e6;  // of what may be a hand in some unit
+constexpr HandUnits kUnits = {"t", 1.0, "seconds", 1.0, "metres"};
+
+double time_of(const JsonNode& frame) {
+  try {
+    return frame.at("t", "the time in seconds").number(-1e12, 1e19);
+  } catch (const InputError& error) {
+    throw HandError(HandFault::Time, error.what());
   }
-  return {};
+}
+
+/// Notes the size of the frame's hands as they are written, whether or not they can be read.
+void note_spans(const JsonNode& hands, HandCollector& collector) {
+  const auto number = [](const json& list, std::size_t i) {
+    const double x = list[i].is_number() ? list[i].get<double>() : std::nan("");
+    return std::isless(std::abs(x), kMostLength) ? x : std::nan("");
+  };
+  for (const json& hand : hands.value()) {
+    const auto p = hand.is_object() ? hand.find("p") : hand.end();
+    if (!hand.is_object() || p == hand.end() || !p->is_array() || p->size() != 3 * kJointCount)
+      continue;
+    const auto joint = [&](std::size_t j) {
+      return Vec3(number(*p, 3 * j), number(*p, 3 * j + 1), number(*p, 3 * j + 2));
+    };
+    collector.note_span((joint(kIndexProximal) - joint(kLittleProximal)).norm());
+  }
+}
+
+HandFrame neutral_frame(std::string_view line, const std::string& where, const HandFrame* before,
+                        HandFaults& faults, HandCollector& collector) {
+  const json document = parse_json(line, where);
+  const JsonNode node(document, where, "the frame");
+  HandFrame frame;
+  const JsonNode hands = hands_of(node);
+  frame.time = time_of(node);
+  note_spans(hands, collector);
+  read_hands(hands, neutral_hand, before, faults, frame);
+  return frame;
 }
 
 }  // namespace
-
-void append_frame(const JsonNode& node, double time, HandFrame frame, HandRecording& recording) {
-  if (!recording.frames.empty() && !(time > recording.frames.back().time)) {
-    node.fail(fmt::format(
-        "is {:.6f} s after the first frame, the frame before it {:.6f} s; time must increase", time,
-        recording.frames.back().time));
-  }
-  check_ids(node, frame);
-  frame.time = time;
-  recording.frames.push_back(std::move(frame));
-}
-
-void refuse_as_hands(const std::string& name, const std::string& what) {
-  throw InputError(name + " " + what +
-                   "; a hand recording is hand-frames JSON Lines (.hands.jsonl) or a recording of "
-                   "a Leap (.json), see docs/hands.md");
-}
-
-void require_frames(const HandRecording& recording, const std::string& name) {
-  if (recording.frames.empty())
-    throw InputError(name + ": holds 0 frames; a recording must have at least 1");
-}
 
 HandRecording hands_from_jsonl(std::string_view text, const std::string& name,
                                const ReadProgress& progress) {
@@ -132,41 +139,33 @@ HandRecording hands_from_jsonl(std::string_view text, const std::string& name,
   const std::string_view first = next_line(text, line);
   if (first.empty())
     throw InputError(name + ": is empty; the first line must be a hand-frames header");
-  HandRecording recording;
+  std::string description;
   {
     const std::string where = fmt::format("{}, line {}", name, line);
     const json document = parse_json(first, where);
     const JsonNode header(document, where, "the header");
     check_header(JsonNode(document, where));
-    if (header.has("source")) recording.description = header.at("source", "").text();
+    if (header.has("source")) description = header.at("source", "").text();
   }
-
-  double start = 0.0;
+  HandCollector collector(name, kUnits);
   for (std::string_view content = next_line(text, line); !content.empty();
        content = next_line(text, line)) {
     const std::string where = fmt::format("{}, line {}", name, line);
-    const json document = parse_json(content, where);
-    const JsonNode node(document, where, "the frame");
-    const double time = node.at("t", "the time in seconds").number(-1e12, 1e12);
-    if (recording.frames.empty()) start = time;
-    if (time - start > kMaxRecordingTime)
-      node.fail("is more than a day after the first one; t must be in seconds");
-    const JsonNode hands = hands_of(node);
-    HandFrame frame;
-    for (std::size_t h = 0; h < hands.array_size(); ++h)
-      frame.hands.push_back(neutral_hand(hands.at(h)));
-    append_frame(node, time - start, frame, recording);
+    collector.add(fmt::format("line {}", line), [&](const HandFrame* before, HandFaults& faults) {
+      return neutral_frame(content, where, before, faults, collector);
+    });
     if (progress) progress(all - text.size(), all);
   }
-  require_frames(recording, name);
+  HandRecording recording = collector.finish();
+  recording.description = description;
   return recording;
 }
 
 HandRecording read_hand_recording(const std::string& path, const ReadProgress& progress) {
   const std::string text = read_file(path, kMaxRecordingBytes);
-  if (const std::string_view kind = kind_by_content(text); kind != "JSON") {
+  if (!is_json_or_lines(text)) {
     // people give --hand what --record has written
-    const std::string what = kind == "an HDF5 file"
+    const std::string what = kind_by_content(text) == "an HDF5 file"
                                  ? "is a recording of prostm (HDF5), not a hand recording"
                                  : is_not(text, "a hand recording");
     refuse_as_hands(path, what);
@@ -175,7 +174,7 @@ HandRecording read_hand_recording(const std::string& path, const ReadProgress& p
   const std::string_view first =
       std::string_view(text).substr(0, std::min(text.find('\n', text.find('{')), text.size()));
   return first.find("\"hand-frames\"") != first.npos ? hands_from_jsonl(text, path, progress)
-                                                     : hands_from_leap_json(text, path);
+                                                     : hands_from_leap_json(text, path, progress);
 }
 
 }  // namespace prostm

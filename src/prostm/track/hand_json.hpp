@@ -1,24 +1,41 @@
 #pragma once
 /// Checks shared by all readers of hands.
 
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "prostm/core/json.hpp"
+#include "prostm/track/hand_faults.hpp"
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
 
-/// Says what is wrong with a hand's radii (3 to 40 mm) or bone lengths (8 to 120 mm), as the
-/// predicate of a sentence about the hand; empty if nothing is wrong. @pre finite numbers.
-std::string hand_problem(const Hand& hand);
+struct HandProblem {
+  HandFault fault;
+  std::string words;  ///< the predicate of a sentence about the hand
+};
 
-/// Applies hand_problem() to a hand read from `node`. @throws InputError.
-void check_hand(const JsonNode& node, const Hand& hand);
+/// Finds what is wrong with a hand: radii (3 to 40 mm), distances between joints (bones 8 to 120
+/// mm), orientations that do not follow the bones, joints of the other side's hand. Bends do not
+/// matter. @pre finite numbers, unit quaternions.
+std::optional<HandProblem> hand_problem(const Hand& hand);
 
-/// @throws InputError when two hands of a frame have the same id and side.
-void check_ids(const JsonNode& node, const HandFrame& frame);
+/// Whether a hand lies as if z were up: before the tracker, not above it, with its palm towards
+/// −z. A tracker sees only hands above it.
+bool looks_z_up(const Hand& hand);
 
-/// Returns the member "hands" of a frame. @throws InputError unless it is an array of at most 2.
+/// Throws HandError with the node's place. @throws HandError.
+[[noreturn]] void fail_as(HandFault fault, const JsonNode& node, const std::string& problem);
+
+/// Returns the member "hands" of a frame. @throws HandError unless it is an array.
 JsonNode hands_of(const JsonNode& frame);
+
+/// Reads the hands of a frame one by one with `read`, and checks them with hand_problem(). A hand
+/// with a fault is left out and counted; so are a second hand of the same id and side, and all but
+/// two hands. What was in the frame before decides which of them are kept.
+/// @param before the frame before, null without one.
+void read_hands(const JsonNode& hands, const std::function<Hand(const JsonNode&)>& read,
+                const HandFrame* before, HandFaults& faults, HandFrame& frame);
 
 }  // namespace prostm

@@ -1,6 +1,7 @@
 #pragma once
 /// Sources of hands.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "prostm/core/settings.hpp"
+#include "prostm/track/hand_faults.hpp"
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
@@ -16,13 +18,25 @@ namespace prostm {
 /// State of a live tracker at one moment, in plain values.
 struct TrackerStatus {
   bool connected = false;
-  std::int64_t frames = 0;      ///< frames received
-  std::int64_t dropped = 0;     ///< received frames refused for their content
-  std::int64_t repeated = 0;    ///< received frames whose time had been seen already
-  std::int64_t unsure = 0;      ///< hands not taken: below TrackSettings::least_confidence
+  std::int64_t frames = 0;   ///< frames received
+  std::int64_t dropped = 0;  ///< received frames refused for their content
+  /// frames and hands refused for their content, by cause; a bad hand does not cost its frame
+  std::array<std::int64_t, kHandFaults> faults{};
+  std::int64_t dropped_hands = 0;  ///< hands refused for their content
+  std::int64_t repeated = 0;       ///< received frames whose time had been seen already
+  std::int64_t unsure = 0;         ///< hands not taken: below TrackSettings::least_confidence
   std::int64_t frozen = 0;      ///< hands not taken: no joint moved for TrackSettings::freeze_time
   std::int64_t reconnects = 0;  ///< connections after the first one
   std::string sentence;         ///< for the user: the connection, and what is wrong
+};
+
+/// Contents of a recording's file, and what was dropped.
+struct HandReading {
+  std::string file;
+  std::int64_t frames = 0, hands = 0;  ///< in the file, the dropped ones included
+  HandFaults faults;
+  /// a doubt about the axes of the recording; empty without a doubt
+  std::string doubt;
 };
 
 /// Hands as a function of time. Frames are in T. Not thread-safe: one caller, except for
@@ -41,6 +55,9 @@ class HandSource {
   /// Continues from `time` of the recording [s], clamped to its length, at the next sample(); hands
   /// count as new. Does nothing without a recording.
   virtual void seek(double time) { static_cast<void>(time); }
+
+  /// The contents of the recording that is played, null without a recording.
+  virtual const HandReading* reading() const { return nullptr; }
 
   /// Empty for hands that are not tracked live. May be called from any thread.
   virtual std::optional<TrackerStatus> tracker_status() const { return {}; }
@@ -78,6 +95,7 @@ struct TrackSettings {
 struct HandRecording {
   std::vector<HandFrame> frames;  ///< times strictly increasing, the first at 0; velocities not set
   std::string description;
+  HandReading reading;
 };
 
 /// Plays a recording. Between frames positions are interpolated linearly and orientations by slerp,

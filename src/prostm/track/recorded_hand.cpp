@@ -54,6 +54,7 @@ class RecordedHand final : public HandSource {
     leave_out_unsure(settings, recording);
     validate_step(step);
     keep_ids(recording, settings);
+    reading_ = std::move(recording.reading);
     for (const HandFrame& frame : recording.frames) times_.push_back(frame.time);
     // an interval longer than one step between the end and the new start holds at least one of the
     // caller's times
@@ -88,6 +89,7 @@ class RecordedHand final : public HandSource {
   }
 
   double recording_length() const override { return times_.back(); }
+  const HandReading* reading() const override { return &reading_; }
   double recording_time() const override { return recording_time_; }
   void seek(double time) override { target_ = std::clamp(time, 0.0, times_.back()); }
 
@@ -117,6 +119,7 @@ class RecordedHand final : public HandSource {
   }
 
   TrackSettings settings_;
+  HandReading reading_;
   bool loop_;
   double period_ = 0.0;           // duration of the loop [s]
   double shift_ = 0.0;            // recording time less run time [s]
@@ -133,7 +136,8 @@ class RecordedHand final : public HandSource {
 std::unique_ptr<HandSource> make_recorded_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step) {
-  return std::make_unique<RecordedHand>(std::move(recording), settings, loop, step);
+  const TrackSettings fitted = with_gap_for(recording, settings);
+  return std::make_unique<RecordedHand>(std::move(recording), fitted, loop, step);
 }
 
 }  // namespace prostm

@@ -51,6 +51,7 @@ class ReplayedHand final : public HandSource {
   }
 
   double recording_length() const override { return length_; }
+  const HandReading* reading() const override { return &recording_.reading; }
   double recording_time() const override { return recording_time_; }
   void seek(double time) override { target_ = std::clamp(time, 0.0, length_); }
 
@@ -85,7 +86,8 @@ class ReplayedHand final : public HandSource {
 std::unique_ptr<HandSource> make_replayed_hand(HandRecording recording,
                                                const TrackSettings& settings, bool loop,
                                                double step) {
-  return std::make_unique<ReplayedHand>(std::move(recording), settings, loop, step);
+  const TrackSettings fitted = with_gap_for(recording, settings);
+  return std::make_unique<ReplayedHand>(std::move(recording), fitted, loop, step);
 }
 
 }  // namespace prostm

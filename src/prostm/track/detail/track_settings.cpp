@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include "prostm/core/settings.hpp"
 
@@ -124,6 +125,20 @@ void validate_recording(const HandRecording& recording) {
     }
     last = frame.time;
   }
+}
+
+TrackSettings with_gap_for(const HandRecording& recording, const TrackSettings& settings) {
+  constexpr double kLongest = 0.1;  // usual interval [s]
+  validate(settings);
+  TrackSettings out = settings;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < recording.frames.size(); ++i)
+    steps.push_back(recording.frames[i].time - recording.frames[i - 1].time);
+  if (steps.empty()) return out;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  if (*middle <= kLongest) out.max_gap = std::max(out.max_gap, 2.0 * *middle);
+  return out;
 }
 
 void leave_out_unsure(const TrackSettings& settings, HandRecording& recording) {

@@ -15,6 +15,9 @@ void validate_recording(const HandRecording& recording);
 /// Removes hands below `least_confidence`. @throws std::invalid_argument with a sentence when there
 /// were hands and all are removed.
 void leave_out_unsure(const TrackSettings& settings, HandRecording& recording);
+/// The settings with a max_gap of at least two usual intervals of the recording, for recordings of
+/// at least 10 Hz: some are thinned out. @throws std::invalid_argument as validate().
+TrackSettings with_gap_for(const HandRecording& recording, const TrackSettings& settings);
 void validate_step(double step);  ///< time between samples [s]
 
 /// Hands of a recording before and after a seek are different hands: their ids differ by this.

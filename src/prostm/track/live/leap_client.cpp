@@ -89,14 +89,12 @@ class LeapTracker final : public LiveTracker {
     const Link link = link_.load(std::memory_order_relaxed);
     status.connected = link == Link::Connected;
     status.frames = frames_.load(std::memory_order_relaxed);
-    status.dropped = dropped_.load(std::memory_order_relaxed);
     status.repeated = repeated_.load(std::memory_order_relaxed);
     status.reconnects = std::max<std::int64_t>(connections_.load(std::memory_order_relaxed) - 1, 0);
     status.sentence = sentence(link);
-    if (status.dropped > 0) {
-      const std::lock_guard lock(problem_mutex_);
-      status.sentence +=
-          fmt::format("; {} frames were dropped, the last since {}", status.dropped, problem_);
+    {
+      const std::lock_guard lock(faults_mutex_);
+      add_faults(faults_, status);
     }
     if (status.repeated > 0) {
       status.sentence += fmt::format("; {} frames were not taken: their time had been seen already",
@@ -176,15 +174,15 @@ class LeapTracker final : public LiveTracker {
   void take(double arrival) {
     const auto bytes = buffer_.cdata();
     const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
-    const LeapMessage kind = leap_message(text, frame_, problem_of_last_);
+    HandFaults faults;
+    const LeapMessage kind = leap_message(text, frame_, faults);
     if (kind == LeapMessage::Other) return;
     frames_.fetch_add(1, std::memory_order_relaxed);
-    if (kind == LeapMessage::Refused) {
-      dropped_.fetch_add(1, std::memory_order_relaxed);
-      const std::lock_guard lock(problem_mutex_);
-      problem_ = problem_of_last_;
-      return;
+    if (faults.any()) {
+      const std::lock_guard lock(faults_mutex_);
+      faults_.add(faults);
     }
+    if (kind == LeapMessage::Refused) return;
     wait_ = kFirstRetry;
     const std::optional<double> time = clock_.time_of(frame_.time, arrival);
     if (!time) {
@@ -216,13 +214,12 @@ class LeapTracker final : public LiveTracker {
   milliseconds wait_ = kFirstRetry;
   StampClock clock_;
   HandFrame frame_;
-  std::string problem_of_last_;
 
   SpscRing<HandFrame> ring_{kFramesKept};
   std::atomic<Link> link_{Link::Connecting};
-  std::atomic<std::int64_t> frames_{0}, dropped_{0}, repeated_{0}, connections_{0};
-  mutable std::mutex problem_mutex_;  // planner and emitter never wait for it
-  std::string problem_;
+  std::atomic<std::int64_t> frames_{0}, repeated_{0}, connections_{0};
+  mutable std::mutex faults_mutex_;  // planner and emitter never wait for it
+  HandFaults faults_;
 
   std::thread thread_;  // constructed last: it uses all of the above
 };

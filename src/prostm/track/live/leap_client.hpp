@@ -20,8 +20,8 @@ HostPort leap_address(const std::string& text);
 /// A WebSocket client of protocol version 6 on its own thread: connects to `address`, tells the
 /// service that it reads in the background and that the device lies on a desk, and takes in
 /// frames. When nothing answers, the connection is lost, or nothing came for 2 s, it tries again,
-/// first after 50 ms and then after up to 1 s. Frames that leap_message() refuses are dropped and
-/// counted, and so are frames with a time that was seen already (StampClock).
+/// first after 50 ms and then after up to 1 s. Frames and hands that leap_message() refuses are
+/// dropped and counted, and so are frames with a time that was seen already (StampClock).
 /// @throws InputError if `address.host` is neither an address nor a known host name.
 std::unique_ptr<LiveTracker> make_leap_tracker(const HostPort& address);
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -37,6 +39,7 @@ constexpr double kMetacarpalAxes[kFingers][2][3] = {  // rows: y (dorsal) and z 
     {{0.3533502, 0.9354594, -0.0076935}, {-0.2593289, 0.1058513, 0.9599709}}};
 constexpr double kFingerRadius[kFingers] = {0.15384, 0.14130, 0.13504, 0.13029, 0.11774};
 constexpr double kPalmRadius = 0.2512;  // in the same unit
+constexpr double kMostPalm = 2.0;       // from palm to knuckles, which is 0.4 in the template
 constexpr double kWristOfPalm = 1.25;   // wrist radius over palm radius
 constexpr double kRadiusOfArmWidth = 0.31;
 constexpr double kTipOfFinger = 0.8;  // radius at the tip over radius of the finger
@@ -71,7 +74,7 @@ Vec3 unit_vector(const JsonNode& node, const char* key) {
   const JsonNode v = node.at(key, "a unit vector");
   const Vec3 x = v.vec3(-2.0, 2.0);
   if (!(std::abs(x.norm() - 1.0) <= 0.01))
-    v.fail(fmt::format("has length {}; it must be 1 within 0.01", x.norm()));
+    fail_as(HandFault::Axes, v, fmt::format("has length {}; it must be 1 within 0.01", x.norm()));
   return x.normalized();
 }
 
@@ -80,7 +83,8 @@ Eigen::Matrix3d frame_from(const JsonNode& node, const Vec3& y, const Vec3& z) {
   Eigen::Matrix3d R;
   const double length = z.norm();
   const Vec3 x = y.cross(z);
-  if (!(x.norm() > 0.1 * length)) node.fail("has parallel axes; they must be perpendicular");
+  if (!(x.norm() > 0.1 * length))
+    fail_as(HandFault::Axes, node, "has parallel axes; they must be perpendicular");
   R.col(2) = z / length;
   R.col(0) = (x - x.dot(R.col(2)) * R.col(2)).normalized();
   R.col(1) = R.col(2).cross(R.col(0));
@@ -94,13 +98,17 @@ Eigen::Matrix3d recorded_basis(const JsonNode& basis) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double length = basis.at(i).vec3(-2.0, 2.0).norm();
     if (!(std::abs(length - 1.0) <= 0.05)) {
-      basis.at(i).fail(fmt::format("has length {}; it must be 1 within 0.05", length));
+      fail_as(HandFault::Axes, basis.at(i),
+              fmt::format("has length {}; it must be 1 within 0.05", length));
     }
   }
   return frame_from(basis, basis.at(1).vec3(-2.0, 2.0), basis.at(2).vec3(-2.0, 2.0));
 }
 
 Finger read_finger(const JsonNode& node) {
+  if (!node.has("mcpPosition")) {
+    node.fail("has no \"mcpPosition\"; services before version 2 send no joints");
+  }
   Finger finger{metres(node, "mcpPosition"),
                 metres(node, "pipPosition"),
                 metres(node, "dipPosition"),
@@ -120,28 +128,73 @@ Finger read_finger(const JsonNode& node) {
   return finger;
 }
 
-/// Finds the five fingers of a hand among the frame's pointables.
+/// The whole number in a member, or nothing.
+std::optional<std::int64_t> whole(const JsonNode& node, const char* key) {
+  if (!node.has(key) || !node.at(key, "").value().is_number()) return {};
+  const double x = node.at(key, "").value().get<double>();
+  if (x != std::floor(x) || std::abs(x) > 1e15) return {};
+  return static_cast<std::int64_t>(x);
+}
+
+/// Whether a pointable is a finger of that hand. Faulty ones are nobody's.
+bool is_finger_of(const JsonNode& node, std::int64_t hand) {
+  const bool tool = node.has("tool") && node.at("tool", "").value() == true;
+  return !tool && whole(node, "handId") == hand;
+}
+
+/// The type of a finger, 0 (thumb) to 4 (little finger). LeapJS packs some recordings without it;
+/// services number a hand's fingers hand · 10 + type.
+int type_of(const JsonNode& node, std::int64_t hand) {
+  if (node.has("type")) return node.at("type", "").integer(0, 4);
+  const std::int64_t type = whole(node, "id").value_or(-1) - 10 * hand;
+  if (type < 0 || type > 4) node.at("type", "0 (thumb) to 4 (little finger)").integer(0, 4);
+  return static_cast<int>(type);
+}
+
+/// Finds the five fingers of a hand among the frame's pointables. Of two with one type the one
+/// whose id fits is taken, so that a finger with another hand's id does not cost that hand.
 std::array<Finger, kFingers> read_fingers(const JsonNode& hand, std::int64_t id,
                                           const JsonNode& pointables) {
-  std::array<std::optional<Finger>, kFingers> found;
+  std::array<std::optional<JsonNode>, kFingers> found;
+  const auto id_fits = [&](const JsonNode& node, std::size_t type) {
+    return whole(node, "id") == 10 * id + static_cast<std::int64_t>(type);
+  };
   for (std::size_t i = 0; i < pointables.array_size(); ++i) {
     const JsonNode node = pointables.at(i);
-    const JsonNode owner = node.at("handId", "the hand's id");
-    if (owner.integer(-1, std::numeric_limits<int>::max()) != id) continue;
-    if (node.has("tool") && node.at("tool", "").value() == true) continue;
-    const int type = node.at("type", "0 (thumb) to 4 (little finger)").integer(0, 4);
-    std::optional<Finger>& finger = found[static_cast<std::size_t>(type)];
-    if (finger)
-      node.fail(fmt::format("is a second finger of type {}; a hand must have each once", type));
-    finger = read_finger(node);
+    if (!is_finger_of(node, id)) continue;
+    const auto type = static_cast<std::size_t>(type_of(node, id));
+    std::optional<JsonNode>& taken = found[type];
+    if (taken && id_fits(*taken, type) == id_fits(node, type)) {
+      fail_as(HandFault::Fingers, node,
+              fmt::format("is a second finger of type {}; a hand must have each once", type));
+    }
+    if (!taken || id_fits(node, type)) taken = node;
   }
   std::array<Finger, kFingers> fingers;
   for (std::size_t f = 0; f < kFingers; ++f) {
     if (!found[f])
-      hand.fail(fmt::format("has no finger of type {}; it must have 5, the types 0 to 4", f));
-    fingers[f] = *found[f];
+      fail_as(HandFault::Fingers, hand,
+              fmt::format("has no finger of type {}; it must have 5, the types 0 to 4", f));
+    fingers[f] = read_finger(*found[f]);
   }
   return fingers;
+}
+
+Vec3 middle_of_knuckles(const std::array<Finger, kFingers>& fingers) {
+  return 0.25 * (fingers[1].mcp + fingers[2].mcp + fingers[3].mcp + fingers[4].mcp);
+}
+
+/// Refuses a hand with the id of another one, nearer to the fingers of that id.
+void check_owner(const JsonNode& hands, const JsonNode& hand, std::int64_t id,
+                 const std::array<Finger, kFingers>& fingers) {
+  const Vec3 knuckles = middle_of_knuckles(fingers);
+  const double distance = (metres(hand, "palmPosition") - knuckles).norm();
+  for (std::size_t h = 0; h < hands.array_size(); ++h) {
+    const JsonNode other = hands.at(h);
+    if (&other.value() == &hand.value() || whole(other, "id") != id) continue;
+    const bool nearer = (metres(other, "palmPosition") - knuckles).norm() < distance;
+    if (nearer) fail_as(HandFault::Twice, hand, fmt::format("has the id {} of another hand", id));
+  }
 }
 
 Palm read_palm(const JsonNode& hand, Side side, const std::array<Finger, kFingers>& fingers) {
@@ -150,6 +203,12 @@ Palm read_palm(const JsonNode& hand, Side side, const std::array<Finger, kFinger
   palm.p_TP = metres(hand, "palmPosition");
   palm.mirror = side == Side::Right ? 1.0 : -1.0;
   palm.span = (fingers[4].mcp - fingers[1].mcp).norm();
+  const double away = (palm.p_TP - middle_of_knuckles(fingers)).norm();
+  if (!(away <= kMostPalm * palm.span)) {
+    fail_as(HandFault::Bones, hand,
+            fmt::format("has its palm {:.4g} mm from its knuckles, which are {:.4g} mm across",
+                        1e3 * away, 1e3 * palm.span));
+  }
   return palm;
 }
 
@@ -170,6 +229,27 @@ Side read_side(const JsonNode& hand, const std::array<Finger, kFingers>& fingers
 /// Returns R turned by the smallest rotation that brings its −z axis to `bone`.
 Eigen::Matrix3d transported(const Eigen::Matrix3d& R, const Vec3& bone) {
   return Quat::FromTwoVectors(-R.col(2), bone).toRotationMatrix() * R;
+}
+
+/// The frame of a proximal bone (H15). A finger bent by 90° at its knuckle lies along the
+/// metacarpal's y, about which it could swing to any side; near there the x of the metacarpal takes
+/// over, as if it did not swing.
+Eigen::Matrix3d beyond_knuckle(const JsonNode& node, const Eigen::Matrix3d& R_TM,
+                               const Vec3& bone) {
+  constexpr double kNoSwing = 0.25;  // cos of 75.5°
+  const Vec3 z = -bone.normalized(), swung = R_TM.col(1).cross(z);
+  const double cosine = z.dot(R_TM.col(2)), u = std::min(std::abs(cosine) / kNoSwing, 1.0);
+  if (cosine >= kNoSwing) return frame_from(node, R_TM.col(1), -bone);
+  const double share = u * u * (3.0 - 2.0 * u);
+  Vec3 x = (1.0 - share) * R_TM.col(0);
+  if (share > 0.0) x += std::copysign(share, cosine) * swung.normalized();
+  x -= x.dot(z) * z;
+  if (!(x.norm() > 0.1)) return transported(R_TM, bone.normalized());
+  Eigen::Matrix3d R;
+  R.col(2) = z;
+  R.col(0) = x.normalized();
+  R.col(1) = z.cross(R.col(0));
+  return R;
 }
 
 /// The frame of a metacarpal in the template, in T.
@@ -202,7 +282,7 @@ void set_finger(const JsonNode& node, const Palm& palm, const std::array<Finger,
       R_TB = (*finger.bases)[4 - bones + b];
     } else if (bone.norm() > 1e-6) {
       const bool knuckle = b + 3 == bones;
-      R_TB = knuckle ? frame_from(node, R_TB.col(1), -bone) : transported(R_TB, bone.normalized());
+      R_TB = knuckle ? beyond_knuckle(node, R_TB, bone) : transported(R_TB, bone.normalized());
     }
     hand.orientation[first + b] = Quat(R_TB);
   }
@@ -230,48 +310,75 @@ void set_palm_and_wrist(const JsonNode& node, const Palm& palm, Hand& hand) {
 }
 
 /// Reads a hand whose fingers are among `pointables`.
-Hand leap_hand(const JsonNode& node, const JsonNode& pointables) {
+Hand leap_hand(const JsonNode& hands, const JsonNode& node, const JsonNode& pointables) {
   Hand hand;
   hand.id = node.at("id", "a whole number").integer(0, std::numeric_limits<int>::max());
   hand.confidence = node.has("confidence") ? node.at("confidence", "").number(0.0, 1.0) : 1.0;
   const std::array<Finger, kFingers> fingers = read_fingers(node, hand.id, pointables);
+  check_owner(hands, node, hand.id, fingers);
   hand.side = read_side(node, fingers);
   const Palm palm = read_palm(node, hand.side, fingers);
   hand.velocity.fill(Vec3::Zero());
   for (std::size_t f = 0; f < kFingers; ++f) set_finger(node, palm, fingers, f, hand);
   set_palm_and_wrist(node, palm, hand);
-  check_hand(node, hand);
   return hand;
+}
+
+/// The member "pointables" of a frame. @throws HandError unless it is an array.
+JsonNode pointables_of(const JsonNode& frame) {
+  try {
+    const JsonNode pointables = frame.at("pointables", "an array of fingers");
+    pointables.array_size();
+    return pointables;
+  } catch (const InputError& error) {
+    throw HandError(HandFault::Unreadable, error.what());
+  }
+}
+
+double time_of(const JsonNode& frame) {
+  constexpr double kMost =
+      1e19;  // nanoseconds since 1970, which are refused with a better sentence
+  try {
+    return 1e-6 * frame.at("timestamp", "the time in microseconds").number(0.0, kMost);
+  } catch (const InputError& error) {
+    throw HandError(HandFault::Time, error.what());
+  }
 }
 
 }  // namespace
 
-HandFrame leap_frame(const JsonNode& node) {
+HandFrame leap_frame(const JsonNode& node, const HandFrame* before, HandFaults& faults) {
   HandFrame frame;
-  frame.time = 1e-6 * node.at("timestamp", "the time in microseconds").number(0.0, 1e15);
   const JsonNode hands = hands_of(node);
-  for (std::size_t h = 0; h < hands.array_size(); ++h) {
-    const JsonNode pointables = node.at("pointables", "an array of fingers");
-    pointables.array_size();
-    frame.hands.push_back(leap_hand(hands.at(h), pointables));
-  }
+  frame.time = time_of(node);
+  if (hands.array_size() == 0) return frame;
+  const JsonNode pointables = pointables_of(node);
+  read_hands(
+      hands, [&](const JsonNode& hand) { return leap_hand(hands, hand, pointables); }, before,
+      faults, frame);
   return frame;
 }
 
-LeapMessage leap_message(std::string_view text, HandFrame& frame, std::string& problem) {
+bool is_leap_news(const JsonNode& node) {
+  return !node.has("hands") &&
+         (node.has("version") || node.has("serviceVersion") || node.has("event"));
+}
+
+LeapMessage leap_message(std::string_view text, HandFrame& frame, HandFaults& faults) {
   static const std::string kName = "a message of the tracker";
   try {
     const json document = parse_json(text, kName);
     const JsonNode node(document, kName);
-    const bool greeting = node.has("version") || node.has("serviceVersion") || node.has("event");
-    if (greeting && !node.has("hands")) return LeapMessage::Other;
-    frame = leap_frame(node);
-    check_ids(node, frame);
+    if (is_leap_news(node)) return LeapMessage::Other;
+    const HandFrame before = frame;
+    frame = leap_frame(node, &before, faults);
     return LeapMessage::Frame;
+  } catch (const HandError& error) {
+    faults.add(error.fault(), error.what());
   } catch (const InputError& error) {
-    problem = error.what();
-    return LeapMessage::Refused;
+    faults.add(HandFault::Unreadable, error.what());
   }
+  return LeapMessage::Refused;
 }
 
 }  // namespace prostm

@@ -3,9 +3,9 @@
 /// keep it, completed where old services lack bones: (H13) to (H16) of docs/design.md.
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 
+#include "prostm/track/hand_faults.hpp"
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
@@ -14,19 +14,24 @@ class JsonNode;
 
 /// Reads the hands of a frame, in T; `time` is the tracker's own [s], velocities are 0. Left hands
 /// may come with left-handed bases, as the original service sends them, or with right-handed ones.
-/// @throws InputError that names the member: it is missing or not a number, a position is farther
-/// than 1 m from the tracker, no hand has such radii or bone lengths, there are more than 2 hands,
-/// or a hand lacks one of its five fingers.
-HandFrame leap_frame(const JsonNode& node);
+/// Fingers without a type are told apart by their id, ten times the hand's plus the type. A hand is
+/// left out and counted in `faults` if a member is missing or not a number, a position is farther
+/// than 1 m from the tracker, a finger is missing, or read_hands() refuses it.
+/// @param before the frame before, null without one.
+/// @throws HandError when the frame has no time, no list of hands, or hands but no fingers.
+HandFrame leap_frame(const JsonNode& node, const HandFrame* before, HandFaults& faults);
+
+/// Whether a JSON document is not a frame but the greeting of a service, or an event of a device.
+bool is_leap_news(const JsonNode& node);
 
 enum class LeapMessage : std::uint8_t {
   Frame,   ///< a frame, with or without hands
   Other,   ///< the greeting with the version, or an event of the device
-  Refused  ///< not JSON, or a frame that leap_frame() refuses, or two hands of the same id and side
+  Refused  ///< not JSON, or a frame that leap_frame() refuses
 };
 
-/// Reads one message. Sets `frame` if the message is a frame, and `problem` to a sentence if it is
-/// refused.
-LeapMessage leap_message(std::string_view text, HandFrame& frame, std::string& problem);
+/// Reads one message. Sets `frame` if the message is a frame; its value on entry is the frame
+/// before. Adds what was dropped to `faults`.
+LeapMessage leap_message(std::string_view text, HandFrame& frame, HandFaults& faults);
 
 }  // namespace prostm

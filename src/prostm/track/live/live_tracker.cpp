@@ -1,5 +1,7 @@
 #include "prostm/track/live/live_tracker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "prostm/core/stage_timer.hpp"
@@ -44,6 +46,16 @@ class LiveHand final : public HandSource {
 std::unique_ptr<HandSource> make_live_hand(std::unique_ptr<LiveTracker> tracker,
                                            const TrackSettings& settings) {
   return std::make_unique<LiveHand>(std::move(tracker), settings);
+}
+
+void add_faults(const HandFaults& faults, TrackerStatus& status) {
+  status.dropped = faults.frames();
+  status.dropped_hands = faults.hands();
+  status.faults = faults.count;
+  if (!faults.any()) return;
+  status.sentence +=
+      fmt::format("; {} frames and {} hands were dropped ({}), the last since {}", status.dropped,
+                  status.dropped_hands, causes_of(faults), faults.last);
 }
 
 std::optional<double> StampClock::time_of(double stamp, double arrival) noexcept {

@@ -24,6 +24,9 @@ class LiveTracker {
   virtual TrackerStatus status() const = 0;
 };
 
+/// Adds what a tracker dropped to its status, with a message.
+void add_faults(const HandFaults& faults, TrackerStatus& status);
+
 /// Makes hands from a tracker with CausalTrack, at the moment of each sample(); its argument is
 /// only passed on. HandWatch removes false hands, and without a connection there are no hands.
 /// Endless.

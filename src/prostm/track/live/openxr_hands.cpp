@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -116,8 +117,8 @@ class Session {
 
   bool running() const { return running_; }
 
-  /// Locates both hands now; false when the session is lost. `refused` counts impossible hands.
-  bool locate(HandFrame& frame, std::int64_t& refused) {
+  /// Locates both hands now; false when the session is lost.
+  bool locate(HandFrame& frame, HandFaults& faults) {
     frame.hands.clear();
     frame.time = steady_now();
     const auto nanoseconds = static_cast<std::int64_t>(frame.time * 1e9);
@@ -127,7 +128,7 @@ class Session {
     XrTime time = 0;
     if (XR_FAILED(convert_time_(instance_, &monotonic, &time))) return false;
     for (std::size_t side = 0; side < trackers_.size(); ++side) {
-      if (!locate(side, time, frame, refused)) return false;
+      if (!locate(side, time, frame, faults)) return false;
     }
     return true;
   }
@@ -231,7 +232,7 @@ class Session {
     }
   }
 
-  bool locate(std::size_t side, XrTime time, HandFrame& frame, std::int64_t& refused) {
+  bool locate(std::size_t side, XrTime time, HandFrame& frame, HandFaults& faults) {
     std::array<XrHandJointLocationEXT, kJointCount> joints{};
     XrHandJointLocationsEXT locations{};
     locations.type = XR_TYPE_HAND_JOINT_LOCATIONS_EXT;
@@ -246,14 +247,14 @@ class Session {
     there_[side] = locations.isActive == XR_TRUE && all_valid(joints);
     if (!there_[side]) return true;
     Hand hand;
-    if (!take(joints, hand)) {
-      ++refused;
+    hand.side = side == 0 ? Side::Left : Side::Right;
+    if (const auto problem = take(joints, hand)) {
+      faults.add(problem->fault, fmt::format("the {} hand {}", name_of(hand.side), problem->words));
       there_[side] = false;
       return true;
     }
     if (!was_there) ids_[side] = ++last_id_;
     hand.id = ids_[side];
-    hand.side = side == 0 ? Side::Left : Side::Right;
     hand.confidence = tracked_share(joints);
     frame.hands.push_back(hand);
     return true;
@@ -278,24 +279,28 @@ class Session {
     return static_cast<double>(tracked) / static_cast<double>(joints.size());
   }
 
-  /// Reads a hand; false for joints that no hand has.
-  static bool take(const std::array<XrHandJointLocationEXT, kJointCount>& joints, Hand& hand) {
+  /// Reads the joints of a hand whose side is known; returns what is wrong with them.
+  static std::optional<HandProblem> take(
+      const std::array<XrHandJointLocationEXT, kJointCount>& joints, Hand& hand) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const XrVector3f& p = joints[j].pose.position;
       const XrQuaternionf& q = joints[j].pose.orientation;
       for (const float number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w, joints[j].radius}) {
-        if (!std::isfinite(number)) return false;
+        if (!std::isfinite(number))
+          return HandProblem{HandFault::Member, "has a joint that is not a number"};
       }
       hand.position[j] = Eigen::Vector3f(p.x, p.y, p.z).cast<double>();
       hand.orientation[j] = Eigen::Quaternionf(q.w, q.x, q.y, q.z).cast<double>();
       const double length = hand.orientation[j].norm();
-      if (hand.position[j].cwiseAbs().maxCoeff() > kReach || std::abs(length - 1.0) > 0.01)
-        return false;
+      if (hand.position[j].cwiseAbs().maxCoeff() > kReach)
+        return HandProblem{HandFault::Member, "has a joint farther than 10 m away"};
+      if (std::abs(length - 1.0) > 0.01)
+        return HandProblem{HandFault::Axes, "has a quaternion that is not of length 1"};
       hand.orientation[j].normalize();
       hand.radius[j] = std::clamp(static_cast<double>(joints[j].radius), kMinRadius, kMaxRadius);
       hand.velocity[j] = Vec3::Zero();
     }
-    return hand_problem(hand).empty();
+    return hand_problem(hand);
   }
 
   XrInstance instance_ = XR_NULL_HANDLE;
@@ -327,14 +332,14 @@ class OpenXrTracker final : public LiveTracker {
     TrackerStatus status;
     status.connected = connected();
     status.frames = frames_.load(std::memory_order_relaxed);
-    status.dropped = dropped_.load(std::memory_order_relaxed);
     status.reconnects = std::max<std::int64_t>(sessions_.load(std::memory_order_relaxed) - 1, 0);
+    const std::lock_guard lock(problem_mutex_);
     if (status.connected) {
       status.sentence = "the OpenXR session is running";
     } else {
-      const std::lock_guard lock(problem_mutex_);
       status.sentence = problem_.empty() ? "the OpenXR session has not begun yet" : problem_;
     }
+    add_faults(faults_, status);
     return status;
   }
 
@@ -363,10 +368,13 @@ class OpenXrTracker final : public LiveTracker {
     if (!session_->poll()) return false;
     connected_.store(session_->running(), std::memory_order_relaxed);
     if (!session_->running()) return true;
-    std::int64_t refused = 0;
-    if (!session_->locate(frame_, refused)) return false;
+    HandFaults faults;
+    if (!session_->locate(frame_, faults)) return false;
     frames_.fetch_add(1, std::memory_order_relaxed);
-    dropped_.fetch_add(refused, std::memory_order_relaxed);
+    if (faults.any()) {
+      const std::lock_guard lock(problem_mutex_);
+      faults_.add(faults);
+    }
     ring_.push(frame_);
     return true;
   }
@@ -390,9 +398,10 @@ class OpenXrTracker final : public LiveTracker {
   HandFrame frame_;
   SpscRing<HandFrame> ring_{kFramesKept};
   std::atomic<bool> stop_{false}, connected_{false};
-  std::atomic<std::int64_t> frames_{0}, dropped_{0}, sessions_{0};
+  std::atomic<std::int64_t> frames_{0}, sessions_{0};
   mutable std::mutex problem_mutex_;  // neither who plans nor who emits ever waits for it
   std::string problem_;
+  HandFaults faults_;
 
   std::thread thread_;  // constructed last: it uses all of the above
 };

@@ -106,6 +106,7 @@ class HandSwitch final : public HandSource {
   double recording_length() const override { return base_->recording_length(); }
   double recording_time() const override { return base_->recording_time(); }
   void seek(double time) override { base_->seek(time); }
+  const HandReading* reading() const override { return base_->reading(); }
   std::optional<TrackerStatus> tracker_status() const override { return base_->tracker_status(); }
 
   /// Sets another pose of the tracker, from the next sample() on. The sampling thread only.
