@@ -192,12 +192,14 @@ struct Ending {
 
   void report(const RunSummary& summary) {
     const std::optional<TrackerStatus> tracker = pipeline.world_stage().hands().tracker_status();
-    const Verdict verdict = verdict_of(summary, settings, tracker);
+    const HandReading* const reading = pipeline.world_stage().hands().reading();
+    const Verdict verdict = verdict_of(summary, settings, tracker, reading);
     nlohmann::ordered_json json = summary_json(summary, settings, verdict);
     const std::string stopped_by = summary.stopped ? observer.interrupt().cause() : "";
     json["stopped_by"] = stopped_by.empty() ? nullptr : nlohmann::ordered_json(stopped_by);
     json["hand"] = given.hand;
     json["tracker"] = tracker_json(tracker);
+    json["hand_file"] = reading_json(reading);
     json["array"] = pipeline.device().description();
     json["settings"] = settings_to_json(settings_groups(settings));
     Attempts attempts;
@@ -213,7 +215,7 @@ struct Ending {
     });
     attempts.add([&] { draw(summary, never_came(tracker)); });
     attempts.add([&] {
-      print_summary(out, summary, settings, verdict, tracker, stopped_by);
+      print_summary(out, summary, settings, verdict, tracker, reading, stopped_by);
       say_files();
     });
     attempts.finish();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string>
 
 #include "common.hpp"
 #include "prostm/io/quantity_json.hpp"
@@ -118,9 +119,25 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
 void print_tracker(std::FILE* out, const TrackerStatus& tracker) {
   print_row(out, "tracker",
             fmt::format("{} frames, {} dropped, {} repeated, {} reconnects; hands not taken: {} "
-                        "unsure, {} frozen; at the end {}connected",
+                        "dropped, {} unsure, {} frozen; at the end {}connected",
                         tracker.frames, tracker.dropped, tracker.repeated, tracker.reconnects,
-                        tracker.unsure, tracker.frozen, tracker.connected ? "" : "not "));
+                        tracker.dropped_hands, tracker.unsure, tracker.frozen,
+                        tracker.connected ? "" : "not "));
+}
+
+void print_reading(std::FILE* out, const HandReading& reading) {
+  const HandFaults& faults = reading.faults;
+  print_row(out, "file",
+            fmt::format("{} frames, {} dropped; {} hands, {} dropped{}", reading.frames,
+                        faults.frames(), reading.hands, faults.hands(),
+                        faults.any() ? fmt::format(" ({})", causes_of(faults)) : std::string()));
+}
+
+nlohmann::ordered_json faults_json(const std::array<std::int64_t, kHandFaults>& count) {
+  nlohmann::ordered_json json;
+  for (std::size_t f = 0; f < kHandFaults; ++f)
+    json[std::string(name_of(static_cast<HandFault>(f)))] = count[f];
+  return json;
 }
 
 /// Prints the heading of a table of times.
@@ -231,20 +248,38 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
 
 void print_summary(std::FILE* out, const RunSummary& s, const PipelineSettings& settings,
                    const Verdict& verdict, const std::optional<TrackerStatus>& tracker,
-                   const std::string& stopped_by) {
+                   const HandReading* reading, const std::string& stopped_by) {
   for (const std::string& sentence : verdict.sentences) fmt::print(out, "{}\n", sentence);
   print_counts(out, s, settings, stopped_by);
   if (tracker) print_tracker(out, *tracker);
+  if (reading != nullptr) print_reading(out, *reading);
   print_latency(out, s);
   print_stages(out, s);
 }
 
 nlohmann::ordered_json tracker_json(const std::optional<TrackerStatus>& tracker) {
   if (!tracker) return nullptr;
-  return {{"connected", tracker->connected},   {"frames", tracker->frames},
-          {"dropped", tracker->dropped},       {"repeated", tracker->repeated},
-          {"unsure", tracker->unsure},         {"frozen", tracker->frozen},
-          {"reconnects", tracker->reconnects}, {"sentence", tracker->sentence}};
+  return {{"connected", tracker->connected},
+          {"frames", tracker->frames},
+          {"dropped", tracker->dropped},
+          {"dropped_hands", tracker->dropped_hands},
+          {"faults", faults_json(tracker->faults)},
+          {"repeated", tracker->repeated},
+          {"unsure", tracker->unsure},
+          {"frozen", tracker->frozen},
+          {"reconnects", tracker->reconnects},
+          {"sentence", tracker->sentence}};
+}
+
+nlohmann::ordered_json reading_json(const HandReading* reading) {
+  if (reading == nullptr) return nullptr;
+  const HandFaults& faults = reading->faults;
+  return {{"frames", reading->frames},
+          {"dropped", faults.frames()},
+          {"hands", reading->hands},
+          {"dropped_hands", faults.hands()},
+          {"faults", faults_json(faults.count)},
+          {"first", faults.any() ? nlohmann::ordered_json(faults.first) : nullptr}};
 }
 
 }  // namespace prostm::app

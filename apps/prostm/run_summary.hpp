@@ -15,12 +15,16 @@ nlohmann::ordered_json summary_json(const RunSummary& summary, const PipelineSet
                                     const Verdict& verdict);
 
 /// The verdict, then the same numbers under headings. @param tracker of hands tracked live.
+/// @param reading of a recording that is played, or null.
 /// @param stopped_by what ended a run that was cut short, Interrupt::cause().
 void print_summary(std::FILE* out, const RunSummary& summary, const PipelineSettings& settings,
                    const Verdict& verdict, const std::optional<TrackerStatus>& tracker,
-                   const std::string& stopped_by);
+                   const HandReading* reading, const std::string& stopped_by);
 
 /// "tracker" of prostm-run/1: null for hands that are not tracked live.
 nlohmann::ordered_json tracker_json(const std::optional<TrackerStatus>& tracker);
+
+/// "hand_file" of prostm-run/1: null without a recording of hands.
+nlohmann::ordered_json reading_json(const HandReading* reading);
 
 }  // namespace prostm::app

@@ -240,7 +240,8 @@ int soak_command(const SoakOptionsGiven& given) {
                {"dips", dips_json(log)},
                {"dips_left_out", log.left_out()}});
   json.update(limits);
-  json["run"] = summary_json(summary, settings, verdict_of(summary, settings, tracker));
+  const HandReading* const reading = pipeline.world_stage().hands().reading();
+  json["run"] = summary_json(summary, settings, verdict_of(summary, settings, tracker, reading));
   json["settings"] = settings_to_json(settings_groups(settings));
   write_json(of_run.common.json, json);
   say_written(out, of_run.common.json);

@@ -68,6 +68,7 @@ export interface Tracker {
   frames: number;
   dropped: number;
   repeated: number;
+  dropped_hands: number;
   unsure: number;
   frozen: number;
 }

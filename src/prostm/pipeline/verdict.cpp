@@ -186,6 +186,16 @@ void judge_tracker(const TrackerStatus& tracker, std::vector<std::string>& out) 
   }
 }
 
+void judge_reading(const HandReading& reading, std::vector<std::string>& out) {
+  const HandFaults& faults = reading.faults;
+  if (!reading.doubt.empty()) out.push_back(fmt::format("In {} {}.", reading.file, reading.doubt));
+  if (!faults.any()) return;
+  out.push_back(fmt::format(
+      "{} of {} frames and {} of {} hands in the recording were dropped ({}). The first: {}.",
+      faults.frames(), reading.frames, faults.hands(), reading.hands, causes_of(faults),
+      faults.first));
+}
+
 void judge_contact(const ContactStats& contact, double seconds, bool felt, BoxFollows follows,
                    std::vector<std::string>& out) {
   const double outside = share(contact.joints_outside, contact.joints);
@@ -325,7 +335,7 @@ bool samples_held(const RunSummary& s) {
 }
 
 Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
-                   const std::optional<TrackerStatus>& tracker) {
+                   const std::optional<TrackerStatus>& tracker, const HandReading* reading) {
   Verdict verdict;
   if (s.world_steps == 0 || !(s.seconds > 0.0)) {
     verdict.sentences.emplace_back("The run ended before its first step.");
@@ -343,6 +353,7 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   judge_safety(s, unusual);
   judge_played(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
+  if (reading != nullptr) judge_reading(*reading, unusual);
   if (!tracker || tracker->frames > 0) {
     judge_contact(s.contact_stats, s.seconds, s.plans > 0, settings.box.follow, unusual);
   }

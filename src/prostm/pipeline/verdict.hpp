@@ -18,8 +18,10 @@ struct Verdict {
 };
 
 /// @param settings that the run began with.  @param tracker of hands that are tracked live.
+/// @param reading of a recording of hands, or null.
 Verdict verdict_of(const RunSummary& summary, const PipelineSettings& settings,
-                   const std::optional<TrackerStatus>& tracker = {});
+                   const std::optional<TrackerStatus>& tracker = {},
+                   const HandReading* reading = nullptr);
 
 /// How often something was done, and how often it was due [Hz].
 struct HeldRate {

@@ -45,7 +45,7 @@ export class Transport {
     const { tracker } = state;
     const sentence = tracker === null ? "" : `${tracker.sentence} · ${tracker.frames} frames, ` +
       `${tracker.dropped} dropped, ${tracker.repeated} repeated; ` +
-      `hands not taken: ${tracker.unsure} unsure, ${tracker.frozen} frozen`;
+      `hands not taken: ${tracker.dropped_hands} dropped, ${tracker.unsure} unsure, ${tracker.frozen} frozen`;
     find("tracker").textContent = sentence;
     find("tracker").classList.toggle("bad", tracker !== null && !tracker.connected);
   }

@@ -36,7 +36,7 @@ describe("the source of the hands", () => {
     expect(sourceOf({ ...transport, page_hand: "late" }, 1)).toBe("scripted hand; the page that held the hand is late");
   });
   it("has its own advice when no hand is in sight", () => {
-    const tracker = { connected: false, sentence: "no tracker at 127.0.0.1", frames: 0, dropped: 0, repeated: 0, unsure: 0, frozen: 0 };
+    const tracker = { connected: false, sentence: "no tracker at 127.0.0.1", frames: 0, dropped: 0, repeated: 0, dropped_hands: 0, unsure: 0, frozen: 0 };
     expect(advice(stateWith([], { tracker }))).toBe("no tracker at 127.0.0.1");
     expect(advice(stateWith([], { tracker: { ...tracker, connected: true } }))).toContain("over the array");
     expect(advice(stateWith([], { transport: { ...transport, base: "page" } }))).toContain("mouse");

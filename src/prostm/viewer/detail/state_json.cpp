@@ -107,8 +107,8 @@ Json tracker_json(const std::optional<TrackerStatus>& tracker) {
   if (!tracker) return nullptr;
   return {{"connected", tracker->connected}, {"sentence", tracker->sentence},
           {"frames", tracker->frames},       {"dropped", tracker->dropped},
-          {"repeated", tracker->repeated},   {"unsure", tracker->unsure},
-          {"frozen", tracker->frozen}};
+          {"repeated", tracker->repeated},   {"dropped_hands", tracker->dropped_hands},
+          {"unsure", tracker->unsure},       {"frozen", tracker->frozen}};
 }
 
 Json calibration_json(const std::optional<CalibrationGuide>& steps, bool saved,
