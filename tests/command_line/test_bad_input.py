@@ -92,7 +92,10 @@ def test_bad_npy_and_png(refuses, tmp_path):
 
 def hand_lines():
     header = {"format": "hand-frames", "version": 1, "units": "m"}
-    position = [c for j in range(26) for c in (0.02 * (j % 5), 0.15 + 0.01 * (j // 5), 0.03 * (j // 5))]
+    # straight fingers beside each other
+    finger = [0] * 6 + [1 + j // 5 for j in range(20)]
+    along = [0, 0, 0, 1, 2, 3] + [j % 5 for j in range(20)]
+    position = [c for f, a in zip(finger, along) for c in (0.02 * f, 0.2, -0.03 * a)]
     hand = {"id": 1, "side": "R", "conf": 1, "inferred": 0, "p": position, "q": [0, 0, 0, 1] * 26, "r": [0.01] * 26}
     return header, [{"t": 0.01 * i, "hands": [dict(hand)]} for i in range(5)]
 
@@ -100,12 +103,13 @@ def hand_lines():
 @pytest.mark.parametrize("fault", ["joints", "nan", "infinite", "backwards", "empty", "truncated", "no frames"])
 def test_bad_recordings(refuses, tmp_path, fault):
     header, frames = hand_lines()
+    frames = frames[:3]  # of which a quarter may be bad
     if fault == "joints":
         frames[2]["hands"][0]["p"] = frames[2]["hands"][0]["p"][:75]
     if fault == "nan":
         frames[2]["hands"][0]["p"][4] = None
     if fault == "backwards":
-        frames[3]["t"] = 0.001
+        frames[2]["t"] = 0.001
     if fault == "no frames":
         frames = []
     text = "\n".join(json.dumps(line) for line in [header] + frames) + "\n"
@@ -118,6 +122,19 @@ def test_bad_recordings(refuses, tmp_path, fault):
     path = tmp_path / "bad.hands.jsonl"
     path.write_text(text)
     refuses("run", "--hand", path, "--grid", "32", words=["bad.hands.jsonl"])
+
+
+def test_a_bad_hand_is_counted(prostm, tmp_path):
+    header, frames = hand_lines()
+    frames[2]["hands"][0]["p"][4] = None
+    path = tmp_path / "one.hands.jsonl"
+    path.write_text("\n".join(json.dumps(line) for line in [header] + frames) + "\n")
+    run = ["run", "--hand", path, "--grid", "32", "--seconds", "0.1", "--stepped", "--json", "-"]
+    result = json.loads(prostm(*run).stdout)
+    counts = result["hand_file"]
+    assert counts["frames"] == 5 and counts["dropped"] == 0 and counts["dropped_hands"] == 1
+    assert counts["faults"]["member"] == 1 and "line 4" in counts["first"]
+    assert any("were dropped (1 member)" in sentence for sentence in result["verdict"]["sentences"])
 
 
 def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):

@@ -128,7 +128,7 @@ void validate_recording(const HandRecording& recording) {
 }
 
 TrackSettings with_gap_for(const HandRecording& recording, const TrackSettings& settings) {
-  constexpr double kLongest = 0.1;  // usual interval [s]
+  constexpr double kLongest = 0.09;  // usual interval [s]
   validate(settings);
   TrackSettings out = settings;
   std::vector<double> steps;

@@ -16,7 +16,7 @@ void validate_recording(const HandRecording& recording);
 /// were hands and all are removed.
 void leave_out_unsure(const TrackSettings& settings, HandRecording& recording);
 /// The settings with a max_gap of at least two usual intervals of the recording, for recordings of
-/// at least 10 Hz: some are thinned out. @throws std::invalid_argument as validate().
+/// at least 11 Hz: some are thinned out. @throws std::invalid_argument as validate().
 TrackSettings with_gap_for(const HandRecording& recording, const TrackSettings& settings);
 void validate_step(double step);  ///< time between samples [s]
 
