@@ -127,7 +127,8 @@ struct CheckOptionsGiven {
 struct StudyRunOptionsGiven {
   RunOptionsGiven run;  ///< hand, device, settings and pages
   std::string protocol;
-  int participant = 0;
+  std::string participant;         ///< number
+  std::string replaces;            ///< participant whose place they take; empty: nobody's
   std::string folder = "answers";  ///< of the response files
   bool resume = false;
   bool take_over = false;            ///< replace a lock file of another machine
@@ -138,6 +139,12 @@ struct StudyRunOptionsGiven {
 struct StudyCheckOptionsGiven {
   CommonOptions common;
   std::string protocol;
+};
+
+struct StudyStatusOptionsGiven {
+  Files files;
+  std::vector<std::string> answers = {"answers"};  ///< folders and response files
+  std::string json;
 };
 
 struct AnalyseOptionsGiven {
@@ -187,6 +194,7 @@ int settings_command(const SettingsOptionsGiven& options);
 int check_command(const CheckOptionsGiven& options);
 int study_check_command(const StudyCheckOptionsGiven& options);
 int study_run_command(const StudyRunOptionsGiven& options);
+int study_status_command(const StudyStatusOptionsGiven& options);
 int analyse_command(const AnalyseOptionsGiven& options);
 int simulate_command(const SimulateOptionsGiven& options);
 int report_command(const ReportOptionsGiven& options);

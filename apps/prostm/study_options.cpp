@@ -15,10 +15,16 @@ void add_study_run(CLI::App& study, Work& work) {
             "what is presented and asked (.toml, docs/study.md)")
       ->required();
   command->add_option("--participant", o->participant, "number of the participant, from 1")
+      ->type_name("NUMBER")
       ->required();
   command->add_option("--answers", o->folder, "folder of the response files")
       ->type_name("FOLDER")
       ->capture_default_str();
+  command
+      ->add_option("--replaces", o->replaces,
+                   "take the place of this participant: the same methods and orders; analyse then "
+                   "leaves the replaced one out")
+      ->type_name("NUMBER");
   command->add_flag("--resume", o->resume, "go on with a participant who has begun");
   command->add_flag("--take-over", o->take_over,
                     "replace the lock file of a run on another machine that no longer runs");
@@ -66,6 +72,18 @@ void add_study_check(CLI::App& study, Work& work) {
   command->callback([o, &work] {
     work = {&o->common.files, [o] { return study_check_command(*o); }};
   });
+}
+
+void add_status(CLI::App& study, Work& work) {
+  auto* command = study.add_subcommand("status", "how full each group is, and who took part");
+  auto o = std::make_shared<StudyStatusOptionsGiven>();
+  command
+      ->add_option("answers", o->answers, "folders of prostm study run --answers, or files in them")
+      ->type_name("FOLDER|INPUT")
+      ->capture_default_str();
+  add_json(*command, o->files, o->json);
+  command->footer("Example:\n  prostm study status answers");
+  command->callback([o, &work] { work = {&o->files, [o] { return study_status_command(*o); }}; });
 }
 
 void add_analyse(CLI::App& study, Work& work) {
@@ -141,6 +159,7 @@ void add_study(CLI::App& app, Work& work) {
   study->require_subcommand(1);
   add_study_check(*study, work);
   add_study_run(*study, work);
+  add_status(*study, work);
   add_analyse(*study, work);
   add_simulate(*study, work);
 }

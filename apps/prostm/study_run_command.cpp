@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/pipeline/runner.hpp"
+#include "prostm/study/roster.hpp"
 #include "prostm/study/session.hpp"
 #include "study_protocol.hpp"
 #include "view.hpp"
@@ -19,10 +21,11 @@ namespace {
 constexpr int kMostParticipants = 9999;
 constexpr double kADay = 86400.0;  // [s]
 
-/// Says where markers do not arrive, and where they do again.
-void tell_news(MarkerSender& markers) {
+/// Prints what has come up: markers that do not arrive, or what the session waits for.
+template <class Source>
+void tell_news(Source& source) {
   std::string sentence;
-  while (markers.next_news(sentence)) {
+  while (source.next_news(sentence)) {
     fmt::print("{}\n", sentence);
     std::fflush(stdout);
   }
@@ -31,13 +34,13 @@ void tell_news(MarkerSender& markers) {
 /// Ends the run when the session is closed, on a signal, and when the pages' server fails.
 class Observer final : public RunObserver {
  public:
-  Observer(const View& view, const StudyView& study, MarkerSender& markers,
-           const Interrupt& interrupt)
+  Observer(const View& view, StudyView& study, MarkerSender& markers, const Interrupt& interrupt)
       : view_(view), study_(study), markers_(markers), interrupt_(interrupt) {}
   bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
   bool on_progress(double) override {
     view_.check();
     tell_news(markers_);
+    tell_news(study_);
     return goes_on();
   }
 
@@ -45,7 +48,7 @@ class Observer final : public RunObserver {
   bool goes_on() const { return !interrupt_.requested() && !study_.closed(); }
 
   const View& view_;
-  const StudyView& study_;
+  StudyView& study_;
   MarkerSender& markers_;
   const Interrupt& interrupt_;
 };
@@ -60,13 +63,23 @@ class PagesEnd {
   View& view_;
 };
 
+/// The number that --participant gives; 01 is 1. @throws InputError: it is not a number, or out of
+/// range.
+int participant_of(const StudyRunOptionsGiven& given) {
+  const std::string id = plain_id(given.participant);
+  int number = 0;
+  const auto [end, wrong] = std::from_chars(id.data(), id.data() + id.size(), number);
+  if (wrong != std::errc() || end != id.data() + id.size() || number < 1 ||
+      number > kMostParticipants) {
+    throw InputError(fmt::format("--participant {} must be a number between 1 and {}",
+                                 given.participant, kMostParticipants));
+  }
+  return number;
+}
+
 /// Returns the participant's file. @throws InputError: they have begun and are not to be resumed,
 /// or the other way round; there can be no such folder.
-std::string file_of(const StudyRunOptionsGiven& given) {
-  if (given.participant < 1 || given.participant > kMostParticipants) {
-    throw InputError(fmt::format("--participant {} must be between 1 and {}", given.participant,
-                                 kMostParticipants));
-  }
+std::string file_of(const StudyRunOptionsGiven& given, int participant) {
   if (given.rehearse && *given.rehearse < 0)
     throw InputError(fmt::format("--rehearse {} must be 0 or more trials", *given.rehearse));
   std::error_code wrong;
@@ -77,34 +90,89 @@ std::string file_of(const StudyRunOptionsGiven& given) {
   }
   const char* kind = given.rehearse ? "rehearsal" : "participant";
   const std::string path =
-      (std::filesystem::path(given.folder) / fmt::format("{}-{}.jsonl", kind, given.participant))
+      (std::filesystem::path(given.folder) / fmt::format("{}-{}.jsonl", kind, participant))
           .string();
   const bool begun = std::filesystem::exists(path) && !std::filesystem::is_empty(path);
   if (begun && !given.resume) {
     throw InputError(
         fmt::format("participant {} has begun ({}); give a new one another number, or --resume to "
                     "go on with this one",
-                    given.participant, path));
+                    participant, path));
   }
   if (!begun && given.resume) {
     throw InputError(fmt::format("participant {} has not begun: there is no {}; leave --resume out",
-                                 given.participant, path));
+                                 participant, path));
   }
   return path;
 }
 
-std::optional<Rehearsal> rehearsal_of(const StudyRunOptionsGiven& given) {
+/// Those who have a file in the folder, or have rehearsed. Files that cannot be read are left out:
+/// they must not stop another participant.
+std::vector<RosterEntry> roster_of(const StudyRunOptionsGiven& given) {
+  std::vector<std::string> faults;
+  auto roster = read_roster(response_files_in(given.folder), &faults);
+  std::erase_if(roster,
+                [&](const RosterEntry& e) { return e.rehearsal != given.rehearse.has_value(); });
+  return roster;
+}
+
+/// The place that this participant takes from another, if any.
+/// @throws InputError: the participant has another file; nobody has the place, it was taken before,
+/// or belongs to another protocol.
+std::optional<Replacement> replacement_for(const StudyRunOptionsGiven& given, int participant,
+                                           const std::string& path, const Protocol& protocol) {
+  const std::vector<RosterEntry> roster = roster_of(given);
+  const RosterEntry* self = find_participant(roster, std::to_string(participant));
+  if (self != nullptr && self->file != path) {
+    throw InputError(fmt::format(
+        "participant {} has begun in {}; give the new one another number, or rename that file to "
+        "{} to go on with it",
+        participant, self->file, path));
+  }
+  if (self != nullptr &&
+      (given.replaces.empty() || plain_id(given.replaces) == plain_id(self->replaces))) {
+    if (self->replaces.empty()) return {};
+    return Replacement{self->replaces, self->order};
+  }
+  if (self != nullptr) {
+    throw InputError(fmt::format(
+        "participant {} began {}; leave --replaces out", participant,
+        self->replaces.empty() ? "without --replaces" : "with --replaces " + self->replaces));
+  }
+  if (given.replaces.empty()) return {};
+  const RosterEntry* replaced = find_participant(roster, given.replaces);
+  if (replaced == nullptr) {
+    throw InputError(fmt::format(
+        "--replaces {}: no participant of this number has a file in {}; prostm study status lists "
+        "them",
+        given.replaces, given.folder));
+  }
+  if (const RosterEntry* by = replacement_of(roster, *replaced)) {
+    throw InputError(fmt::format("participant {0} was replaced by {1} before; give --replaces {1}",
+                                 replaced->participant, by->participant));
+  }
+  if (replaced->protocol != protocol_json(protocol)) {
+    throw InputError(
+        fmt::format("participant {} had another protocol than {}, so their place is "
+                    "not of this study",
+                    replaced->participant, given.protocol));
+  }
+  return Replacement{replaced->participant, replaced->order};
+}
+
+std::optional<Rehearsal> rehearsal_of(const StudyRunOptionsGiven& given, int participant) {
   if (!given.rehearse) return {};
   return Rehearsal(static_cast<std::size_t>(*given.rehearse),
-                   static_cast<std::uint64_t>(given.participant));
+                   static_cast<std::uint64_t>(participant));
 }
 
 /// Starts the pages. Where that fails nobody has begun. @param begun the file that has just been
 /// begun, if any.
-const StudyView& serve(const StudyRunOptionsGiven& given, Pipeline& pipeline, StudySession& session,
-                       MarkerSender& markers, View& view, const std::string& begun) {
+StudyView& serve(const StudyRunOptionsGiven& given, Pipeline& pipeline, StudySession& session,
+                 MarkerSender& markers, View& view, const std::string& begun) {
   try {
-    return view.serve(pipeline, session, rehearsal_of(given), markers, stdout);
+    return view.serve(pipeline, session, rehearsal_of(given, session.participant()), markers,
+                      stdout);
   } catch (...) {
     if (!begun.empty()) std::filesystem::remove(begun);
     throw;
@@ -162,7 +230,12 @@ void report(std::FILE* out, const StudySession& session, const ResponseFile& fil
                course.most(), file.path());
   }
   const std::string strengths = session.strengths();
-  if (!strengths.empty()) fmt::print(out, "{}\n", strengths);
+  if (!strengths.empty()) {
+    fmt::print(out, "{}\n", strengths);
+  } else if (session.strength_difference() > 0.0) {
+    fmt::print(out, "Scenes of one method differ in strength by {:.0f} % ({:.0f} % are allowed).\n",
+               100.0 * session.strength_difference(), 100.0 * session.protocol().trials.strength);
+  }
   if (summary.skipped_world_steps > 0 || summary.device.missed_blocks > 0) {
     fmt::print(out,
                "The machine did not keep up: {} steps of the smoke were skipped and {} blocks of "
@@ -180,7 +253,9 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   settle_hand(given.run.hand, given.run.hand_size, base);
   check_mode(base, RunMode::RealTime);
   const Protocol protocol = live_protocol(given.protocol, base);
-  const std::string path = file_of(given);
+  const int participant = participant_of(given);
+  const std::string path = file_of(given, participant);
+  const auto replaces = replacement_for(given, participant, path, protocol);
   std::vector<OpenTarget> targets = open_marker_targets(given.markers);
   PipelineSettings settings = protocol.methods.front().settings;
   settings.scene = "still-air";
@@ -200,11 +275,11 @@ int study_run_command(const StudyRunOptionsGiven& given) {
                                         {"array", settings.array},
                                         {"hand", given.run.hand},
                                         {"rehearsal", given.rehearse.has_value()}};
-  StudySession session(protocol, given.participant, file, facts, study_time());
-  MarkerSender markers(std::move(targets), protocol, {given.participant, run_of(file)},
-                       pipeline.device(), pipeline.sound());
+  StudySession session(protocol, participant, file, facts, study_time(), replaces);
+  MarkerSender markers(std::move(targets), protocol, {participant, run_of(file)}, pipeline.device(),
+                       pipeline.sound());
   const PagesEnd pages_end(view);
-  const StudyView& study = serve(given, pipeline, session, markers, view, begins ? path : "");
+  StudyView& study = serve(given, pipeline, session, markers, view, begins ? path : "");
   if (file.found_cut_off())
     fmt::print("The last line of {0} was cut off; it is in {0}.cut-off.\n", path);
   if (!names_tracker(given.run.hand))

@@ -272,6 +272,64 @@ def test_answers_that_did_not_fit_on_the_disk_are_not_counted(program, prostm, t
     assert process.returncode == 2 and "could not be written" in errors and "--resume" in errors
 
 
+def test_a_number_is_decimal_however_it_is_written(prostm, refuses, tmp_path):
+    (tmp_path / "short.toml").write_text(SHORT)
+    said = prostm(*STUDY, "010", "--rehearse", "1").stdout
+    assert "Participant 10: 1 of 2 answers in answers/rehearsal-10.jsonl." in said
+    refuses(*STUDY, "10", "--rehearse", "1", words=["participant 10 has begun"])
+    refuses(*STUDY, " 10", "--rehearse", "1", words=["participant 10 has begun"])
+    refuses(*STUDY, "0x10", words=["--participant 0x10", "number between 1 and 9999"])
+    # the same person under another file name
+    (tmp_path / "answers" / "rehearsal-10.jsonl").rename(tmp_path / "answers" / "first.jsonl")
+    refuses(*STUDY, "10", "--rehearse", "1", words=["participant 10 has begun in answers/first.jsonl", "another number"])
+
+
+def test_a_participant_takes_the_place_of_another(prostm, refuses, tmp_path):
+    (tmp_path / "short.toml").write_text("[study]\nparticipants = 4\n" + SHORT + "[method.b.fluid]\ncells = 32\n")
+    def header(number):
+        return json.loads((tmp_path / "answers" / f"rehearsal-{number}.jsonl").read_text().splitlines()[0])
+    def conditions(number):
+        lines = map(json.loads, (tmp_path / "answers" / f"rehearsal-{number}.jsonl").read_text().splitlines())
+        return [(line["method"], line["scene"], line["question"]) for line in lines if line["kind"] == "trial"]
+    rehearse = ("--rehearse", "0")
+    for number in "23":
+        prostm(*STUDY, number, *rehearse)
+    refuses(*STUDY, "9", *rehearse, "--replaces", "4", words=["--replaces 4", "no participant", "study status"])
+    prostm(*STUDY, "9", *rehearse, "--replaces", "02")
+    assert (header(9)["replaces"], header(9)["order"]) == ("2", 2)
+    assert conditions(9) == conditions(2)
+    refuses(*STUDY, "10", *rehearse, "--replaces", "2", words=["participant 2 was replaced by 9", "--replaces 9"])
+    (tmp_path / "other.toml").write_text(SHORT)
+    refuses("study", "run", "other.toml", "--participant", "11", *rehearse, "--replaces", "3", words=["another protocol"])
+    files = [f"answers/rehearsal-{n}.jsonl" for n in (2, 3, 9)]
+    said = prostm("study", "analyse", *files).stdout
+    assert "Participant 2 was replaced by 9 and is left out" in said
+    assert "2 participants" in said
+
+
+def test_status_says_how_full_each_group_is(program, prostm, refuses, tmp_path):
+    refuses("study", "status", words=["answers"])
+    (tmp_path / "short.toml").write_text("[study]\ntitle = \"T\"\nparticipants = 4\n" + SHORT + "[method.b.fluid]\ncells = 32\n")
+    (tmp_path / "answers").mkdir()
+    refuses("study", "status", words=["no participant's file"])
+    file = tmp_path / "answers" / "participant-3.jsonl"
+    process = subprocess.Popen([str(program), *STUDY, "3"], cwd=tmp_path, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    wait_for(lambda: file.exists() and file.read_text().endswith("\n"))
+    process.send_signal(signal.SIGINT)
+    process.wait()
+    prostm(*STUDY, "1", "--rehearse", "1")
+    said = prostm("study", "status", "--json", "s.json").stdout
+    assert "T: 4 participants planned" in said and "Rehearsals left out: 1" in said
+    study, = json.loads((tmp_path / "s.json").read_text())["studies"]
+    assert sorted(group["planned"] for group in study["groups"]) == [2, 2]
+    assert sum(group["under_way"] for group in study["groups"]) == 1
+    assert sorted(n for group in study["groups"] for n in group["open"]) == [1, 2, 4]
+    only, = study["participants"]
+    assert (only["participant"], only["answers"], only["state"]) == ("3", 0, "under way")
+    assert prostm("study", "status", file).stdout.splitlines()[:3] == said.splitlines()[:3]
+
+
 EXAMPLES = {"gain-as-strong-as-am": "adjusted", "continuity": "felt", "number-of-paths": "felt", "just-stronger": "right"}
 QUICK = {"settle = 2\n": "", "seconds = 60": "seconds = 0", "interval = 1.5": "interval = 0.3", "interval = 1.0": "interval = 0.3",
          "interval = 2\n": "interval = 0.3\n", "interval = 3\n": "interval = 0.3\n", "gap = 0.7": "gap = 0.1", "gap = 0.6": "gap = 0.1",

@@ -392,5 +392,58 @@ TEST(LevelSession, IsRehearsedToItsEndByItself) {
   }
 }
 
+/// Everything that a session tells the experimenter, and how often a word is in it.
+int count_news(Sitting& s, const std::string& word) {
+  int count = 0;
+  for (std::string news; s.session.next_news(news);) count += news.find(word) != std::string::npos;
+  return count;
+}
+
+TEST(LevelSession, TellsThatAStaircaseStandsAtAnEndOfItsRange) {
+  const test::TemporaryFolder folder;
+  for (const bool yes : {true, false}) {
+    for (const char* procedure : {"up-down", "bayes"}) {
+      const Protocol p = protocol(kJudged, kLinear + "procedure = \"" + procedure + "\"\n");
+      Sitting s(p, folder.file(std::string(procedure) + (yes ? "y" : "n")));
+      int told = 0;
+      for (int trial = 0; trial < 60 && s.session.phase() != StudyPhase::Done; ++trial) {
+        ASSERT_TRUE(s.present());
+        s.act({.what = Do::Answer, .yes = yes});
+        told += count_news(s, "end of its range");
+      }
+      EXPECT_EQ(told, 1);
+      const auto bounds = s.lines("bound");
+      ASSERT_EQ(bounds.size(), 1U) << "written down once";
+      EXPECT_EQ(bounds[0]["bound"], yes ? "low" : "high");
+      EXPECT_EQ(bounds[0]["answers"], 3);
+      EXPECT_THAT(s.session.at_bound(), HasSubstr("end of its range"));
+      EXPECT_EQ(s.session.at_bound().find("low"), std::string::npos) << "the study is blind";
+    }
+  }
+}
+
+TEST(LevelSession, TellsNothingOfABoundThatAnswersLeave) {
+  const test::TemporaryFolder folder;
+  const Protocol p = protocol(kJudged, kLinear);
+  Sitting s(p, folder.file("1.jsonl"));
+  for (int trial = 0; trial < 40 && s.session.phase() != StudyPhase::Done; ++trial) {
+    ASSERT_TRUE(s.present());
+    s.act({.what = Do::Answer, .yes = trial % 3 != 0});
+    EXPECT_EQ(s.session.at_bound(), "");
+  }
+  EXPECT_TRUE(s.lines("bound").empty());
+}
+
+TEST(LevelSession, TellsThatAnAdjustmentWasAcceptedAtAnEndOfItsRange) {
+  const test::TemporaryFolder folder;
+  const Protocol p = protocol(kAdjusted, kLinear + "against = \"am\"\n", kAm);
+  Sitting s(p, folder.file("1.jsonl"));
+  ASSERT_TRUE(s.present_all());
+  s.act({.what = Do::Tune, .steps = 1000});
+  s.act({.what = Do::Accept});
+  EXPECT_THAT(s.session.at_bound(), HasSubstr("accepted at an end"));
+  EXPECT_EQ(s.lines("bound")[0]["bound"], "high");
+}
+
 }  // namespace
 }  // namespace prostm

@@ -95,6 +95,14 @@ TEST(PageMessage, Study) {
   EXPECT_EQ(read<StudyAct>(R"({"type":"study","do":"withdraw"})").what, Do::Withdraw);
 }
 
+TEST(PageMessage, ReportOfTheParticipantsPage) {
+  const auto report =
+      read<PageReport>(R"({"type":"page","visible":true,"noise":"playing","picture":false})");
+  EXPECT_TRUE(report.visible);
+  EXPECT_EQ(report.noise, PageNoise::Playing);
+  EXPECT_FALSE(report.picture);
+}
+
 TEST(PageMessage, WhatIsNoneIsToldInASentence) {
   const char* const hand =
       R"({"type":"hand","palm_mm":[0,0,200],"yaw_deg":0,"pitch_deg":0,"roll_deg":0,"closure":0,)";
@@ -106,7 +114,9 @@ TEST(PageMessage, WhatIsNoneIsToldInASentence) {
       {std::string(4097, ' '), "4096 bytes"},
       {"{}", "lacks \"type\""},
       {R"({"type":7})", "\"type\" must be a string"},
-      {R"({"type":"reset"})", "set, transport, hand, calibration, mute, rate or study"},
+      {R"({"type":"reset"})", "set, transport, hand, calibration, mute, rate, study or page"},
+      {R"({"type":"page","visible":true,"picture":true})", "lacks \"noise\""},
+      {R"({"type":"page","visible":true,"noise":"loud","picture":true})", "off, silent or playing"},
       {R"({"type":"set","value":1})", "lacks \"id\""},
       {R"({"type":"set","id":"gain"})", "lacks \"value\""},
       {R"({"type":"set","id":"gain","value":null})", "\"value\" must be a number"},

@@ -99,6 +99,9 @@ Json at_phase(Page& page, const std::string& phase) {
   }
 }
 
+const std::string kReport = R"({"type":"page","visible":true,"noise":"off","picture":true})";
+const std::string kWithNoise = R"({"type":"page","visible":true,"noise":"playing","picture":true})";
+
 TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
   LiveStudy study(
       "methods = \"within\"\n[training]\nseconds = 0\n[trials]\nrepeats = 1\nrest = "
@@ -106,6 +109,7 @@ TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
   Page experimenter(study.port()), participant(study.port(), "", "", "/guest/live");
   EXPECT_EQ(at_phase(participant, "ready").at("room"), "participant");
   EXPECT_EQ(at_phase(experimenter, "ready").at("room"), "experimenter");
+  participant.say(kReport);
   participant.say(R"({"type":"study","do":"next"})");
   EXPECT_EQ(participant.next_text("error").at("sentence"), "the experimenter does that");
   experimenter.say(R"({"type":"set","id":"gain","value":1})");
@@ -114,6 +118,7 @@ TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
   EXPECT_EQ(test::status_of(test::get(study.port(), "/numbers.json")), 403);
   const auto order = trial_order(study.protocol(), 1);
   for (std::size_t i = 0; i < order.size(); ++i) {
+    participant.say(kReport);
     if (i == 0 || order[i].method != order[i - 1].method)
       experimenter.say(R"({"type":"study","do":"next"})");
     const Json told = at_phase(experimenter, "presenting"),
@@ -136,6 +141,47 @@ TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
   }
   experimenter.say(R"({"type":"study","do":"next"})");
   study.wait();
+}
+
+/// The next state of the experimenter's page that a condition holds for.
+Json state_with(Page& page, const std::function<bool(const Json&)>& holds) {
+  for (;;) {
+    Json state = page.next_text("study");
+    if (holds(state)) return state;
+  }
+}
+
+TEST(StudyView, HoldsTrialsUntilThePageReportsThatTheNoisePlays) {
+  LiveStudy study(
+      "[training]\nseconds = 0\n[trials]\nnoise = true\nrest = 0.1\nsettle = 0.5\ngate = "
+      "\"off\"\n");
+  Page experimenter(study.port());
+  at_phase(experimenter, "ready");
+  experimenter.say(R"({"type":"study","do":"next"})");
+  const auto needs = [](const char* word) {
+    return [word](const Json& state) {
+      EXPECT_NE(state.at("phase"), "presenting");
+      return state.at("needs").get<std::string>().find(word) != std::string::npos;
+    };
+  };
+  state_with(experimenter, needs("not open"));
+  experimenter.say(kWithNoise);
+  EXPECT_EQ(experimenter.next_text("error").at("sentence"), "only the participant's page reports");
+  auto participant = std::make_unique<Page>(study.port(), "", "", "/guest/live");
+  state_with(experimenter, needs("does not report"));
+  participant->say(kReport);
+  state_with(experimenter, needs("noise does not play"));
+  participant->say(kWithNoise);
+  at_phase(experimenter, "presenting");
+  participant.reset();  // as by a reload
+  at_phase(experimenter, "settling");
+  state_with(experimenter, needs("not open"));
+  Page again(study.port(), "", "", "/guest/live");
+  again.say(kWithNoise);
+  at_phase(experimenter, "presenting");
+  experimenter.say(R"({"type":"study","do":"answer","yes":true})");
+  at_phase(experimenter, "settling");
+  EXPECT_EQ(study.trials().at(0)["page"]["interrupted"], 1);
 }
 
 TEST(StudyView, ShowsTheSimulationInTrainingWithoutTheMethod) {

@@ -1,6 +1,6 @@
 /// The text messages of docs/wire.md, as types, and the check of those that come from the program.
 
-import { isStudy, type Study, type StudyAct } from "./study/messages";
+import { isStudy, type PageReport, type Study, type StudyAct } from "./study/messages";
 
 export interface Hello {
   type: "hello";
@@ -120,6 +120,7 @@ export type PageMessage =
   | { type: "calibration"; do: "begin" | "solve" | "save" | "cancel" }
   | { type: "calibration"; do: "take"; mark: number }
   | { type: "rate"; hz: number }
+  | PageReport
   | StudyAct;
 
 type Json = Record<string, unknown>;

@@ -18,6 +18,13 @@ namespace prostm {
 /// of two intervals is the level's is drawn for each trial.
 class Course {
  public:
+  /// A track, and what it is presented with.
+  struct Lane {
+    int method = 0, scene = 0;
+    Track track;
+    Random intervals;
+  };
+
   /// @pre the protocol outlives this.
   Course(const Protocol& protocol, int participant);
 
@@ -40,15 +47,12 @@ class Course {
   /// Ends it at a level.
   void accept(double level);
 
+  /// Tracks by their number less 1; none in an identification.
+  const std::vector<Lane>& lanes() const { return lanes_; }
   /// The level that a track, from 1, has found so far; NaN before there is any.
   double result(int track) const;
 
  private:
-  struct Lane {
-    int method = 0, scene = 0;
-    Track track;
-    Random intervals;
-  };
   void step();
   void next_lane();
   Lane& lane() { return lanes_[static_cast<std::size_t>(trial_.track - 1)]; }

@@ -82,7 +82,7 @@ void list_trials(Settings& s, V& v) {
   v.field({.name = "strength",
            .least = 0,
            .most = 10,
-           .help = "relative difference in strength of conditions that is let pass"},
+           .help = "relative difference in strength of a method's scenes that is let pass"},
           s.strength);
   v.field({.name = "gate", .help = "whether a trial waits for the stimulus gate"}, s.gate);
 }

@@ -80,7 +80,9 @@ struct TrialSettings {
   double rest = 1.0;        ///< still air before each trial [s]
   double settle = 2.0;      ///< silence after it, in which the smoke develops [s]
   double time_limit = 0.0;  ///< of the stimulus, which then ends; 0: until the answer [s]
-  double strength = 0.10;   ///< difference between conditions that is let pass
+  /// Difference in rendered force between the scenes of a method that is let pass: the Weber
+  /// fraction of touch (docs/design.md, section 13).
+  double strength = 0.2;
   GateUse gate = GateUse::Required;
 
   void visit(SettingsReader& v) const;

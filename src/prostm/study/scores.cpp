@@ -20,6 +20,7 @@
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/study/detail/csv.hpp"
 #include "prostm/study/response_file.hpp"
+#include "prostm/study/roster.hpp"
 
 namespace prostm {
 namespace {
@@ -326,6 +327,23 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
   return answers;
 }
 
+namespace {
+
+/// Leaves out who was replaced by another participant of these files.
+void leave_out_replaced(std::span<const std::string> paths, std::vector<Answer>& answers,
+                        std::vector<std::string>& notes) {
+  const std::vector<RosterEntry> roster = read_roster(paths);
+  for (const RosterEntry& entry : roster) {
+    const RosterEntry* by = replacement_of(roster, entry);
+    if (by == nullptr) continue;
+    std::erase_if(answers, [&](const Answer& a) { return a.participant == entry.participant; });
+    notes.push_back(fmt::format("Participant {} was replaced by {} and is left out ({}).",
+                                entry.participant, by->participant, entry.file));
+  }
+}
+
+}  // namespace
+
 std::vector<Answer> read_answers(std::span<const std::string> paths,
                                  std::vector<std::string>& notes) {
   const auto is_responses = [](const std::string& path) { return path.ends_with(".jsonl"); };
@@ -355,6 +373,7 @@ std::vector<Answer> read_answers(std::span<const std::string> paths,
     }
     all.insert(all.end(), answers.begin(), answers.end());
   }
+  leave_out_replaced(paths, all, notes);
   if (all.empty()) throw InputError(paths.front() + ": has no answer");
   for (const Answer& a : all) {
     if (a.kind == all.front().kind) continue;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/study/detail/session_lines.hpp"
@@ -23,21 +22,25 @@ constexpr double kHandPeriod = 0.05;  // between poses in a trial's line [s]
 }  // namespace
 
 StudySession::StudySession(const Protocol& protocol, int participant, ResponseFile& file,
-                           const nlohmann::ordered_json& facts, const StudySight& now)
+                           const nlohmann::ordered_json& facts, const StudySight& now,
+                           const std::optional<Replacement>& replaces)
     : protocol_(protocol),
       participant_(participant),
       file_(file),
-      course_(protocol, participant),
+      course_(protocol, replaces ? replaces->order : participant),
       strengths_(protocol.methods.size() * protocol.scenes.size()) {
   utc_offset_ = now.utc - now.time;
   looked_ = now.time;
   training_left_ = protocol.training.seconds;
   wanted_.method = trial().method;
-  const ResponseLine first = {{"kind", "begin"},
-                              {"format", kResponseFormat},
-                              {"participant", std::to_string(participant)},
-                              {"protocol", protocol_json(protocol)},
-                              {"trials", course_.most()}};
+  ResponseLine first = {
+      {"kind", "begin"}, {"format", kResponseFormat}, {"participant", std::to_string(participant)}};
+  if (replaces) {
+    first["replaces"] = replaces->participant;
+    first["order"] = replaces->order;
+  }
+  first["protocol"] = protocol_json(protocol);
+  first["trials"] = course_.most();
   if (file.lines().empty()) {
     ResponseLine line = first;
     line["run"] = facts;
@@ -79,6 +82,7 @@ StudyPhase StudySession::replay() {
     withdrawn = withdrawn || kind == "withdrawn";
     if (kind == "training") trained = true;
     if (kind == "correction") repeat_correction(line);
+    if (kind == "interrupted") page_.interrupt();
     if (kind != "trial") continue;
     if (course_.is_done()) throw InputError(file_.path() + " has more trials than there are");
     repeat_trial(line);
@@ -104,6 +108,7 @@ void StudySession::repeat_trial(const ResponseLine& line) {
         file_.path(), trials_done() + 1, level, *t.level));
   }
   add_strength(t, 1e-3 * line.value("target_mn", 0.0), 1e-3 * line.value("rendered_mn", 0.0));
+  page_.end_trial();
   last_trial_ = t;
   if (protocol_.trials.task == StudyTask::Adjustment) return course_.accept(level);
   last_ = study::chose(protocol_, line);
@@ -126,6 +131,7 @@ void StudySession::enter(StudyPhase phase, double time) {
   in_force_at_ = -1.0;
   waits_for_.clear();
   anyway_ = false;
+  passed_over_.reset();
   wanted_.sound = wanted_.picture = false;
   wanted_.scene = -1;
   wanted_.level.reset();
@@ -133,7 +139,7 @@ void StudySession::enter(StudyPhase phase, double time) {
   if (phase == StudyPhase::Training) {
     explored_ = 0;
     wanted_.scene = 0;
-    wanted_.sound = true;
+    wanted_.sound = !protocol_.trials.noise;  // which is seen to play first
     wanted_.picture = protocol_.training.picture;
   }
 }
@@ -155,19 +161,25 @@ const StudyWanted& StudySession::look(const StudySight& sight) {
   const double passed = sight.time - looked_;
   looked_ = sight.time;
   gate_ = sight.in_force ? sight.gate : std::nullopt;
+  watch_page(sight);
   if (phase_ == StudyPhase::Training) {
-    training_left_ = std::max(0.0, training_left_ - passed);
+    wanted_.sound = page_.missing().none();
+    if (wanted_.sound) training_left_ = std::max(0.0, training_left_ - passed);
     if (training_left_ == 0.0) end_training(sight);
   }
   if (phase_ == StudyPhase::Settling) settle(sight);
   if (phase_ == StudyPhase::Presenting) present(sight);
   if (phase_ == StudyPhase::Presenting && !sight.palm) hand_gone_ += passed;
+  if (phase_ == StudyPhase::Presenting) page_.present(passed);
   return wanted_;
 }
 
 std::string StudySession::end_training(const StudySight& sight) {
   enter(StudyPhase::Ready, sight.time);
-  return write({{"kind", "training"}, {"left_s", rounded(training_left_, 1)}}, sight);
+  return write({{"kind", "training"},
+                {"left_s", rounded(training_left_, 1)},
+                {"page_missing", names_of(page_.missing())}},
+               sight);
 }
 
 void StudySession::settle(const StudySight& sight) {
@@ -187,6 +199,7 @@ void StudySession::settle(const StudySight& sight) {
   if (in_force_at_ < 0.0) in_force_at_ = sight.time;
   const bool open = protocol_.trials.gate != GateUse::Required || anyway_ || !gate_ || gate_->pass;
   waits_for_ = open ? "" : sentence(*gate_);
+  if ((page_.missing() & ~passed_over_).any()) return;
   if (sight.time - in_force_at_ < protocol_.trials.settle || !open || !unwritten_.empty()) return;
   phase_ = StudyPhase::Presenting;
   since_ = sight.time;
@@ -200,6 +213,7 @@ void StudySession::settle(const StudySight& sight) {
   hand_ = nlohmann::ordered_json::array();
   hand_at_ = sight.time;
   hand_gone_ = 0.0;
+  page_.begin_presentation();
 }
 
 void StudySession::present(const StudySight& sight) {
@@ -287,16 +301,9 @@ ResponseLine StudySession::trial_line(std::optional<bool> chosen, const StudySig
   line["rendered_mn"] = rounded(1e3 * strength_.rendered / looks, 4);
   line["played"] = played_json();
   line["hand_gone_s"] = rounded(hand_gone_, 3);
+  line["page"] = page_.of_trial();
   line["hand"] = hand_;
   return line;
-}
-
-void StudySession::add_strength(const Trial& trial, double target, double rendered) {
-  const auto place = static_cast<std::size_t>(trial.method) * protocol_.scenes.size() +
-                     static_cast<std::size_t>(trial.scene);
-  strengths_[place].target += target;
-  strengths_[place].rendered += rendered;
-  ++strengths_[place].looks;
 }
 
 std::string StudySession::answer(const StudyAct& act, const StudySight& sight) {
@@ -334,10 +341,15 @@ void StudySession::end_trial(const ResponseLine& line, const StudySight& sight,
   add_strength(trial(), strength_.target / looks, strength_.rendered / looks);
   write(line, sight);
   last_trial_ = trial();
+  page_.end_trial();
   count();
+  note_bound(sight);
   if (course_.is_done()) {
     enter(StudyPhase::Done, sight.time);
-    write({{"kind", "end"}, {"strengths", strengths()}}, sight);
+    write({{"kind", "end"},
+           {"strengths", strengths()},
+           {"strength_difference", rounded(strength_difference(), 3)}},
+          sight);
   } else if (starts_method()) {
     begin_method(sight.time);
   } else {
@@ -393,6 +405,7 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
     case Do::Anyway:
       if (phase_ != StudyPhase::Settling) return refuse();
       anyway_ = true;
+      passed_over_ = page_.missing();
       return {};
     case Do::Answer:
       if (phase_ != StudyPhase::Presenting) return refuse();
@@ -416,22 +429,6 @@ std::string StudySession::take(const StudyAct& act, const StudySight& sight) {
       return write({{"kind", "withdrawn"}}, sight);
   }
   return refuse();
-}
-
-std::string StudySession::strengths() const {
-  if (protocol_.trials.task != StudyTask::Identification) return {};  // levels are to differ
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
-  for (const Strength& s : strengths_) {
-    if (s.looks == 0) continue;
-    least = std::min(least, s.rendered / s.looks);
-    most = std::max(most, s.rendered / s.looks);
-  }
-  if (!(most > 0.0) || most - least <= protocol_.trials.strength * most) return {};
-  return fmt::format(
-      "Conditions differ in strength by {:.0f} %, and the protocol lets {:.0f} % pass: strength "
-      "may "
-      "be a cue.",
-      100.0 * (most - least) / most, 100.0 * protocol_.trials.strength);
 }
 
 }  // namespace prostm

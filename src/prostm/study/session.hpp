@@ -16,6 +16,7 @@
 #include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/study/course.hpp"
 #include "prostm/study/intervals.hpp"
+#include "prostm/study/page_watch.hpp"
 #include "prostm/study/response_file.hpp"
 
 namespace prostm {
@@ -25,7 +26,7 @@ enum class StudyPhase : std::uint8_t {
   About,       ///< the participant's answers about themselves
   Training,    ///< scenes are explored
   Ready,       ///< before the first trial of a method, and after a pause or a crash
-  Settling,    ///< silence: the smoke develops, and the gate is waited for
+  Settling,    ///< silence: the smoke develops; the gate and the participant's page are waited for
   Presenting,  ///< the stimulus is felt, and asked about
   Break,
   Paused,
@@ -41,7 +42,7 @@ inline constexpr std::array<std::string_view, 10> kNames<StudyPhase> = {
 struct StudyAct {
   enum class Do : std::uint8_t {
     Next,     ///< goes on from Ready, Break and Paused; ends Training; closes what is over
-    Anyway,   ///< presents a trial that the gate does not let pass
+    Anyway,   ///< presents a trial although the gate does not pass or the page lacks something
     Answer,   ///< to the question: `yes`, or `interval` of a forced choice
     Correct,  ///< the last answer was the other one, before the next is asked for
     Pause,    ///< a trial under way is presented again
@@ -81,6 +82,7 @@ struct StudySight {
   double target_force = 0.0;               ///< of it [N]
   double rendered_force = 0.0;             ///< of what is rendered for it [N]
   std::optional<StudyPlayed> played = {};  ///< of the newest plan; none without one
+  ParticipantPage page;
 };
 
 /// The stimulus that is to be presented.
@@ -93,13 +95,21 @@ struct StudyWanted {
   bool operator==(const StudyWanted&) const = default;
 };
 
+/// The place of a participant who is replaced.
+struct Replacement {
+  std::string participant;  ///< who had it
+  int order = 0;            ///< number whose methods and orders they had
+};
+
 class StudySession {
  public:
   /// Goes on where the file ends; a new file gets its first line. Both must outlive this.
   /// @param facts of the run for the first line: version, device, limits.
+  /// @param replaces whose methods and orders this participant gets, in place of their own.
   /// @throws InputError: the file is of another protocol or participant, or has all answers.
   StudySession(const Protocol& protocol, int participant, ResponseFile& file,
-               const nlohmann::ordered_json& facts, const StudySight& now);
+               const nlohmann::ordered_json& facts, const StudySight& now,
+               const std::optional<Replacement>& replaces = {});
 
   /// Time passes. @return what is to be presented from now on.
   const StudyWanted& look(const StudySight& sight);
@@ -140,11 +150,21 @@ class StudySession {
   std::optional<bool> last_answer() const { return last_; }
   /// Why the trial does not begin, as things are; empty where it does.
   const std::string& waits_for() const { return waits_for_; }
+  /// A sentence on the first need that the participant's page lacks, with the remedy; else empty.
+  std::string page_problem() const { return sentence(page_.told()); }
+  /// Staircases that stand at an end of their range, in a sentence; empty if none does.
+  std::string at_bound() const;
+  /// Reads the oldest sentence for the experimenter that was not read yet; false without one.
+  bool next_news(std::string& sentence);
   /// Whether the last answer was right; nothing before the first and without feedback.
   std::optional<bool> feedback() const { return feedback_; }
   /// The sentence of a write that failed, until one succeeds.
   const std::string& problem() const { return problem_; }
-  /// Conditions whose strength differs by more than the protocol lets pass; empty if none.
+  /// The largest difference in rendered force (Eq. (1)) between the scenes of one method, over the
+  /// larger: a cue to which scene it is. Methods are not compared: they have the same scenes, and
+  /// Eq. (1) does not measure their strengths alike. 0 where trials have levels.
+  double strength_difference() const;
+  /// A sentence where this is more than the protocol allows, else empty.
   std::string strengths() const;
 
  private:
@@ -163,6 +183,9 @@ class StudySession {
   void begin_method(double time);
   void settle(const StudySight& sight);
   void present(const StudySight& sight);
+  void watch_page(const StudySight& sight);
+  PageTask page_task() const;
+  void note_bound(const StudySight& sight);
   void repeat_trial(const ResponseLine& line);
   void repeat_correction(const ResponseLine& line);
   void want(bool level);
@@ -194,12 +217,15 @@ class StudySession {
   double in_force_at_ = -1.0;  // since when what is wanted is, in Settling; −1: it is not
   double training_left_ = 0.0, looked_ = 0.0;  // [s]
   int explored_ = 0;
-  bool anyway_ = false;  // the gate is passed over
+  bool anyway_ = false;    // the gate is passed over
+  PageNeeds passed_over_;  // and what the page lacked then
+  PageWatch page_;
   bool closed_ = false;
   std::optional<GateResult> gate_, gate_at_onset_;
   std::string waits_for_, problem_;
   std::optional<bool> feedback_, last_;
   std::vector<ResponseLine> unwritten_;
+  std::vector<std::string> news_;
   double tried_ = 0.0;                      // to write them [s]
   double utc_offset_ = 0.0;                 // of the two clocks [s]
   Strength strength_;                       // of the trial

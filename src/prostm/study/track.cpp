@@ -53,6 +53,10 @@ double six_digits(double x) {
 
 }  // namespace
 
+int answers_at_bound(const Protocol& protocol) {
+  return protocol.trials.task == StudyTask::Adjustment ? 1 : 3;
+}
+
 bool has_right_answers(const Protocol& protocol) {
   return protocol.trials.task == StudyTask::ForcedChoice && !protocol.standard;
 }
@@ -63,19 +67,33 @@ Track::Track(const Protocol& protocol, std::uint64_t seed)
       procedure_(procedure_of(protocol, seed)),
       most_(static_cast<std::size_t>(protocol.trials.task == StudyTask::Adjustment
                                          ? protocol.trials.repeats
-                                         : protocol.level.trials)) {
+                                         : protocol.level.trials)),
+      lowest_(presented(settings_.low)),
+      highest_(presented(settings_.high)) {
   settle();
+}
+
+/// The level that is presented for one that a procedure asks for.
+double Track::presented(double level) {
+  const LevelSettings& s = settings_;
+  return set_level(base_, s.setting, std::clamp(six_digits(level), s.low, s.high));
 }
 
 void Track::settle() {
   const double x = std::visit([](const auto& p) { return p.level(); }, procedure_);
-  const LevelSettings& s = settings_;
-  const double level = std::clamp(six_digits(s.from_scale(x)), s.low, s.high);
-  level_ = set_level(base_, s.setting, level);
+  level_ = presented(settings_.from_scale(x));
+}
+
+/// Counts an answer that asked for a level below (above) the one that was presented.
+void Track::count_at_bound(double level, bool down, bool up) {
+  const bool low = down && level <= lowest_, high = up && level >= highest_;
+  const bool goes_on = at_bound_.answers > 0 && at_bound_.low == low;
+  at_bound_ = low || high ? AtBound{goes_on ? at_bound_.answers + 1 : 1, low} : AtBound{};
 }
 
 void Track::answer(bool felt) {
   ++answers_;
+  count_at_bound(level_, felt, !felt);
   if (auto* up_down = std::get_if<WeightedUpDown>(&procedure_)) {
     up_down->answer(felt);
   } else {
@@ -91,6 +109,7 @@ void Track::tune(int steps, bool coarse) {
 
 void Track::accept(double level) {
   ++answers_;
+  count_at_bound(level, true, true);
   std::get<Adjustment>(procedure_).accept(settings_.to_scale(level));
   settle();
 }

@@ -10,6 +10,12 @@
 
 namespace prostm {
 
+/// How long a track has stood at an end of its range.
+struct AtBound {
+  int answers = 0;   ///< in a row at this end, each of which asked for a level beyond it
+  bool low = false;  ///< the low end
+};
+
 /// A state without a clock: the same answers in the same order lead to the same levels.
 class Track {
  public:
@@ -27,20 +33,31 @@ class Track {
   void tune(int steps, bool coarse);
   /// Ends an adjustment at a level.
   void accept(double level);
+  /// The last answers, as far as they asked for a level beyond the same end of the range. Of
+  /// adjustments: those accepted there.
+  AtBound at_bound() const { return at_bound_; }
   bool is_done() const;
   std::size_t most() const;  ///< trials that it can have
   /// The threshold, or the mean of adjustments; NaN before there is any.
   double result() const;
 
  private:
+  double presented(double level);
   void settle();  // the level after something changed
+  void count_at_bound(double level, bool down, bool up);
 
   LevelSettings settings_;
   PipelineSettings base_;  // that levels are set in
   std::variant<WeightedUpDown, BayesianStaircase, Adjustment> procedure_;
-  double level_ = 0.0;
   std::size_t answers_ = 0, most_ = 0;
+  double lowest_, highest_;  // levels that can be presented
+  double level_ = 0.0;
+  AtBound at_bound_;
 };
+
+/// Answers in a row at an end of the range from which on the experimenter is told: 3, and of
+/// adjustments 1, since each of them is a result.
+int answers_at_bound(const Protocol& protocol);
 
 /// Whether guessing makes half of the answers right: two intervals of the same method.
 bool has_right_answers(const Protocol& protocol);

@@ -156,10 +156,18 @@ StudyAct read_study(const Json& json) {
   return act;
 }
 
+PageReport read_report(const Json& json) {
+  PageReport report;
+  report.visible = truth(json, "visible");
+  report.noise = choice<PageNoise>(json, "noise", {"off", "silent", "playing"});
+  report.picture = truth(json, "picture");
+  return report;
+}
+
 PageMessage read(const Json& json) {
-  enum class Type { Set, Transport, Hand, Calibration, Mute, Rate, Study };
-  switch (choice<Type>(json, "type",
-                       {"set", "transport", "hand", "calibration", "mute", "rate", "study"})) {
+  enum class Type { Set, Transport, Hand, Calibration, Mute, Rate, Study, Page };
+  switch (choice<Type>(
+      json, "type", {"set", "transport", "hand", "calibration", "mute", "rate", "study", "page"})) {
     case Type::Set:
       return read_set(json);
     case Type::Transport:
@@ -172,6 +180,8 @@ PageMessage read(const Json& json) {
       return MuteMessage{truth(json, "on")};
     case Type::Study:
       return read_study(json);
+    case Type::Page:
+      return read_report(json);
     case Type::Rate:
       break;
   }

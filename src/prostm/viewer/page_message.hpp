@@ -50,8 +50,9 @@ struct RateMessage {
   double rate = kPageRate;  ///< [Hz], kMinPageRate to kMaxPageRate
 };
 
+/// PageReport is the participant's page's (study/participant_page.hpp).
 using PageMessage = std::variant<SetMessage, TransportMessage, HandMessage, CalibrationMessage,
-                                 MuteMessage, RateMessage, StudyAct>;
+                                 MuteMessage, RateMessage, StudyAct, PageReport>;
 
 /// Reads one message; never throws for its contents. @return false for an invalid message, with one
 /// sentence in `problem` that says what would be right.

@@ -61,6 +61,7 @@ struct PipelineView::Impl {
   void look_at_finger();
   std::string take(std::uint32_t, const RateMessage&) { return {}; }
   std::string take(std::uint32_t, const StudyAct&) { return "this run is no study"; }
+  std::string take(std::uint32_t, const PageReport&) { return "this run is no study"; }
 };
 
 std::string PipelineView::Impl::take(std::uint32_t page, const SetMessage& m) {

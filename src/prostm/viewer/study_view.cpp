@@ -15,6 +15,9 @@ namespace {
 
 using viewer::Json;
 
+/// A visible page reports twice a second; one that is silent for so long has stopped [s].
+constexpr double kReportAge = 3.0;
+
 /// Whether the problem is the hand's, so that it tells nothing of the stimulus.
 bool is_of_hand(GateProblem problem) {
   return problem > GateProblem::None && problem < GateProblem::Maxima;
@@ -113,7 +116,25 @@ StudySight StudyView::sight() {
   s.target_force = force > 0.0 ? 1e-3 * force : 0.0;
   s.rendered_force = rendered_force(frame_);
   s.played = played_of(plan);
+  s.page = participants_page(s.time);
   return s;
+}
+
+/// Returns, of several pages, the one that lacks least. Browsers slow the timers of hidden pages
+/// down, so that these need not report again. A rehearsal has nobody to look at a page, and needs
+/// none.
+ParticipantPage StudyView::participants_page(double time) const {
+  const PageReport full{true, PageNoise::Playing, true};
+  if (rehearsal_) return {true, full};
+  const PageTask whole{true, PageNoise::Playing, true};
+  ParticipantPage best;
+  for (const auto& [number, page] : pages_) {
+    if (page.room != Room::Guest) continue;
+    ParticipantPage now{true, page.report};
+    if (now.report && now.report->visible && time - page.reported > kReportAge) now.report.reset();
+    if (!best.open || missing(whole, now).count() < missing(whole, best).count()) best = now;
+  }
+  return best;
 }
 
 void StudyView::tick() {
@@ -125,6 +146,8 @@ void StudyView::tick() {
   Marker marker;
   while (markers_ != nullptr && markers_->next(marker)) session_.note(markers_->line(marker), now);
   present(session_.look(now));
+  std::string sentence;
+  while (session_.next_news(sentence)) news_for_terminal_.push(sentence);
   if (!rehearsal_) return;
   const auto act = rehearsal_->act(session_, now.time);
   if (act) session_.take(*act, now);
@@ -187,7 +210,7 @@ bool StudyView::shows_frames(Room room) const {
 }
 
 std::string StudyView::hello(std::uint32_t page, Room room) {
-  pages_[page] = room;
+  pages_[page].room = room;
   return run_.hello(page, room);
 }
 
@@ -232,6 +255,8 @@ Json StudyView::experimenter() const {
   json["blind"] = p.study.blind;
   json["output"] = !link_.mute->on();
   json["waits_for"] = session_.waits_for();
+  json["needs"] = session_.page_problem();
+  json["bound"] = session_.at_bound();
   json["strengths"] = session_.strengths();
   json["problem"] = session_.problem().empty() ? problem_ : session_.problem();
   json["last"] = nullptr;
@@ -284,8 +309,17 @@ std::string StudyView::act(Room room, const StudyAct& act) {
   return problem;
 }
 
+std::string StudyView::take_report(std::uint32_t page, const PageReport& report) {
+  OpenPage& open = pages_[page];
+  if (open.room == Room::Main) return "only the participant's page reports";
+  open.report = report;
+  open.reported = steady_now();
+  return {};
+}
+
 std::string StudyView::take(std::uint32_t page, const PageMessage& message) {
-  const Room room = pages_[page];
+  const Room room = pages_[page].room;
+  if (const auto* report = std::get_if<PageReport>(&message)) return take_report(page, *report);
   if (const auto* asked = std::get_if<StudyAct>(&message)) return act(room, *asked);
   const bool steers_hand =
       std::holds_alternative<HandMessage>(message) || std::holds_alternative<MuteMessage>(message);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "prostm/core/spsc_ring.hpp"
 #include "prostm/pipeline/live.hpp"
 #include "prostm/study/live/marker_sender.hpp"
 #include "prostm/study/rehearsal.hpp"
@@ -31,6 +32,9 @@ class StudyView final : public ViewSource {
   StudyView(LiveLink& link, ViewHello hello, StudySession& session,
             std::optional<Rehearsal> rehearsal = {}, MarkerSender* markers = nullptr);
 
+  /// The oldest sentence for the experimenter that was not read yet; false without one. The
+  /// program's thread.
+  bool next_news(std::string& sentence) { return news_for_terminal_.pop(sentence); }
   /// Somebody has closed a session that is over, or a rehearsal is done. Any thread.
   bool closed() const { return closed_.load(std::memory_order_relaxed); }
 
@@ -46,6 +50,8 @@ class StudyView final : public ViewSource {
  private:
   void tick();
   StudySight sight();
+  ParticipantPage participants_page(double time) const;
+  std::string take_report(std::uint32_t page, const PageReport& report);
   void present(const StudyWanted& wanted);
   bool is_asked(const StudyWanted& wanted) const;
   void let_sound(bool sound);
@@ -61,7 +67,13 @@ class StudyView final : public ViewSource {
   MarkerSender* markers_;
   bool sounds_ = false;  // not muted for the study
   std::uint32_t presentations_ = 0;
-  std::map<std::uint32_t, Room> pages_;
+  struct OpenPage {
+    Room room = Room::Main;
+    std::optional<PageReport> report;  // the newest
+    double reported = 0.0;             // when it came [s]
+  };
+  std::map<std::uint32_t, OpenPage> pages_;
+  SpscRing<std::string> news_for_terminal_{64};
   ViewFrame frame_;  // the newest
   ViewNews news_;
   StudyWanted asked_;                             // of the run, last

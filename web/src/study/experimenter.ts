@@ -34,9 +34,11 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   const c = study.condition;
   setText(find("condition"), c === null ? "" : `${c.scene} with ${c.method}${c.level === undefined ? "" : ` at ${c.level}`}`);
   setText(find("left"), phase === "training" ? `${minutes(study.training_left_s)} left` : "");
-  setText(find("waits"), phase === "settling" ? study.waits_for || "The smoke develops." : !study.hand ? "No hand in sight." : "");
+  setText(find("waits"), phase === "settling" ? study.waits_for || (study.needs === "" ? "The smoke develops." : "") : !study.hand ? "No hand in sight." : "");
   setText(find("output"), study.output ? "The array sounds" : "The array is silent");
   find("output").dataset.on = String(study.output);
+  setText(find("needs"), study.needs);
+  setText(find("bound"), study.bound);
   setText(find("problem"), study.problem);
   setText(find("strengths"), study.strengths);
   const next = kNext[phase];
@@ -47,7 +49,7 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   setText(find("first-key"), forced ? "1" : "Y");
   setText(find("second-key"), forced ? "2" : "N");
   setText(find("answers-by"), phase === "presenting" && study.answers === "participant" ? "The participant answers; these are for when they cannot." : "");
-  find("anyway").hidden = phase !== "settling" || study.waits_for === "";
+  find("anyway").hidden = phase !== "settling" || (study.waits_for === "" && study.needs === "");
   find("pause").hidden = phase !== "settling" && phase !== "presenting";
   find("correct").hidden = study.last === null || phase === "presenting" || phase === "withdrawn";
   setText(find("last"), study.last === null ? "" : `The last answer was ${kAnswers[forced ? 1 : 0]![study.last ? 0 : 1]}: change it`);

@@ -24,6 +24,13 @@ interface StudyBase {
   hand: boolean; // in sight
   waits_for: string; // why the trial does not begin; "" where it does
 }
+/// The state of the participant's page, reported twice a second.
+export interface PageReport {
+  type: "page";
+  visible: boolean;
+  noise: "off" | "silent" | "playing";
+  picture: boolean; // the simulation is being drawn
+}
 export interface Experimenter extends StudyBase {
   room: "experimenter";
   participant: number;
@@ -32,6 +39,8 @@ export interface Experimenter extends StudyBase {
   question: string | null;
   condition: { method: string; scene: string; level?: number } | null;
   last: boolean | null; // the last answer: yes or no, or the second interval or the first
+  needs: string; // what the participant's page lacks, and what to do; "" where nothing
+  bound: string; // staircases at an end of their range; "" where none is
   strengths: string;
   problem: string;
 }
@@ -62,7 +71,7 @@ export function isStudy(x: Record<string, unknown>): boolean {
     numbers.every((v) => Number.isFinite(v)) && isList(x.scenes, isText);
   if (!base) return false;
   if (x.room === "experimenter")
-    return Number.isFinite(x.participant) && isText(x.problem) && isText(x.strengths) && (x.question === null || isText(x.question));
+    return Number.isFinite(x.participant) && [x.problem, x.strengths, x.needs, x.bound].every(isText) && (x.question === null || isText(x.question));
   const asked = x.question as { text?: unknown; jets_mm?: unknown } | null;
   const isJet = (jet: unknown) => isList(jet, (v) => Number.isFinite(v)) && (jet as number[]).length === 3;
   return x.room === "participant" && isText(x.consent) && typeof x.noise === "boolean" && (asked === null || (isText(asked.text) && isList(asked.jets_mm, isJet)));

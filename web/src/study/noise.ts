@@ -2,12 +2,32 @@
 
 const kSeconds = 8, kHighest = 8000, kLevel = 0.25, kFade = 0.1; // of the loop [s]; cut-off [Hz]; of 1; [s]
 
+const kMeasured = 0.02; // rms of the output above which it plays; at kLevel it is 0.08
+const kStands = 200; // a clock of the audio that has not moved for so long has stopped [ms]
+
 export class Noise {
   private context: AudioContext | null = null;
   private gain: GainNode | null = null;
+  private analyser: AnalyserNode | null = null;
+  private readonly samples = new Float32Array(2048);
+  private moved = { audio: 0, at: -Infinity }; // the audio's clock [s], and when it was seen to move [ms]
 
-  /// Whether it can be heard when it is wanted: a browser lets a page sound only once somebody has pressed something.
-  get ready(): boolean { return this.context?.state === "running"; }
+  /// @param changed is called when the browser starts or stops the audio.
+  constructor(private readonly changed: () => void) {}
+
+  /// "off": a browser lets a page sound only once somebody has pressed something. "playing": measured in what the page
+  /// puts out; the volume of the computer is beyond it.
+  get state(): "off" | "silent" | "playing" {
+    const { context, analyser, moved, samples } = this;
+    if (context?.state !== "running" || analyser === null) return "off";
+    const now = performance.now();
+    if (context.currentTime > moved.audio) this.moved = { audio: context.currentTime, at: now };
+    else if (now - moved.at > kStands) return "silent";
+    analyser.getFloatTimeDomainData(samples);
+    let squares = 0;
+    for (const sample of samples) squares += sample * sample;
+    return Math.sqrt(squares / samples.length) > kMeasured ? "playing" : "silent";
+  }
 
   /// Called by a press.
   async begin(): Promise<void> {
@@ -18,7 +38,10 @@ export class Noise {
     for (let i = 0; i < samples.length; ++i) samples[i] = 2 * Math.random() - 1;
     const source = new AudioBufferSourceNode(context, { buffer, loop: true });
     this.gain = new GainNode(context, { gain: 0 });
-    source.connect(new BiquadFilterNode(context, { type: "lowpass", frequency: kHighest })).connect(this.gain).connect(context.destination);
+    this.analyser = new AnalyserNode(context, { fftSize: this.samples.length });
+    source.connect(new BiquadFilterNode(context, { type: "lowpass", frequency: kHighest })).connect(this.gain).connect(this.analyser);
+    this.analyser.connect(context.destination);
+    context.addEventListener("statechange", this.changed);
     source.start();
     await context.resume();
   }

@@ -21,14 +21,16 @@ export function minutes(seconds: number): string {
 export class StudyPage<S extends Study> {
   study: S | null = null;
   readonly connection: Connection;
+  readonly picture: Picture;
 
   /// @param path of the WebSocket. @param show a new state.
-  constructor(path: string, private readonly room: S["room"], private readonly show: (study: S) => void) {
+  /// @param opened is called whenever the link to the program is there.
+  constructor(path: string, private readonly room: S["room"], private readonly show: (study: S) => void, opened?: () => void) {
     const dark = window.matchMedia("(prefers-color-scheme: dark)");
     const theme = () => (document.documentElement.dataset.theme = dark.matches ? "dark" : "light");
     dark.addEventListener("change", theme);
     theme();
-    const picture = new Picture(find<HTMLCanvasElement>("view"));
+    const picture = this.picture = new Picture(find<HTMLCanvasElement>("view"));
     this.connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${path}`, {
       frame: (frame) => picture.show(frame),
       hello: (hello) => picture.setHello(hello),
@@ -39,6 +41,7 @@ export class StudyPage<S extends Study> {
         document.documentElement.dataset.link = link;
         setText(find("link"), sentence);
         for (const part of document.querySelectorAll<HTMLFieldSetElement>("fieldset.program")) part.disabled = link !== "open";
+        if (link === "open") opened?.();
       },
     });
     this.connection.open();

@@ -22,7 +22,12 @@ const kSpoken: Record<Task, string> = {
   adjustment: "Say more or less, and when they are alike.",
 };
 
-const noise = new Noise();
+const kReports = 500; // between reports of what this page does [ms]
+
+const noise = new Noise(() => {
+  find("noise").hidden = !page.study?.noise || noise.state !== "off";
+  report();
+});
 const page = new StudyPage<Participant>("/guest/live", "participant", (study) => {
   const { phase, question } = study;
   setText(find("words"), kWords[phase]);
@@ -44,15 +49,19 @@ const page = new StudyPage<Participant>("/guest/live", "participant", (study) =>
   const told = study.feedback === null || phase === "presenting" ? "" : study.feedback ? "That was right." : "That was wrong.";
   setText(find("feedback"), told);
   noise.play(study.noise && (phase === "training" || phase === "settling" || phase === "presenting"));
-  find("noise").hidden = !study.noise || noise.ready;
-});
+  find("noise").hidden = !study.noise || noise.state !== "off";
+}, () => report());
+
+/// The program holds trials until this page does what they need.
+function report(): void {
+  page.connection.send({ type: "page", visible: !document.hidden, noise: noise.state, picture: page.picture.draws });
+}
+window.setInterval(report, kReports);
+document.addEventListener("visibilitychange", report);
 
 find("agree").addEventListener("click", () => page.act({ type: "study", do: "consent" }));
 find("refuse").addEventListener("click", () => page.act({ type: "study", do: "withdraw" }));
-find("noise").addEventListener("click", async () => {
-  await noise.begin();
-  find("noise").hidden = noise.ready;
-});
+find("noise").addEventListener("click", () => void noise.begin());
 find<HTMLFormElement>("about-form").addEventListener("submit", (event) => {
   event.preventDefault();
   const fields = new FormData(event.target as HTMLFormElement);

@@ -5,6 +5,7 @@ import { View } from "../scene/view";
 import type { Frame } from "../wire";
 import { find } from "../dom";
 
+const kDrawn = 2000; // after the last picture nothing is drawn any more [ms]
 const kKept = 1000; // after the last frame the picture goes [ms]
 
 export class Picture {
@@ -14,8 +15,14 @@ export class Picture {
   private drawn: Frame | null = null;
   private came = -Infinity; // the last frame [ms]
   private before = 0;
+  private lost = false; // its WebGL context
+
+  /// Whether the newest frames are being drawn.
+  get draws(): boolean { return !this.lost && this.before > 0 && performance.now() - this.before < kDrawn; }
 
   constructor(private readonly canvas: HTMLCanvasElement) {
+    canvas.addEventListener("webglcontextlost", () => (this.lost = true));
+    canvas.addEventListener("webglcontextrestored", () => (this.lost = false));
     window.requestAnimationFrame((now) => this.draw(now));
   }
 

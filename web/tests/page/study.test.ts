@@ -93,6 +93,37 @@ describe("a session of a study", () => {
   });
 });
 
+describe("a study with noise", () => {
+  it("holds trials until the noise plays, and again after a reload", async () => {
+    const study = new Study(protocol('[training]\nseconds = 0\n[trials]\nrepeats = 1\nrest = 0.1\nsettle = 0.5\ngate = "off"\nnoise = true'), 21);
+    await study.start();
+    const [experimenter, participant] = [await browser.newPage(), await browser.newPage()];
+    const needs = (word: string) => experimenter.waitForFunction((w) => document.getElementById("needs")!.textContent!.includes(w), word);
+    await experimenter.goto(study.url);
+    await comes(experimenter, "ready");
+    await experimenter.keyboard.press("Enter");
+    await needs("not open");
+    await participant.goto(`${study.url}participant`);
+    await needs("Switch the noise on");
+    await participant.getByRole("button", { name: "Switch the noise on" }).click();
+    await comes(experimenter, "presenting");
+    await participant.reload();
+    await comes(experimenter, "settling");
+    await needs("Switch the noise on");
+    expect(study.trials()).toEqual([]);
+    await participant.getByRole("button", { name: "Switch the noise on" }).click();
+    await comes(experimenter, "presenting");
+    await experimenter.keyboard.press("y");
+    await comes(experimenter, "settling");
+    expect(study.trials()[0]!.page).toEqual({ open: true, missing_s: {}, interrupted: 1 });
+    expect(study.lines().filter((line) => line.kind === "interrupted").length).toBe(1);
+    await study.kill("SIGINT");
+    expect(study.printed).toContain("The masking noise does not play");
+    await experimenter.close();
+    await participant.close();
+  });
+});
+
 describe("participants who answer themselves", () => {
   it("do so with consent, words about them, keys and feedback where the protocol says so", async () => {
     const study = new Study(protocol('[study]\nconsent = "I take part."\ndemographics = true\nblind = false\n[training]\nseconds = 0\n' +

@@ -90,6 +90,24 @@ bool chose(const Protocol& protocol, const ResponseLine& line) {
   return line.value("answer", 0) == (protocol.trials.task == StudyTask::ForcedChoice ? 2 : 1);
 }
 
+std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane) {
+  const AtBound bound = lane.track.at_bound();
+  std::string where = "an end of its range";
+  if (!protocol.study.blind) {
+    where =
+        fmt::format("the {} end of its range ({} = {:g}; {} with {})", bound.low ? "low" : "high",
+                    protocol.level.setting, bound.low ? protocol.level.low : protocol.level.high,
+                    protocol.scenes[static_cast<std::size_t>(lane.scene)].name,
+                    protocol.methods[static_cast<std::size_t>(lane.method)].name);
+  }
+  if (protocol.trials.task == StudyTask::Adjustment)
+    return "An adjustment was accepted at " + where + ", so the result may lie beyond it.";
+  return fmt::format(
+      "{} answers in a row left a staircase at {}, so the threshold may lie beyond it. Check that "
+      "the participant has understood the question and does not always answer alike.",
+      bound.answers, where);
+}
+
 ResponseLine stamped(ResponseLine line, const StudySight& sight) {
   line["utc"] = utc_text(sight.utc);
   line["time_s"] = rounded(sight.time, 4);

@@ -7,7 +7,7 @@
 
 #include "prostm/core/geometry.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
-#include "prostm/study/order.hpp"
+#include "prostm/study/course.hpp"
 #include "prostm/study/response_file.hpp"
 
 namespace prostm {
@@ -31,6 +31,8 @@ void add_answer(ResponseLine& line, const Protocol& protocol, const Trial& trial
 bool chose(const Protocol& protocol, const ResponseLine& line);
 /// Whether an answer is for the trial's level: yes, or its interval.
 bool felt(const Protocol& protocol, const Trial& trial, bool chosen);
+/// Says that a track stands at an end of its range; which, only if the study is not blind.
+std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane);
 /// Adds the time.
 ResponseLine stamped(ResponseLine line, const StudySight& sight);
 
