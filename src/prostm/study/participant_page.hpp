@@ -50,7 +50,8 @@ struct PageTask {
   bool picture = false;              ///< the simulation is shown
 };
 
-/// Returns the needs that are not met. A page that is open must report and be visible, whatever else is asked of it.
+/// Returns the needs that are not met. A page that is open must report and be visible, whatever
+/// else is asked of it.
 PageNeeds missing(const PageTask& task, const ParticipantPage& page);
 
 /// The names of the needs in a set.
