@@ -285,7 +285,7 @@ def test_a_number_is_decimal_however_it_is_written(prostm, refuses, tmp_path):
 
 
 def test_a_participant_takes_the_place_of_another(prostm, refuses, tmp_path):
-    (tmp_path / "short.toml").write_text("[study]\nparticipants = 4\n" + SHORT + "[method.b.fluid]\ncells = 32\n")
+    (tmp_path / "short.toml").write_text("[study]\nparticipants = 4\nmethods = \"within\"\n" + SHORT + "[method.b.fluid]\ncells = 32\n")
     def header(number):
         return json.loads((tmp_path / "answers" / f"rehearsal-{number}.jsonl").read_text().splitlines()[0])
     def conditions(number):
