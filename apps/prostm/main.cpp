@@ -305,6 +305,22 @@ void add_report(CLI::App& app, Work& work) {
   command->callback([o, &work] { work = {&o->files, [o] { return report_command(*o); }}; });
 }
 
+/// Has whole numbers with leading zeros read as decimal: 010 is ten. The parser would read it as
+/// octal, so that participant 010 were participant 8.
+void read_whole_numbers_as_decimal(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_type_name() != "INT" && option->get_type_name() != "UINT") continue;
+    option->transform([](std::string text) {
+      const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+      const bool is_decimal = text.find_first_not_of("0123456789", sign) == std::string::npos;
+      while (is_decimal && text.size() > sign + 1 && text[sign] == '0') text.erase(sign, 1);
+      return text;
+    });
+  }
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    read_whole_numbers_as_decimal(*command);
+}
+
 /// Parses and runs a command. @return the exit status.
 int obey(int argc, char** argv) {
   prostm::set_lock_warning(warn);
@@ -330,6 +346,7 @@ int obey(int argc, char** argv) {
   add_report(app, work);
   add_unbuilt(app, "stim", "the stimuli of earlier studies");
   add_unbuilt(app, "play", "play a plan, field or samples");
+  read_whole_numbers_as_decimal(app);
   try {
     if (argc < 2) {
       std::fputs(help_page(app, "").c_str(), stderr);

@@ -152,6 +152,7 @@ struct AnalyseOptionsGiven {
   std::vector<std::string> answers;
   std::string json, figure;
   std::string tidy;  ///< file for the answers
+  ReadingSettings reading;
   AnalysisSettings settings;
 };
 

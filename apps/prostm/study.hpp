@@ -19,10 +19,15 @@ std::string scene_name(const SceneResult& scene);
 /// The width of a column of names, its heading's at least.
 std::size_t width_of(std::string_view heading, const std::vector<std::string>& names);
 
+/// Trials without an answer, by method and scene; nothing if there are no such trials.
+void print_missing(std::FILE* out, const std::vector<MissingAnswers>& missing);
+nlohmann::ordered_json missing_json(const std::vector<MissingAnswers>& missing);
+
 /// @param kind of the answers.
 void print_thresholds(std::FILE* out, const std::vector<ThresholdResult>& thresholds,
                       AnswerKind kind);
-nlohmann::ordered_json thresholds_json(const std::vector<ThresholdResult>& thresholds);
+nlohmann::ordered_json thresholds_json(const std::vector<ThresholdResult>& thresholds,
+                                       AnswerKind kind);
 
 void print_adjusted(std::FILE* out, const std::vector<AdjustedResult>& results);
 nlohmann::ordered_json adjusted_json(const std::vector<AdjustedResult>& results, double level,

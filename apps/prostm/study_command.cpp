@@ -71,7 +71,7 @@ void print_comparisons(std::FILE* out, const Analysis& analysis) {
       fmt::print(out, "  {:<{}}  {:<{}} {:>7.3f} {:>7} {:>7} {:>11} {:>22} {:>6} {:>7}\n",
                  scene_name(scene), scenes, c.first + ", " + c.second, methods,
                  c.pooled_z.statistic, p_text(c.pooled_z.p), p_text(c.fisher_p),
-                 p_text(c.permutation.p),
+                 c.permutation ? p_text(c.permutation->p) : std::string("-"),
                  c.t ? fmt::format("{:.2f} (df {:.1f}) {}", c.t->statistic, c.t->df, p_text(c.t->p))
                      : std::string("-"),
                  c.d ? fmt::format("{:.2f}", *c.d) : std::string("-"),
@@ -101,21 +101,23 @@ nlohmann::ordered_json method_json(const MethodResult& m) {
 }
 
 nlohmann::ordered_json comparison_json(const Comparison& c) {
-  nlohmann::ordered_json json = {{"first", c.first},
-                                 {"second", c.second},
-                                 {"z", c.pooled_z.statistic},
-                                 {"z_p", c.pooled_z.p},
-                                 {"fisher_p", c.fisher_p},
-                                 {"permutation_p", c.permutation.p},
-                                 {"permutation_splits", c.permutation.splits},
-                                 {"permutation_exact", c.permutation.exact},
-                                 {"t", test_json(c.t)}};
+  nlohmann::ordered_json json = {{"first", c.first},          {"second", c.second},
+                                 {"z", c.pooled_z.statistic}, {"z_p", c.pooled_z.p},
+                                 {"fisher_p", c.fisher_p},    {"permutation_p", nullptr}};
+  if (c.permutation) {
+    json["permutation_p"] = c.permutation->p;
+    json["permutation_splits"] = c.permutation->splits;
+    json["permutation_exact"] = c.permutation->exact;
+  }
+  json["t"] = test_json(c.t);
   json["effect_size"] = c.d ? nlohmann::ordered_json(*c.d) : nullptr;
   json["participants_needed"] = c.needed ? nlohmann::ordered_json(*c.needed) : nullptr;
   return json;
 }
 
-nlohmann::ordered_json analysis_json(const Analysis& analysis, const std::string& words) {
+nlohmann::ordered_json analysis_json(const Analysis& analysis,
+                                     const std::vector<std::string>& notes,
+                                     const std::string& words) {
   nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
   for (const SceneResult& scene : analysis.scenes) {
     nlohmann::ordered_json methods = nlohmann::ordered_json::array(),
@@ -143,9 +145,13 @@ nlohmann::ordered_json analysis_json(const Analysis& analysis, const std::string
       {"scenes", scenes}};
   if (!analysis.thresholds.empty()) {
     json["guess"] = *analysis.settings.guess;
-    json["lapse"] = *analysis.settings.lapse;
-    json["thresholds"] = thresholds_json(analysis.thresholds);
+    json["lapse"] = nullptr;
+    if (analysis.settings.lapse) json["lapse"] = *analysis.settings.lapse;
+    json["thresholds"] = thresholds_json(analysis.thresholds, analysis.kind);
   }
+  json["missing"] = missing_json(analysis.missing);
+  json["left_out"] = analysis.left_out;
+  json["notes"] = notes;
   json["words"] = words;
   return json;
 }
@@ -178,18 +184,26 @@ int analyse_adjusted(const AnalyseOptionsGiven& options, const std::vector<Answe
                      const std::vector<std::string>& notes) {
   if (!options.figure.empty())
     throw InputError("--figure draws shares of answers, and these are adjustments; leave it out");
-  if (options.settings.guess || options.settings.lapse)
+  if (options.settings.guess || options.settings.lapse || options.settings.fit_lapse)
     throw InputError("--guess and --lapse belong to thresholds, and these are adjustments");
   const double level = options.settings.level;
   require_between("level", level, 0.5, 0.9999);
-  const std::vector<AdjustedResult> results = adjusted_levels(answers, level);
-  const std::string words = in_words(results, level);
+  std::vector<Answer> answered = answers;
+  std::erase_if(answered, [](const Answer& a) { return !a.answered; });
+  const std::vector<AdjustedResult> results = adjusted_levels(answered, level);
+  const std::vector<MissingAnswers> missing = missing_answers(answers);
+  std::string words = in_words(missing, AnswerKind::Adjusted);
+  words += (words.empty() ? "" : " ") + in_words(results, level);
   std::FILE* out = prose(options.json);
   print_notes(out, notes);
+  print_missing(out, missing);
   print_adjusted(out, results);
   fmt::print(out, "\n{}", wrapped(words));
   write_tidy(out, options.tidy, answers);
-  write_json(options.json, adjusted_json(results, level, words));
+  nlohmann::ordered_json json = adjusted_json(results, level, words);
+  json["missing"] = missing_json(missing);
+  json["notes"] = notes;
+  write_json(options.json, json);
   say_written(out, options.json);
   return 0;
 }
@@ -198,15 +212,23 @@ int analyse_adjusted(const AnalyseOptionsGiven& options, const std::vector<Answe
 
 int analyse_command(const AnalyseOptionsGiven& options) {
   std::vector<std::string> notes;
-  const std::vector<Answer> answers = read_answers(options.answers, notes);
+  const std::vector<Answer> answers = read_answers(options.answers, notes, options.reading);
   if (answers.front().kind == AnswerKind::Adjusted)
     return analyse_adjusted(options, answers, notes);
   const Analysis analysis = analyse(answers, options.settings);
   const std::string words = in_words(analysis);
   std::FILE* out = prose(options.json);
-  fmt::print(out, "{} participants, {}\n\n", analysis.participants.size(),
-             analysis.groups == Groups::Within ? "each with all methods" : "each with one method");
+  const std::size_t people = analysis.participants.size();
+  if (people == 1) {
+    fmt::print(out, "1 participant, {} method{}\n\n", analysis.scenes.front().methods.size(),
+               analysis.scenes.front().methods.size() == 1 ? "" : "s");
+  } else {
+    fmt::print(
+        out, "{} participants, {}\n\n", people,
+        analysis.groups == Groups::Within ? "each with all methods" : "each with one method");
+  }
   print_notes(out, notes);
+  print_missing(out, analysis.missing);
   const bool has_right_answers = analysis.kind == AnswerKind::Right;
   if (has_right_answers) print_methods(out, analysis);
   if (has_right_answers && !analysis.scenes.front().comparisons.empty())
@@ -216,7 +238,7 @@ int analyse_command(const AnalyseOptionsGiven& options) {
   if (!options.figure.empty()) draw_analysis(analysis, options.figure);
   say_written(out, options.figure);
   write_tidy(out, options.tidy, answers);
-  write_json(options.json, analysis_json(analysis, words));
+  write_json(options.json, analysis_json(analysis, notes, words));
   say_written(out, options.json);
   return 0;
 }

@@ -18,11 +18,11 @@ std::vector<ShareBracket> brackets_of(const SceneResult& scene, double alpha) {
     return static_cast<std::size_t>(at - scene.methods.begin());
   };
   for (const Comparison& of : scene.comparisons) {
-    if (of.pooled_z.p >= alpha && of.permutation.p >= alpha) continue;
-    out.push_back({place(of.first),
-                   place(of.second),
-                   {"answers: " + p_in_words(of.pooled_z.p),
-                    "participants: " + p_in_words(of.permutation.p)}});
+    const bool over_people = of.permutation && of.permutation->p < alpha;
+    if (of.pooled_z.p >= alpha && !over_people) continue;
+    std::vector<std::string> lines = {"answers: " + p_in_words(of.pooled_z.p)};
+    if (of.permutation) lines.push_back("participants: " + p_in_words(of.permutation->p));
+    out.push_back({place(of.first), place(of.second), lines});
   }
   return out;
 }
@@ -30,7 +30,8 @@ std::vector<ShareBracket> brackets_of(const SceneResult& scene, double alpha) {
 ShareFigure share_figure(const Analysis& analysis) {
   const double alpha = 1.0 - analysis.settings.level;
   ShareFigure out;
-  out.title = fmt::format("Right answers of {} participants", analysis.participants.size());
+  const std::size_t people = analysis.participants.size();
+  out.title = fmt::format("Right answers of {} participant{}", people, people == 1 ? "" : "s");
   out.y_label = "right answers / %";
   out.chance = analysis.settings.chance;
   for (const MethodResult& m : analysis.scenes.front().methods) out.names.push_back(m.method);
@@ -73,8 +74,8 @@ void add_curve(const PsychometricFit& fit, ChartSeries& series) {
   if (fit.threshold) {
     span.low = fit.threshold->low;
     span.high = fit.threshold->high;
-    low = std::min(low, span.low);
-    high = std::max(high, span.high);
+    if (std::isfinite(span.low)) low = std::min(low, span.low);
+    if (std::isfinite(span.high)) high = std::max(high, span.high);
   }
   for (int i = 0; i <= kPoints; ++i) {
     const double x = std::lerp(low, high, static_cast<double>(i) / kPoints);

@@ -86,13 +86,46 @@ void add_status(CLI::App& study, Work& work) {
   command->callback([o, &work] { work = {&o->files, [o] { return study_status_command(*o); }}; });
 }
 
+/// How files of answers are read.
+void add_reading(CLI::App& command, ReadingSettings& reading) {
+  command
+      .add_option("--columns", reading.columns,
+                  "names of a table's columns, as correct=key_resp.corr,participant=subject; "
+                  "NAME:=VALUE for all rows")
+      ->type_name("NAME=COLUMN,…");
+  command
+      .add_option_function<std::string>(
+          "--prefix",
+          [&reading](const std::string& name) {
+            reading.prefix = from_name<IdPrefix>(name, "--prefix");
+          },
+          "put before participants' names: folder or file, two people with one number in two files "
+          "are told apart; none, one name is one person")
+      ->type_name("none|folder|file");
+  command
+      .add_option(
+          "--rename", reading.rename,
+          "give a name another one, as participant:01=1, method:A=am or scene:S1=one-plume; "
+          "may be given several times")
+      ->type_name("KIND:OLD=NEW")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command.add_flag("--merge-spellings", reading.merge_spellings,
+                   "names that differ in spelling alone (01 and 1) are one");
+  command.add_flag("--pool", reading.pool,
+                   "take answers to different stimuli with the same name together");
+}
+
 void add_analyse(CLI::App& study, Work& work) {
   auto* command = study.add_subcommand("analyse", "what answers do and do not support");
   auto o = std::make_shared<AnalyseOptionsGiven>();
-  add_input(*command, o->files, "answers", o->answers,
-            "participants' files of prostm study run (.jsonl), a table of answers (.csv, "
-            "docs/study.md), or the scores of the paper's Fig. 4 (.json)")
+  add_input(
+      *command, o->files, "answers", o->answers,
+      "participants' files of prostm study run (.jsonl), tables of answers (.csv, .tsv, .txt; "
+      "docs/study-files.md), or the scores of the paper's Fig. 4 (.json)")
       ->required();
+  add_reading(*command, o->reading);
   command->add_option("--chance", o->settings.chance, "share of right answers that guessing makes")
       ->capture_default_str();
   command->add_option("--level", o->settings.level, "of intervals; tests take 1 minus it")
@@ -106,6 +139,8 @@ void add_analyse(CLI::App& study, Work& work) {
                       "no answer is wrong");
   command->add_option("--lapse", o->settings.lapse,
                       "share of wrong answers at high levels; default: 0.02");
+  command->add_flag("--fit-lapse", o->settings.fit_lapse,
+                    "fit that share to the answers, from 0 to 0.2");
   add_json(*command, o->files, o->json);
   add_output(*command, o->files, "--figure", o->figure, check_figure,
              "shares as the paper's Fig. 4, or psychometric functions where answers have levels "

@@ -132,8 +132,10 @@ def test_a_tidy_table_has_the_same_answers(prostm, refuses, tmp_path):
     assert (tmp_path / "a.csv").read_bytes().count(b"\r\n") == len(MADE_UP.read_text().splitlines())
     with open(MADE_UP, newline="") as before, open(tmp_path / "a.csv", newline="") as after:
         tidy = csv.DictReader(after)
-        assert tidy.fieldnames == ["participant", "method", "scene", "trial", "question", "answer", "correct"]
-        assert [{name: row[name] for name in tidy.fieldnames} for row in csv.DictReader(before)] == list(tidy)
+        assert tidy.fieldnames == ["participant", "method", "scene", "trial", "question", "answer", "correct", "response_s"]
+        def of(row):
+            return {name: float(row[name]) if name == "response_s" else row[name] for name in tidy.fieldnames}
+        assert [of(row) for row in csv.DictReader(before)] == [of(row) for row in tidy]
     said = [prostm("study", "analyse", name).stdout for name in (MADE_UP, "a.csv")]
     assert said[0] == said[1]
     write_answers(tmp_path / "b.csv", 2, 1, 2, level=True)
@@ -184,6 +186,8 @@ def test_a_session_that_cannot_begin_leaves_nothing(refuses, tmp_path):
     (tmp_path / "short.toml").write_text(SHORT)
     (tmp_path / "file").touch()
     refuses(*STUDY, "0", words=["--participant 0", "1 and 9999"])
+    refuses(*STUDY, "010", "--resume", words=["participant 10 has not begun", "participant-10.jsonl"])  # and not 8, octal
+    refuses(*STUDY, "09", "--resume", words=["participant 9 has not begun"])
     refuses(*STUDY, "1", "--answers", "file", words=["--answers file cannot be a folder"])
     refuses(*STUDY, "1", "--resume", words=["participant 1 has not begun", "leave --resume out"])
     refuses(*STUDY, "1", "--rehearse", "-1", words=["--rehearse -1"])
@@ -375,6 +379,84 @@ def test_each_example_with_levels_is_rehearsed_and_analysed(prostm, tmp_path, na
         assert ("answers were right" in " ".join(said.split())) == (kind == "right")
     prostm("study", "analyse", "t.csv", "--json", "b.json")
     assert json.loads((tmp_path / "b.json").read_text()) == analysis, "the table says the same"
+
+
+def write_rows(path, header, rows, encoding="utf-8", delimiter=","):
+    with open(path, "w", newline="", encoding=encoding) as file:
+        csv.writer(file, delimiter=delimiter).writerows([header.split(",")] + rows)
+
+
+def test_one_participants_answers_are_analysed(prostm, tmp_path):
+    rows = [["1", method, "x", int(k < right), level] for method in ("am", "stm")
+            for level, right in ((0.2, 11), (0.4, 13), (0.6, 17), (0.8, 20)) for k in range(20)]
+    write_rows(tmp_path / "a.csv", "participant,method,scene,correct,level", rows)
+    said = " ".join(prostm("study", "analyse", "a.csv", "--json", "a.json", "--figure", "a.svg").stdout.split())
+    assert said.startswith("1 participant, 2 methods")
+    assert "All answers are of one participant: they tell about this person alone" in said
+    assert "Over participants" not in said
+    analysis = json.loads((tmp_path / "a.json").read_text())
+    comparison, = analysis["scenes"][0]["comparisons"]
+    assert comparison["permutation_p"] is None and comparison["t"] is None and comparison["fisher_p"] == 1
+    assert analysis["thresholds"][0]["fit"]["threshold"] == pytest.approx(0.55, abs=0.1)
+    assert analysis["thresholds"][0]["fit"]["misfit"]["df"] == 2
+
+
+def test_a_threshold_beyond_the_levels_is_censored(prostm, tmp_path):
+    header = "participant,method,scene,correct,kind,level"
+    for name, is_yes in (("yes", lambda x: 1), ("no", lambda x: 0), ("step", lambda x: int(x > 1.3)), ("fall", lambda x: int(x < 1.3))):
+        rows = [[who, "am", "x", is_yes(x), "felt", x] for who in "12" for x in (1.0, 1.2, 1.4, 1.6) for _ in range(10)]
+        write_rows(tmp_path / f"{name}.csv", header, rows)
+    results = {}
+    for name in ("yes", "no", "step", "fall"):
+        said = " ".join(prostm("study", "analyse", f"{name}.csv", "--json", "a.json", "--figure", "a.svg").stdout.split())
+        assert "right answers" not in said
+        results[name] = json.loads((tmp_path / "a.json").read_text())["thresholds"][0], said
+    assert results["yes"][0]["bounds"]["threshold"] == [None, 1.0]
+    assert "it is below 1 (95 % interval" in results["yes"][1]
+    assert results["no"][0]["bounds"]["threshold"] == [1.6, None]
+    assert results["step"][0]["bounds"]["threshold"] == [1.2, 1.4]
+    assert "best from 1.2 to 1.4" in results["step"][1]
+    assert "bounds" not in results["fall"][0] and "fall with the level" in results["fall"][1]
+    assert "step" not in results["fall"][1]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252"])
+@pytest.mark.parametrize("delimiter", [",", ";", "\t", "|"])
+def test_tables_of_other_programs_give_the_same_results(prostm, tmp_path, encoding, delimiter):
+    people = ["Jürgen", "Zoë", "3"]
+    trials = [(who, method, k) for who in people for method in ("am", "stm") for k in range(6)]
+    rows = [[who, method, "x", (0, 1)[k < 3 + len(who) % 3], k / 4] for who, method, k in trials]
+    write_rows(tmp_path / "plain.csv", "participant,method,scene,correct,level", rows)
+    others = [[str(y).replace(".", ","), method, ("False", "True")[c], who, x] for who, method, x, c, y in rows]
+    others.insert(1, ["", "", "", "3", ""])  # an instruction
+    others.insert(2, ["0,5", "am", "", "3", "x"])  # no answer
+    write_rows(tmp_path / "other.csv", "Intensity,Condition,key_resp.corr,Subject ID,Image", others, encoding, delimiter)
+    names = "participant=subject id,method=condition,scene=image,correct=key_resp.corr,level=intensity"
+    said = prostm("study", "analyse", "other.csv", "--columns", names, "--json", "b.json", "--tidy", "tidy.csv").stdout
+    assert "1 of 38 rows have no method and scene" in said
+    prostm("study", "analyse", "plain.csv", "--json", "a.json")
+    a, b = (json.loads((tmp_path / f"{name}.json").read_text()) for name in "ab")
+    assert b["missing"] == [{"scene": "x", "method": "am", "missing": 1, "trials": 19, "participants": 1,
+                             "if_answered": [a["scenes"][0]["methods"][0]["correct"] / 19,
+                                             (a["scenes"][0]["methods"][0]["correct"] + 1) / 19]},
+                            {"scene": "x", "method": "stm", "missing": 0, "trials": 18, "participants": 0,
+                             "if_answered": [a["scenes"][0]["methods"][1]["correct"] / 18] * 2}]
+    for key in ("participants", "scenes", "thresholds"):
+        assert sorted(map(str, a[key])) == sorted(map(str, b[key])) if key == "participants" else a[key] == b[key]
+    tidy = (tmp_path / "tidy.csv").read_bytes().decode("utf-8")
+    assert "Jürgen" in tidy and tidy.count("\r\n") == 38
+
+
+def test_names_that_differ_in_spelling_alone_do_not_double_people(prostm, refuses, tmp_path):
+    rows = [[f"0{who}" if method == "am" else who, method, "x", (who + k) % 2] for who in range(1, 5) for method in ("am", "stm") for k in range(4)]
+    write_rows(tmp_path / "a.csv", "participant,method,scene,correct", rows)
+    refuses("study", "analyse", "a.csv", words=['participants "01" and "1"', "and others", "--merge-spellings"])
+    said = prostm("study", "analyse", "a.csv", "--merge-spellings").stdout
+    assert said.startswith("4 participants, each with all methods") and "each pair is taken as one" in said
+    rows = [[f"{row[0]} " if row[1] == "stm" else f"\u00a0{row[0]}"] + row[1:] for row in rows]
+    rows = [[row[0].replace("0", "")] + row[1:] for row in rows]
+    write_rows(tmp_path / "a.csv", "participant,method,scene,correct", rows)
+    assert prostm("study", "analyse", "a.csv").stdout.startswith("4 participants, each with all methods")
 
 
 def test_tables_of_adjustments_and_of_mixed_kinds(prostm, refuses, tmp_path):

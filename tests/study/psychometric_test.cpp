@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,7 +41,7 @@ TEST(Psychometric, AgreesWithLogisticRegressionOnAThousandDataSets) {
     Scores scores;
     for (std::size_t i = 0; i < data["levels"].size(); ++i)
       scores.push_back({data["levels"][i], {data["right"][i], data["trials"][i]}});
-    const auto fit = fit_psychometric(scores, 0.0, 0.0);
+    const auto fit = fit_psychometric(scores, {0.0, 0.0}).fit;
     if (data["fit"] == "step") {
       EXPECT_FALSE(fit) << data;
       ++steps;
@@ -67,7 +69,7 @@ TEST(Psychometric, IntervalsHoldTheTruthAsOftenAsTheySay) {
   int threshold = 0, slope = 0, fits = 0;
   constexpr int kRuns = 300;
   for (int run = 0; run < kRuns; ++run) {
-    const auto fit = fit_psychometric(simulate(observer, 15, 60, random), 0.5, 0.02);
+    const auto fit = fit_psychometric(simulate(observer, 15, 60, random), {0.5, 0.02}).fit;
     if (!fit || !fit->threshold || !fit->slope) continue;
     ++fits;
     const auto holds = [](const Interval& of, double x) { return of.low <= x && x <= of.high; };
@@ -88,7 +90,7 @@ TEST(Psychometric, IntervalsEndWhereTheLikelihoodHasFallen) {
   Random random(3);
   const Psychometric observer{.threshold = 0.5, .slope = 10.0, .guess = 0.5, .lapse = 0.0};
   const Scores scores = simulate(observer, 6, 50, random);
-  const auto fit = fit_psychometric(scores, 0.5, 0.0);
+  const auto fit = fit_psychometric(scores, {0.5, 0.0}).fit;
   ASSERT_TRUE(fit && fit->threshold);
   const auto best_with = [&](double threshold) {
     double best = -HUGE_VAL;
@@ -108,21 +110,121 @@ TEST(Psychometric, IntervalsEndWhereTheLikelihoodHasFallen) {
     EXPECT_NEAR(fit->log_likelihood - best_with(end), 0.5 * 3.841459, 1e-4);
 }
 
-TEST(Psychometric, AnswersThatBoundNothingHaveNoFit) {
+TEST(Psychometric, AnswersWithoutAFitHaveAReason) {
   const test::WithoutTraps in_boost;
   const auto why = [](const Scores& scores, double guess) {
-    std::optional<NoFit> reason;
-    NoFit given = NoFit::TooFewLevels;
-    if (!fit_psychometric(scores, guess, 0.0, 0.95, &given)) reason = given;
-    return reason;
+    const PsychometricResult found = fit_psychometric(scores, {guess, 0.0});
+    return found.fit ? std::nullopt : std::optional(found.no_fit);
   };
   EXPECT_EQ(why({{0.5, {3, 4}}}, 0.5), NoFit::TooFewLevels);
   EXPECT_EQ(why({{0.5, {3, 4}}, {0.5, {2, 4}}}, 0.5), NoFit::TooFewLevels);
-  EXPECT_EQ(why({{0.2, {9, 9}}, {0.5, {9, 9}}}, 0.5), NoFit::NotGrowing);
-  EXPECT_EQ(why({{0.2, {9, 9}}, {0.5, {0, 9}}}, 0.0), NoFit::NotGrowing);  // it falls
+  EXPECT_EQ(why({{0.2, {9, 9}}, {0.5, {9, 9}}}, 0.5), NoFit::BelowLevels);
+  EXPECT_EQ(why({{0.2, {0, 9}}, {0.5, {0, 9}}}, 0.0), NoFit::AboveLevels);
+  EXPECT_EQ(why({{0.2, {22, 30}}, {0.5, {22, 30}}}, 0.5), NoFit::NotGrowing);
+  EXPECT_EQ(why({{0.2, {9, 9}}, {0.5, {0, 9}}}, 0.0), NoFit::Falling);
+  EXPECT_EQ(why({{0.1, {19, 20}}, {0.2, {16, 20}}, {0.3, {11, 20}}}, 0.5), NoFit::Falling);
   EXPECT_EQ(why({{0.2, {0, 9}}, {0.5, {9, 9}}}, 0.0), NoFit::Step);
   EXPECT_EQ(why({{0.2, {4, 9}}, {0.5, {7, 9}}, {0.6, {9, 9}}}, 0.5), NoFit::Step);
   EXPECT_EQ(why({{0.2, {5, 9}}, {0.5, {7, 9}}, {0.6, {8, 9}}}, 0.5), std::nullopt);
+}
+
+// An end of these intervals has a closed form: with the threshold beyond a level, a step is the
+// best, and the answers at that level have the share that is half-way, or the one of the other
+// side.
+TEST(Psychometric, SeparatedAnswersBoundTheThreshold) {
+  const test::WithoutTraps in_boost;
+  const Scores scores = {{1.0, {0, 40}}, {2.0, {0, 40}}, {3.0, {40, 40}}, {4.0, {40, 40}}};
+  const auto bounds = fit_psychometric(scores, {0.0, 0.02}).bounds;
+  ASSERT_TRUE(bounds);
+  EXPECT_EQ(bounds->best.low, 2.0);
+  EXPECT_EQ(bounds->best.high, 3.0);
+  // 40 answers at a level are too many to be on the other side of the threshold
+  EXPECT_NEAR(bounds->interval.low, 2.0, 0.05);
+  EXPECT_NEAR(bounds->interval.high, 3.0, 0.05);
+  // of 2 at a level, thresholds beyond them are still likely
+  const auto few =
+      fit_psychometric(Scores{{1.0, {0, 2}}, {2.0, {0, 2}}, {3.0, {2, 2}}, {4.0, {2, 2}}},
+                       {0.0, 0.0})
+          .bounds;
+  ASSERT_TRUE(few);
+  EXPECT_NEAR(few->interval.low, 1.8937460, 1e-5);  // by a dense grid of slopes
+  EXPECT_NEAR(few->interval.high, 3.1062540, 1e-5);
+}
+
+TEST(Psychometric, AnswersBeyondTheLevelsAreCensored) {
+  const test::WithoutTraps in_boost;
+  const auto all = fit_psychometric(Scores{{1.0, {30, 30}}, {1.5, {10, 10}}}, {0.0, 0.02});
+  ASSERT_TRUE(all.bounds);
+  EXPECT_EQ(all.no_fit, NoFit::BelowLevels);
+  EXPECT_TRUE(std::isinf(all.bounds->interval.low));
+  EXPECT_EQ(all.bounds->best.high, 1.0);
+  EXPECT_NEAR(all.bounds->interval.high, 1.0, 0.01);
+  const auto none = fit_psychometric(Scores{{1.0, {5, 10}}, {1.5, {14, 30}}}, {0.5, 0.02});
+  ASSERT_TRUE(none.bounds);
+  EXPECT_EQ(none.no_fit, NoFit::AboveLevels);
+  EXPECT_TRUE(std::isinf(none.bounds->interval.high));
+  // one level: 2 n log(0.98 / 0.49) is above 3.8415 from n = 3 on
+  EXPECT_TRUE(fit_psychometric(Scores{{1.0, {3, 3}}}, {0.0, 0.02}).bounds);
+  EXPECT_FALSE(fit_psychometric(Scores{{1.0, {2, 2}}}, {0.0, 0.02}).bounds);
+}
+
+// The numbers are scipy's (optimize.minimize over threshold, slope and lapse rate; brentq on the
+// profile of the likelihood; 1000 fits to answers drawn from the function).
+TEST(Psychometric, FittedLapsesAndMisfitAgreeWithScipy) {
+  const test::WithoutTraps in_boost;
+  const std::array<int, 8> right = {26, 24, 33, 40, 43, 42, 45, 44};
+  Scores scores;
+  for (std::size_t i = 0; i < right.size(); ++i)
+    scores.push_back({0.1 * static_cast<double>(i + 1), {right[i], 50}});
+  const auto free = fit_psychometric(scores, {.guess = 0.5, .lapse = std::nullopt}).fit;
+  ASSERT_TRUE(free && free->threshold && free->misfit);
+  EXPECT_NEAR(free->function.threshold, 0.3243469, 1e-6);
+  EXPECT_NEAR(free->function.slope, 20.761956, 1e-4);
+  EXPECT_NEAR(free->function.lapse, 0.1278039, 1e-6);
+  EXPECT_NEAR(free->log_likelihood, -203.8369916, 1e-6);
+  EXPECT_NEAR(free->threshold->low, 0.2625269, 1e-5);
+  EXPECT_NEAR(free->threshold->high, 0.3973074, 1e-5);
+  EXPECT_NEAR(free->misfit->deviance, 1.3966667, 1e-6);
+  EXPECT_EQ(free->misfit->df, 5);
+  const auto fixed = fit_psychometric(scores, {.guess = 0.5, .lapse = 0.02}).fit;
+  ASSERT_TRUE(fixed && fixed->misfit);
+  EXPECT_NEAR(fixed->function.threshold, 0.4245831, 1e-6);
+  EXPECT_NEAR(fixed->misfit->deviance, 8.3416771, 1e-6);
+  EXPECT_NEAR(fixed->misfit->p, 0.218, 0.15);  // of the first ten that are as far off
+}
+
+// Intervals of censored results hold the truth, too: few levels, all below or above the threshold.
+TEST(Psychometric, BoundsHoldTheTruth) {
+  const test::WithoutTraps in_boost;
+  Random random(11);
+  constexpr int kRuns = 300;
+  int holds = 0, all = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const Psychometric observer{2.0 * random.uniform() - 0.5, 30.0, 0.5, 0.02};
+    const auto found = fit_psychometric(simulate(observer, 4, 12, random), {0.5, 0.02});
+    if (!found.bounds) continue;
+    ++all;
+    holds += found.bounds->interval.low <= observer.threshold &&
+             observer.threshold <= found.bounds->interval.high;
+  }
+  EXPECT_GT(all, 100);
+  EXPECT_GE(holds, 0.93 * all);
+}
+
+TEST(Psychometric, MisfitIsAsRareAsItSaysAndFindsLapses) {
+  const test::WithoutTraps in_boost;
+  Random random(5);
+  const Psychometric good{0.5, 12.0, 0.5, 0.02}, lapsing{0.4, 25.0, 0.5, 0.2};
+  int rare = 0, found = 0;
+  constexpr int kRuns = 100;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto fit = fit_psychometric(simulate(good, 9, 40, random), {0.5, 0.02}).fit;
+    if (fit && fit->misfit && fit->misfit->p < 0.05) ++rare;
+    const auto other = fit_psychometric(simulate(lapsing, 9, 150, random), {0.5, 0.02}).fit;
+    if (other && other->misfit && other->misfit->p < 0.05) ++found;
+  }
+  EXPECT_LE(rare, 0.12 * kRuns);  // 5 % with a standard error of 2.2 %
+  EXPECT_GT(found, 0.6 * kRuns);
 }
 
 TEST(Psychometric, IsHalfWayAtItsThreshold) {

@@ -47,7 +47,7 @@ TEST(Thresholds, OfKnownObserversAreFound) {
   const test::WithoutTraps in_boost;
   const std::array<double, 2> truth = {0.35, 0.55};
   const std::vector<Answer> answers = known_answers(truth, 14.0, 900);
-  const auto results = fit_thresholds(answers, 0.5, 0.02, 0.95);
+  const auto results = fit_thresholds(answers, {});
   ASSERT_EQ(results.size(), 2U * 2U * 5U);  // scenes, methods, all and each of four
   for (std::size_t i = 0; i < results.size(); ++i) {
     const ThresholdResult& of = results[i];
@@ -68,7 +68,7 @@ TEST(Thresholds, OfKnownObserversAreFound) {
 TEST(Thresholds, PoolAnswersAtTheSameLevel) {
   const test::WithoutTraps in_boost;
   std::vector<Answer> answers = known_answers({0.4, 0.4}, 10.0, 90);
-  const auto results = fit_thresholds(answers, 0.5, 0.02, 0.95);
+  const auto results = fit_thresholds(answers, {});
   std::vector<LevelScore> pooled;
   for (int i = 1; i <= 9; ++i) pooled.push_back({0.1 * i, {0, 0}});
   for (const Answer& a : answers) {
@@ -77,13 +77,13 @@ TEST(Thresholds, PoolAnswersAtTheSameLevel) {
     ++score.trials;
     score.successes += a.correct ? 1 : 0;
   }
-  const auto expected = fit_psychometric(pooled, 0.5, 0.02);
+  const auto expected = fit_psychometric(pooled, {}).fit;
   ASSERT_TRUE(expected && results[0].fit);
   EXPECT_EQ(results[0].fit->function.threshold, expected->function.threshold);
   EXPECT_EQ(results[0].fit->threshold->low, expected->threshold->low);
   std::stable_sort(answers.begin(), answers.end(),
                    [](const Answer& a, const Answer& b) { return *a.level > *b.level; });
-  const auto sorted = fit_thresholds(answers, 0.5, 0.02, 0.95);
+  const auto sorted = fit_thresholds(answers, {});
   EXPECT_EQ(sorted[0].fit->function.threshold, expected->function.threshold);
 }
 
@@ -101,8 +101,10 @@ TEST(Thresholds, AreSaidInWords) {
   EXPECT_THAT(words, HasSubstr("between guessing (50 %) and the most (98 %)"));
   for (Answer& a : answers) a.correct = *a.level > 0.45;
   const std::string steps = in_words(analyse(answers));
-  EXPECT_THAT(steps, HasSubstr("no threshold can be fitted: a step fits as well as any slope"));
-  EXPECT_THAT(steps, HasSubstr("0 of 4 single participants' answers have a fit."));
+  EXPECT_THAT(steps,
+              HasSubstr("a step fits as well as any slope, so that the answers bound the "
+                        "threshold and no slope: it is best from 0.4 to 0.5 (95 % interval"));
+  EXPECT_THAT(steps, HasSubstr("0 of 4 single participants' answers have a fit, 4 bounds alone."));
   for (Answer& a : answers) a.level = 0.5;
   EXPECT_THAT(in_words(analyse(answers)), HasSubstr("all answers are at one level"));
   for (Answer& a : answers) a.level.reset();
@@ -131,6 +133,45 @@ TEST(Thresholds, TakeGuessesAndLapses) {
   const Psychometric psi = analyse(answers, settings).thresholds[0].fit->function;
   EXPECT_EQ(psi.guess, 0.25);
   EXPECT_EQ(psi.lapse, 0.1);
+}
+
+// A participant who always says yes: nothing is right or wrong, and the threshold is below.
+TEST(Thresholds, OfAnswersForTheLevelAloneAreBelowIt) {
+  const test::WithoutTraps in_boost;
+  std::vector<Answer> answers;
+  for (int i = 0; i < 36; ++i) {
+    answers.push_back({.participant = "1",
+                       .method = "am",
+                       .scene = "x",
+                       .correct = true,
+                       .level = i < 6 ? 1.6 - 0.1 * i : 1.0,
+                       .kind = AnswerKind::Felt});
+  }
+  const std::string words = in_words(analyse(answers));
+  EXPECT_THAT(words, HasSubstr("answers for the level are as many as can be at the lowest level"));
+  EXPECT_THAT(words, HasSubstr("it is below 1 (95 % interval of the likelihood over all slopes: "
+                               "below 1"));
+  EXPECT_THAT(words, Not(HasSubstr("right answers")));
+  for (Answer& a : answers) a.correct = *a.level < 1.3;
+  EXPECT_THAT(in_words(analyse(answers)), HasSubstr("answers for the level fall with the level"));
+}
+
+TEST(Thresholds, LapsesAreFittedOnRequest) {
+  const test::WithoutTraps in_boost;
+  std::vector<Answer> answers;
+  Random random(9);
+  for (const char* who : {"a", "b"})
+    add(answers, who, "am", "x", {0.4, 25.0, 0.5, 0.12}, 1800, random);
+  EXPECT_THAT(in_words(analyse(answers)), HasSubstr("(--fit-lapse)"));
+  AnalysisSettings settings;
+  settings.fit_lapse = true;
+  const Analysis analysis = analyse(answers, settings);
+  EXPECT_NEAR(analysis.thresholds[0].fit->function.lapse, 0.12, 0.02);
+  EXPECT_NEAR(analysis.thresholds[0].fit->function.threshold, 0.4, 0.02);
+  EXPECT_THAT(in_words(analysis), Not(HasSubstr("does not fit the answers")));
+  EXPECT_THAT(in_words(analysis), HasSubstr("1 minus the lapse rate, which is fitted"));
+  settings.lapse = 0.1;
+  EXPECT_THAT(test::input_error([&] { analyse(answers, settings); }), HasSubstr("leave one"));
 }
 
 TEST(Thresholds, NeedLevelsOfAllAnswers) {

@@ -50,7 +50,7 @@ Json comparison_rows(const Analysis& analysis) {
                       {"z", c.pooled_z.statistic},
                       {"z_p", c.pooled_z.p},
                       {"fisher_p", c.fisher_p},
-                      {"permutation_p", c.permutation.p},
+                      {"permutation_p", c.permutation ? Json(c.permutation->p) : Json(nullptr)},
                       {"t", c.t ? Json(c.t->statistic) : Json(nullptr)},
                       {"t_p", c.t ? Json(c.t->p) : Json(nullptr)},
                       {"d", or_null(c.d)},

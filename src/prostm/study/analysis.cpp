@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/nearest_name.hpp"
@@ -85,6 +87,7 @@ Comparison compare(const MethodResult& a, const MethodResult& b, Groups groups,
   out.fisher_p = fisher_exact_p(a.correct, b.correct);
   const std::span<const double> x = a.of_participants, y = b.of_participants;
   const bool within = groups == Groups::Within;
+  if (x.size() < 2 || y.size() < 2) return out;
   out.permutation =
       within ? paired_permutation(x, y, settings.seed) : permutation(x, y, settings.seed);
   out.t = within ? paired_t(x, y) : welch_t(x, y);
@@ -99,10 +102,6 @@ void require_scenes(std::span<const Answer> answers, const std::vector<std::stri
                     const std::vector<std::string>& scenes) {
   for (const std::string& method : methods) {
     const Scores all = scores_of(answers, method, {});
-    if (all.size() < 2) {
-      throw InputError("method " + quoted(method) + " has answers of one participant alone: " +
-                       "at least two are needed, since answers of one are alike");
-    }
     for (const std::string& scene : scenes) {
       const Scores some = scores_of(answers, method, scene);
       for (const auto& [participant, score] : all) {
@@ -142,24 +141,90 @@ std::vector<ThresholdResult> thresholds_of(std::span<const Answer> answers,
   if (with_level != std::ssize(answers))
     throw InputError("some answers have a level and others not: all must have one, or none");
   const bool is_felt = answers.front().kind == AnswerKind::Felt;
+  if (settings.fit_lapse && settings.lapse)
+    throw InputError("lapse is given, and is to be fitted; leave one of them out");
   settings.guess = settings.guess.value_or(is_felt ? 0.0 : settings.chance);
-  settings.lapse = settings.lapse.value_or(kLapse);
-  require_between("guess", *settings.guess, 0.0, 0.9);
-  require_between("lapse", *settings.lapse, 0.0, 0.5);
-  require_between("guess + lapse", *settings.guess + *settings.lapse, 0.0, 0.95);
-  return fit_thresholds(answers, *settings.guess, *settings.lapse, settings.level);
+  constexpr double kMostGuess = 0.9, kMostWithFittedLapse = 0.75;
+  require_between("guess", *settings.guess, 0.0,
+                  settings.fit_lapse ? kMostWithFittedLapse : kMostGuess);
+  if (!settings.fit_lapse) {
+    settings.lapse = settings.lapse.value_or(kLapse);
+    require_between("lapse", *settings.lapse, 0.0, 0.5);
+    require_between("guess + lapse", *settings.guess + *settings.lapse, 0.0, 0.95);
+  }
+  return fit_thresholds(answers, {*settings.guess, settings.lapse, settings.level, settings.seed});
+}
+
+/// Participants who have trials of a method in a scene, and answered none of them.
+std::vector<std::string> without_answers(std::span<const Answer> trials) {
+  std::map<std::tuple<std::string, std::string, std::string>, int> answered;
+  for (const Answer& a : trials) answered[{a.participant, a.method, a.scene}] += a.answered ? 1 : 0;
+  std::vector<std::string> out;
+  for (const auto& [of, count] : answered) {
+    const std::string& participant = std::get<0>(of);
+    if (count == 0 && (out.empty() || out.back() != participant)) out.push_back(participant);
+  }
+  return out;
+}
+
+/// The trials that are analysed: those with an answer, of participants who are not left out.
+std::vector<Answer> answered(std::span<const Answer> trials,
+                             const std::vector<std::string>& left_out) {
+  std::vector<Answer> out;
+  for (const Answer& a : trials) {
+    const bool stays = !std::binary_search(left_out.begin(), left_out.end(), a.participant);
+    if (a.answered && stays) out.push_back(a);
+  }
+  return out;
 }
 
 }  // namespace
 
-Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings) {
+std::vector<MissingAnswers> missing_answers(std::span<const Answer> trials) {
+  std::vector<MissingAnswers> out;
+  std::vector<std::set<std::string>> who;
+  std::vector<int> right;
+  for (const Answer& a : trials) {
+    const auto found = std::find_if(out.begin(), out.end(), [&](const MissingAnswers& of) {
+      return of.method == a.method && of.scene == a.scene;
+    });
+    const auto place = static_cast<std::size_t>(found - out.begin());
+    if (found == out.end()) {
+      MissingAnswers& of = out.emplace_back();
+      of.method = a.method;
+      of.scene = a.scene;
+      who.emplace_back();
+      right.push_back(0);
+    }
+    ++out[place].trials;
+    out[place].missing += a.answered ? 0 : 1;
+    right[place] += a.answered && a.correct ? 1 : 0;
+    if (!a.answered) who[place].insert(a.participant);
+  }
+  const auto is_whole = [](const MissingAnswers& of) { return of.missing == 0; };
+  if (std::all_of(out.begin(), out.end(), is_whole)) return {};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].participants = static_cast<int>(who[i].size());
+    const double all = out[i].trials;
+    out[i].if_answered = {right[i] / all, (right[i] + out[i].missing) / all};
+  }
+  return out;
+}
+
+Analysis analyse(std::span<const Answer> trials, const AnalysisSettings& settings) {
   require_between("chance", settings.chance, 0.01, 0.99);
   require_between("level", settings.level, 0.5, 0.9999);
   require_between("power", settings.power, 0.1, 0.999);
+  Analysis out;
+  out.missing = missing_answers(trials);
+  if (!out.missing.empty()) out.left_out = without_answers(trials);
+  std::vector<Answer> kept;  // only where some trials are left out
+  if (!out.missing.empty()) kept = answered(trials, out.left_out);
+  const std::span<const Answer> answers =
+      out.missing.empty() ? trials : std::span<const Answer>(kept);
+  if (answers.empty()) throw InputError("there is no answer");
   const auto methods = names_of(answers, [](const Answer& a) { return a.method; });
   const auto scenes = names_of(answers, [](const Answer& a) { return a.scene; });
-  if (answers.empty()) throw InputError("there is no answer");
-  Analysis out;
   out.settings = settings;
   out.kind = answers.front().kind;
   if (std::any_of(answers.begin(), answers.end(),

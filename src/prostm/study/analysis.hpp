@@ -21,6 +21,7 @@ struct AnalysisSettings {
   /// γ and λ of psychometric functions, 0..0.9 and 0..0.5; default: chance, or 0 of answers of kind
   /// Felt, and kLapse
   std::optional<double> guess = {}, lapse = {};
+  bool fit_lapse = false;  ///< λ is fitted to each function's answers, from 0 to kMostLapse
 };
 inline constexpr double kLapse = 0.02;
 
@@ -38,9 +39,10 @@ struct MethodResult {
 /// A second method against the first in one scene, or in all.
 struct Comparison {
   std::string first, second;
-  TestResult pooled_z;          ///< over answers
-  double fisher_p = 1.0;        ///< over answers, exact
-  Permutation permutation;      ///< over participants
+  TestResult pooled_z;    ///< over answers
+  double fisher_p = 1.0;  ///< over answers, exact
+  /// over participants; nothing with fewer than two with each method
+  std::optional<Permutation> permutation;
   std::optional<TestResult> t;  ///< over participants: Welch's, or of pairs
   std::optional<double> d;      ///< effect size over participants
   std::optional<int> needed;    ///< participants that would show this effect, of a group or in all
@@ -53,22 +55,41 @@ struct SceneResult {
   std::vector<Comparison> comparisons;  ///< of every pair of methods
 };
 
+/// Trials of one method in one scene that have no answer.
+struct MissingAnswers {
+  std::string method, scene;
+  int missing = 0, trials = 0;
+  int participants = 0;  ///< who left some out
+  /// share of right answers if the missing ones were all wrong, and if all were right
+  Interval if_answered;
+};
+
 struct Analysis {
   AnalysisSettings settings;
   AnswerKind kind = AnswerKind::Right;  ///< of kind Felt, "correct" is for the level
   Groups groups = Groups::Between;
   std::vector<std::string> participants;
+  std::vector<MissingAnswers> missing;      ///< of all methods and scenes, if any answer is missing
+  std::vector<std::string> left_out;        ///< participants without any answer to some scene
   std::vector<SceneResult> scenes;          ///< all scenes together first
   std::vector<ThresholdResult> thresholds;  ///< where answers have levels
 };
 
-/// Methods and scenes stand in the order in which the answers have them first. @throws InputError:
-/// fewer than two participants with a method, some participants with one method and others with
-/// several, a scene that a participant lacks, a level that some answers lack, guess or lapse
-/// without levels, answers of several kinds. @throws std::invalid_argument: a setting out of its
-/// bounds.
+/// Methods and scenes stand in the order in which the answers have them first. Trials without an
+/// answer are counted and left out; so is a participant who answered none of the trials of a method
+/// in a scene. @throws InputError: no answer, some participants with one method and others with
+/// several, a scene that a participant has no trials of, a level that some answers lack, guess or
+/// lapse without levels, answers of several kinds. @throws std::invalid_argument: a setting out of
+/// its bounds.
 /// @pre answers are not of kind Adjusted.
 Analysis analyse(std::span<const Answer> answers, const AnalysisSettings& settings = {});
+
+/// Counts trials without an answer by method and scene; empty if there are no such trials.
+std::vector<MissingAnswers> missing_answers(std::span<const Answer> answers);
+
+/// Sentences about trials without an answer; empty if there are no such trials.
+/// @param kind of the answers.
+std::string in_words(std::span<const MissingAnswers> missing, AnswerKind kind);
 
 /// A paragraph in plain words: what the data support, what they do not, and why.
 std::string in_words(const Analysis& analysis);

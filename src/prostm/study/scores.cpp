@@ -4,21 +4,22 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
+#include <boost/crc.hpp>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/json.hpp"
-#include "prostm/core/nearest_name.hpp"
-#include "prostm/study/detail/csv.hpp"
+#include "prostm/study/detail/answer_table.hpp"
+#include "prostm/study/detail/identities.hpp"
+#include "prostm/study/detail/same_stimuli.hpp"
+#include "prostm/study/detail/table_columns.hpp"
+#include "prostm/study/detail/text_encoding.hpp"
 #include "prostm/study/response_file.hpp"
 #include "prostm/study/roster.hpp"
 
@@ -26,126 +27,6 @@ namespace prostm {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
-
-/// The columns of a table of answers, by name.
-class AnswerTable {
- public:
-  AnswerTable(study::CsvReader& csv, std::vector<std::string> header)
-      : csv_(csv), header_(std::move(header)) {
-    for (auto it = header_.begin(); it != header_.end(); ++it) {
-      if (!it->empty() && std::find(header_.begin(), it, *it) != it)
-        csv_.fail("the column \"" + shown_name(*it) + "\" stands there twice");
-    }
-    participant_ = needed("participant");
-    method_ = needed("method");
-    scene_ = needed("scene");
-    correct_ = needed("correct");
-    question_ = find("question");
-    yes_ = find("answer");
-    trial_ = find("trial");
-    level_ = find("level");
-    kind_ = find("kind");
-    if (question_.has_value() != yes_.has_value()) {
-      csv_.fail(std::string("the column \"") + (question_ ? "answer" : "question") +
-                "\" is missing: question and answer belong together");
-    }
-  }
-
-  Answer read(const std::vector<std::string>& row) {
-    if (row.size() != header_.size()) {
-      csv_.fail("has " + std::to_string(row.size()) + " columns instead of the header's " +
-                std::to_string(header_.size()));
-    }
-    Answer out;
-    out.participant = name(row, participant_);
-    out.method = name(row, method_);
-    out.scene = name(row, scene_);
-    out.correct = yes_or_no(row, correct_);
-    if (question_) {
-      out.question = name(row, *question_);
-      out.yes = yes_or_no(row, *yes_);
-      if (out.correct != ((out.question == out.scene) == out.yes)) {
-        csv_.fail(std::string("correct is ") + (out.correct ? "1" : "0") + ", but the answer " +
-                  (out.yes ? "1" : "0") + " to the question \"" + shown_name(out.question) +
-                  "\" is " + (out.correct ? "wrong" : "right") + " where the scene is \"" +
-                  shown_name(out.scene) + '"');
-      }
-    }
-    if (trial_) {
-      out.trial = name(row, *trial_);
-      if (!trials_.insert({out.participant, out.trial}).second) {
-        csv_.fail("participant \"" + shown_name(out.participant) + "\" has trial " +
-                  shown_name(out.trial) + " a second time");
-      }
-    }
-    if (level_) out.level = number(row, *level_);
-    if (kind_) out.kind = kind(row, *kind_);
-    return out;
-  }
-
- private:
-  std::optional<std::size_t> find(const char* name) const {
-    const auto at = std::find(header_.begin(), header_.end(), name);
-    if (at == header_.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - header_.begin());
-  }
-
-  std::size_t needed(const char* name) const {
-    if (const auto at = find(name)) return *at;
-    const bool semicolons = header_.size() == 1 && header_[0].find(';') != std::string::npos;
-    csv_.fail(semicolons ? std::string("columns must be separated by commas, not semicolons")
-                         : std::string("the header has no column \"") + name +
-                               "\": participant, method, scene and correct are needed");
-  }
-
-  std::string name(const std::vector<std::string>& row, std::size_t column) const {
-    const std::string& value = row[column];
-    if (value.empty()) csv_.fail(header_[column] + " is empty");
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (std::any_of(value.begin(), value.end(), is_control))
-      csv_.fail(header_[column] + " has a line break or another control character");
-    return value;
-  }
-
-  bool yes_or_no(const std::vector<std::string>& row, std::size_t column) const {
-    if (row[column] != "0" && row[column] != "1") {
-      csv_.fail(header_[column] + " is \"" + shown_name(row[column]) + "\": it must be 0 or 1");
-    }
-    return row[column] == "1";
-  }
-
-  double number(const std::vector<std::string>& row, std::size_t column) const {
-    const std::string& text = row[column];
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_number =
-        error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-    constexpr double kLeast = 1e-9, kMost = 1e9;  // so that what is fitted stays finite
-    if (!is_number || !(value == 0.0 || (std::abs(value) >= kLeast && std::abs(value) <= kMost))) {
-      csv_.fail(header_[column] + " is \"" + shown_name(text) +
-                "\": it must be a number in every row, 0 or from 1e-9 to 1e9 in size");
-    }
-    return value + 0.0;  // −0 becomes 0
-  }
-
-  AnswerKind kind(const std::vector<std::string>& row, std::size_t column) {
-    const auto value = value_named<AnswerKind>(row[column]);
-    if (!value) csv_.fail("kind " + must_be(row[column], kNames<AnswerKind>));
-    if (*value != AnswerKind::Right && !level_)
-      csv_.fail("kind is \"" + row[column] + "\", and the header has no column \"level\"");
-    if (all_of_.value_or(*value) != *value)
-      csv_.fail("kind is \"" + row[column] + "\", and another one in the rows before");
-    all_of_ = value;
-    return *value;
-  }
-
-  study::CsvReader& csv_;
-  std::vector<std::string> header_;
-  std::optional<AnswerKind> all_of_;
-  std::size_t participant_, method_, scene_, correct_;
-  std::optional<std::size_t> question_, yes_, trial_, level_, kind_;
-  std::set<std::pair<std::string, std::string>> trials_;
-};
 
 /// One method of the paper's study.
 struct PaperMethod {
@@ -192,15 +73,19 @@ void add_paper_method(const JsonNode& figure, const PaperMethod& of, int trials,
 
 }  // namespace
 
-std::vector<Answer> answers_from_csv(std::string_view text, const std::string& file) {
-  study::CsvReader csv(text, file);
-  std::vector<std::string> row;
-  if (!csv.next(row)) throw InputError(file + ": has no header");
-  AnswerTable table(csv, row);
-  std::vector<Answer> out;
-  while (csv.next(row)) out.push_back(table.read(row));
-  if (out.empty()) throw InputError(file + ": has a header and no answer");
-  return out;
+std::vector<Answer> answers_from_csv(std::string_view text, const std::string& file,
+                                     const std::string& columns, std::vector<std::string>* notes) {
+  const study::DecodedText decoded = study::decode_text(text, file);
+  std::vector<std::string> said;
+  if (!decoded.assumed.empty()) {
+    said.push_back(
+        fmt::format("{} is not UTF-8 and is read as {}; if letters are wrong, save it as "
+                    "CSV in UTF-8.",
+                    file, decoded.assumed));
+  }
+  std::vector<Answer> answers = study::read_answer_table(decoded.text, file, columns, said);
+  if (notes != nullptr) notes->insert(notes->end(), said.begin(), said.end());
+  return answers;
 }
 
 std::vector<Answer> answers_from_paper(std::string_view text, const std::string& file) {
@@ -217,42 +102,74 @@ std::vector<Answer> answers_from_paper(std::string_view text, const std::string&
   return out;
 }
 
-std::string tidy_csv(std::span<const Answer> answers) {
-  const auto quoted = [](const std::string& value) {
-    if (value.find_first_of(",\"") == value.npos) return value;
-    std::string out = "\"";
-    for (const char c : value) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + '"';
-  };
-  using Column = std::pair<const char*, std::function<std::string(const Answer&)>>;
-  const auto bit = [](bool x) { return std::string(x ? "1" : "0"); };
-  const Answer& first = answers.front();
-  std::vector<Column> columns = {
-      {"participant", [](const Answer& a) { return a.participant; }},
-      {"method", [](const Answer& a) { return a.method; }},
-      {"scene", [](const Answer& a) { return a.scene; }},
-  };
-  if (!first.trial.empty()) columns.emplace_back("trial", [](const Answer& a) { return a.trial; });
-  if (!first.question.empty()) {
-    columns.emplace_back("question", [](const Answer& a) { return a.question; });
-    columns.emplace_back("answer", [&](const Answer& a) { return bit(a.yes); });
-  }
-  columns.emplace_back("correct", [&](const Answer& a) { return bit(a.correct); });
-  if (first.level)
-    columns.emplace_back("level", [](const Answer& a) { return fmt::format("{}", *a.level); });
-  if (first.kind != AnswerKind::Right)
-    columns.emplace_back("kind", [](const Answer& a) { return std::string(name_of(a.kind)); });
+namespace {
 
+/// A column of a tidy table: its name, and its cell of an answer; empty where that is not known.
+struct TidyColumn {
+  study::Column column;
+  std::function<std::string(const Answer&)> cell;
+  bool always = false;  ///< it stands there even if all its cells are empty
+};
+
+std::vector<TidyColumn> tidy_columns() {
+  using study::Column;
+  const auto bit = [](bool known, bool x) { return std::string(known ? (x ? "1" : "0") : ""); };
+  const auto number = [](const std::optional<double>& x) {
+    return x ? fmt::format("{}", *x) : std::string();
+  };
+  return {
+      {Column::Participant, [](const Answer& a) { return a.participant; }, true},
+      {Column::Method, [](const Answer& a) { return a.method; }, true},
+      {Column::Scene, [](const Answer& a) { return a.scene; }, true},
+      {Column::Trial, [](const Answer& a) { return a.trial; }},
+      {Column::Question, [](const Answer& a) { return a.question; }},
+      {Column::Answer,
+       [=](const Answer& a) { return bit(a.answered && !a.question.empty(), a.yes); }},
+      {Column::Correct, [=](const Answer& a) { return bit(a.answered, a.correct); }, true},
+      {Column::Level, [=](const Answer& a) { return number(a.level); }},
+      {Column::Kind,
+       [](const Answer& a) {
+         return std::string(a.kind == AnswerKind::Right ? "" : name_of(a.kind));
+       }},
+      {Column::ResponseTime, [=](const Answer& a) { return number(a.response_s); }},
+      {Column::Stimulus, [](const Answer& a) { return a.stimulus; }},
+      {Column::Gate, [](const Answer& a) { return a.gate; }},
+      {Column::Protocol, [](const Answer& a) { return a.run.protocol; }},
+      {Column::Version, [](const Answer& a) { return a.run.version; }},
+      {Column::Device, [](const Answer& a) { return a.run.device; }},
+      {Column::Array, [](const Answer& a) { return a.run.array; }},
+      {Column::Hand, [](const Answer& a) { return a.run.hand; }},
+  };
+}
+
+std::string csv_cell(const std::string& value) {
+  const auto needs_quotes = [](char c) {
+    return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20;
+  };
+  if (std::none_of(value.begin(), value.end(), needs_quotes)) return value;
+  std::string out = "\"";
+  for (const char c : value) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+}  // namespace
+
+std::string tidy_csv(std::span<const Answer> answers) {
+  std::vector<TidyColumn> columns = tidy_columns();
+  std::erase_if(columns, [&](const TidyColumn& of) {
+    const auto is_empty = [&](const Answer& a) { return of.cell(a).empty(); };
+    return !of.always && std::all_of(answers.begin(), answers.end(), is_empty);
+  });
   std::string out;
   const auto add_row = [&](const auto& value_of) {
-    for (const Column& column : columns) {
+    for (const TidyColumn& column : columns) {
       out += &column == &columns.front() ? "" : ",";
-      out += quoted(value_of(column));
+      out += csv_cell(value_of(column));
     }
     out += "\r\n";
   };
-  add_row([](const Column& column) { return std::string(column.first); });
-  for (const Answer& a : answers) add_row([&](const Column& column) { return column.second(a); });
+  add_row([](const TidyColumn& column) { return std::string(name_of(column.column)); });
+  for (const Answer& a : answers) add_row([&](const TidyColumn& column) { return column.cell(a); });
   return out;
 }
 
@@ -280,108 +197,236 @@ Answer answer_of(const ResponseLine& line, const std::string& participant, Answe
     answer.question = line.at("question");
   }
   answer.kind = kind;
+  if (line.contains("response_s")) answer.response_s = line["response_s"].get<double>();
+  answer.stimulus = line.value("stimulus", "");
+  if (const auto gate = line.find("gate"); gate != line.end() && gate->is_object())
+    answer.gate = gate->value("pass", false) ? "pass" : "fail";
+  if (line.value("anyway", false)) answer.gate = "anyway";
   return answer;
+}
+
+std::string text_in(const ResponseLine& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// The run, from the first line of a participant's file.
+RunFacts facts_of(const ResponseLine& first) {
+  boost::crc_32_type sum;
+  const auto protocol = first.find("protocol");
+  const std::string text = protocol == first.end() ? std::string() : protocol->dump();
+  sum.process_bytes(text.data(), text.size());
+  const ResponseLine& run = first.at("run");
+  return {text.empty() ? std::string() : fmt::format("{:08x}", sum.checksum()),
+          text_in(run, "prostm"), text_in(run, "device"), text_in(run, "array"),
+          text_in(run, "hand")};
+}
+
+/// A participant's file: answers, and what they are compared by.
+struct Responses {
+  std::vector<Answer> answers;
+  study::StudyFile file;
+  int trials = 0;  ///< that the protocol has
+  bool ended = false;
+};
+
+/// Adds the trial of a line, or corrects the last one.
+void take_line(const ResponseLine& line, const std::string& where, AnswerKind of, Responses& out) {
+  const std::string kind = line.value("kind", "");
+  if (kind == "trial") {
+    out.answers.push_back(answer_of(line, out.file.participant, of));
+  } else if (out.answers.empty() ||
+             out.answers.back().trial != std::to_string(line.at("trial").get<int>())) {
+    throw InputError(where + " corrects another trial than the last");
+  }
+  if (of == AnswerKind::Adjusted) return;
+  Answer& answer = out.answers.back();
+  answer.correct = line.at(of == AnswerKind::Felt ? "felt" : "correct").get<int>() == 1;
+  if (!answer.question.empty()) answer.yes = line.at("answer").get<int>() == 1;
+}
+
+Responses read_responses(std::string_view text, const std::string& file,
+                         std::vector<std::string>& notes) {
+  Responses out;
+  const std::vector<ResponseLine> lines = responses_from_text(text, file);
+  std::string where = file + ", line 1";
+  try {
+    if (lines.empty() || lines.front().value("format", "") != kResponseFormat)
+      throw InputError(where + " does not begin a participant's file of prostm study run");
+    const ResponseLine& first = lines.front();
+    out.file = {first.at("participant"), first.value("protocol", ResponseLine::object()),
+                first.at("run").at("rehearsal")};
+    out.trials = first.at("trials");
+    const AnswerKind of = kind_of(out.file.protocol);
+    const RunFacts facts = facts_of(first);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::string kind = lines[i].value("kind", "");
+      where = fmt::format("{}, line {}", file, i + 1);
+      if (kind == "end") {
+        out.ended = true;
+        const std::string strengths = text_in(lines[i], "strengths");
+        if (!strengths.empty()) notes.push_back(file + ": " + strengths);
+      }
+      if (kind == "trial" || kind == "correction") take_line(lines[i], where, of, out);
+    }
+    for (Answer& answer : out.answers) answer.run = facts;
+  } catch (const ResponseLine::exception& error) {
+    throw InputError(fmt::format("{}: {}", where, error.what()));
+  }
+  if (out.file.rehearsal)
+    notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are made up.");
+  if (!out.ended && static_cast<int>(out.answers.size()) < out.trials) {
+    notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", out.file.participant,
+                                out.answers.size(), out.trials, file));
+  }
+  return out;
+}
+
+/// Whether a file is a participant's, by its name.
+bool is_responses(std::string_view path) {
+  return path.ends_with(".jsonl");
+}
+
+/// Reads several files into one list of answers.
+class Files {
+ public:
+  Files(const ReadingSettings& settings, std::vector<std::string>& notes)
+      : settings_(settings), notes_(notes) {}
+
+  void read(std::span<const std::string> paths);
+  std::vector<Answer> take();
+
+ private:
+  /// Whether another participant of the roster took the place of the file's, which is noted.
+  bool was_replaced(const std::string& path, std::span<const RosterEntry> roster);
+  void read_one(const std::string& path, const std::string& prefix);
+  void refuse_copies(const std::string& path, const std::string& text);
+  void add(std::vector<Answer> answers, const std::string& path);
+
+  const ReadingSettings& settings_;
+  std::vector<std::string>& notes_;
+  std::vector<Answer> all_;
+  std::vector<study::StudyFile> studies_;
+  std::map<std::size_t, std::string> file_with_;  // by the hash of its bytes
+  std::map<std::string, std::string> file_of_;    // by participant
+};
+
+void Files::read(std::span<const std::string> paths) {
+  std::vector<std::string> prefixes(paths.size());
+  if (settings_.prefix.value_or(IdPrefix::None) != IdPrefix::None)
+    prefixes = study::distinct_parts(paths, *settings_.prefix);
+  const bool by_folder = settings_.prefix == IdPrefix::Folder;
+  std::map<std::string, std::vector<RosterEntry>> rosters;  // of each folder that has its numbers
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (!is_responses(paths[i])) continue;
+    auto entry = roster_entry(read_file(paths[i], kMaxBytes), paths[i]);
+    if (entry) rosters[by_folder ? prefixes[i] : ""].push_back(std::move(*entry));
+  }
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (was_replaced(paths[i], rosters[by_folder ? prefixes[i] : ""])) continue;
+    read_one(paths[i], prefixes[i].empty() ? prefixes[i] : prefixes[i] + '/');
+  }
+  if (all_.empty()) throw InputError(paths.front() + ": has no answer");
+}
+
+bool Files::was_replaced(const std::string& path, std::span<const RosterEntry> roster) {
+  const auto entry = std::find_if(roster.begin(), roster.end(),
+                                  [&](const RosterEntry& e) { return e.file == path; });
+  const RosterEntry* by = entry == roster.end() ? nullptr : replacement_of(roster, *entry);
+  if (by == nullptr) return false;
+  notes_.push_back(fmt::format("Participant {} was replaced by {} and is left out ({}).",
+                               entry->participant, by->participant, path));
+  return true;
+}
+
+void Files::refuse_copies(const std::string& path, const std::string& text) {
+  const auto [found, is_new] = file_with_.emplace(std::hash<std::string>()(text), path);
+  if (!is_new) {
+    throw InputError(
+        fmt::format("{} and {} have the same content; leave one of them out", found->second, path));
+  }
+}
+
+void Files::read_one(const std::string& path, const std::string& prefix) {
+  const auto is_table = [&](std::string_view ending) { return path.ends_with(ending); };
+  constexpr std::array<std::string_view, 3> kTables = {".csv", ".tsv", ".txt"};
+  if (!is_responses(path) && std::none_of(kTables.begin(), kTables.end(), is_table)) {
+    throw InputError(
+        path +
+        ": the name must end in .jsonl, a participant's file, in .csv, .tsv or .txt, a "
+        "table (save spreadsheets as CSV in UTF-8), or in .json, the paper's Fig. 4, "
+        "alone");
+  }
+  const std::string text = read_file(path, kMaxBytes);
+  refuse_copies(path, text);
+  std::vector<Answer> answers;
+  if (is_responses(path)) {
+    Responses responses = read_responses(text, path, notes_);
+    responses.file.participant = prefix + responses.file.participant;
+    if (!responses.answers.empty()) studies_.push_back(std::move(responses.file));
+    answers = std::move(responses.answers);
+  } else {
+    answers = answers_from_csv(text, path, settings_.columns, &notes_);
+  }
+  for (Answer& answer : answers) answer.participant = prefix + answer.participant;
+  add(std::move(answers), path);
+}
+
+void Files::add(std::vector<Answer> answers, const std::string& path) {
+  for (const Answer& answer : answers) {
+    const auto [found, is_new] = file_of_.emplace(answer.participant, path);
+    if (is_new || found->second == path || settings_.prefix == IdPrefix::None) continue;
+    throw InputError(fmt::format(
+        "participant {} is in {} and in {}; if these are two people, add --prefix folder or "
+        "--prefix "
+        "file, which puts it before their names; if one, add --prefix none, or leave a file out",
+        found->first, found->second, path));
+  }
+  all_.insert(all_.end(), std::make_move_iterator(answers.begin()),
+              std::make_move_iterator(answers.end()));
+}
+
+/// Counts the trials that were presented although the gate did not pass.
+void note_anyway(std::span<const Answer> answers, std::vector<std::string>& notes) {
+  std::map<std::string, int> passed_over;
+  for (const Answer& a : answers) {
+    if (a.gate == "anyway") ++passed_over[a.method];
+  }
+  for (const auto& [method, count] : passed_over) {
+    notes.push_back(
+        fmt::format("{} trial{} with {} {} presented although the stimulus gate did not pass.",
+                    count, count == 1 ? "" : "s", method, count == 1 ? "was" : "were"));
+  }
+}
+
+std::vector<Answer> Files::take() {
+  for (const Answer& a : all_) {
+    if (a.kind == all_.front().kind) continue;
+    throw InputError(
+        fmt::format("participants {} and {} had other tasks; analyse those of each study alone",
+                    all_.front().participant, a.participant));
+  }
+  study::require_same_stimuli(all_, studies_, settings_.pool, notes_);
+  study::rename(all_, settings_.rename);
+  study::settle_spellings(all_, settings_.merge_spellings, notes_);
+  note_anyway(all_, notes_);
+  return std::move(all_);
 }
 
 }  // namespace
 
 std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
                                            std::vector<std::string>& notes) {
-  std::vector<Answer> answers;
-  const std::vector<ResponseLine> lines = responses_from_text(text, file);
-  std::string where = file + ", line 1";
-  try {
-    if (lines.empty() || lines.front().value("format", "") != kResponseFormat)
-      throw InputError(where + " does not begin a participant's file of prostm study run");
-    const std::string participant = lines.front().at("participant");
-    const int trials = lines.front().at("trials");
-    const auto protocol = lines.front().value("protocol", ResponseLine::object());
-    const AnswerKind of = kind_of(protocol);
-    bool ended = false;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const ResponseLine& line = lines[i];
-      const std::string kind = line.value("kind", "");
-      ended = ended || kind == "end";
-      if (kind != "trial" && kind != "correction") continue;
-      where = fmt::format("{}, line {}", file, i + 1);
-      if (kind == "trial") {
-        answers.push_back(answer_of(line, participant, of));
-      } else if (answers.empty() ||
-                 answers.back().trial != std::to_string(line.at("trial").get<int>())) {
-        throw InputError(where + " corrects another trial than the last");
-      }
-      if (of == AnswerKind::Adjusted) continue;
-      const char* counts = of == AnswerKind::Felt ? "felt" : "correct";
-      answers.back().correct = line.at(counts).get<int>() == 1;
-      if (!answers.back().question.empty()) answers.back().yes = line.at("answer").get<int>() == 1;
-    }
-    if (lines.front().at("run").at("rehearsal"))
-      notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are made up.");
-    if (!ended && static_cast<int>(answers.size()) < trials) {
-      notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", participant,
-                                  answers.size(), trials, file));
-    }
-  } catch (const ResponseLine::exception& error) {
-    throw InputError(fmt::format("{}: {}", where, error.what()));
-  }
-  return answers;
+  return read_responses(text, file, notes).answers;
 }
-
-namespace {
-
-/// Leaves out who was replaced by another participant of these files.
-void leave_out_replaced(std::span<const std::string> paths, std::vector<Answer>& answers,
-                        std::vector<std::string>& notes) {
-  const std::vector<RosterEntry> roster = read_roster(paths);
-  for (const RosterEntry& entry : roster) {
-    const RosterEntry* by = replacement_of(roster, entry);
-    if (by == nullptr) continue;
-    std::erase_if(answers, [&](const Answer& a) { return a.participant == entry.participant; });
-    notes.push_back(fmt::format("Participant {} was replaced by {} and is left out ({}).",
-                                entry.participant, by->participant, entry.file));
-  }
-}
-
-}  // namespace
 
 std::vector<Answer> read_answers(std::span<const std::string> paths,
-                                 std::vector<std::string>& notes) {
-  const auto is_responses = [](const std::string& path) { return path.ends_with(".jsonl"); };
-  if (paths.size() == 1 && !is_responses(paths.front())) {
-    const std::string& path = paths.front();
-    if (path.ends_with(".csv")) return answers_from_csv(read_file(path, kMaxBytes), path);
-    if (path.ends_with(".json")) return answers_from_paper(read_file(path, kMaxBytes), path);
-    throw InputError(
-        path +
-        ": the name must end in .csv, answers, .jsonl, a participant's file, or .json, "
-        "the paper's Fig. 4");
-  }
-  std::vector<Answer> all;
-  std::map<std::string, std::string> file_of;
-  for (const std::string& path : paths) {
-    if (!is_responses(path)) {
-      throw InputError(path +
-                       " stands beside other files; several at once are participants' files, whose "
-                       "names end in .jsonl");
-    }
-    const auto answers = answers_from_responses(read_file(path, kMaxBytes), path, notes);
-    if (answers.empty()) continue;
-    const auto [found, is_new] = file_of.emplace(answers.front().participant, path);
-    if (!is_new) {
-      throw InputError(fmt::format("participant {} is in {} and in {}; leave one of them out",
-                                   found->first, found->second, path));
-    }
-    all.insert(all.end(), answers.begin(), answers.end());
-  }
-  leave_out_replaced(paths, all, notes);
-  if (all.empty()) throw InputError(paths.front() + ": has no answer");
-  for (const Answer& a : all) {
-    if (a.kind == all.front().kind) continue;
-    throw InputError(
-        fmt::format("participants {} and {} had other tasks; analyse those of each study alone",
-                    all.front().participant, a.participant));
-  }
-  return all;
+                                 std::vector<std::string>& notes, const ReadingSettings& settings) {
+  if (paths.size() == 1 && paths.front().ends_with(".json"))
+    return answers_from_paper(read_file(paths.front(), kMaxBytes), paths.front());
+  Files files(settings, notes);
+  files.read(paths);
+  return files.take();
 }
 
 }  // namespace prostm

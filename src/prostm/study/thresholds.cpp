@@ -1,5 +1,7 @@
 #include "prostm/study/thresholds.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -43,8 +45,8 @@ std::vector<Task> tasks_of(std::span<const Answer> answers) {
 
 }  // namespace
 
-std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers, double guess,
-                                            double lapse, double level) {
+std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers,
+                                            const PsychometricSettings& settings) {
   std::vector<ThresholdResult> out;
   for (const Task& task : tasks_of(answers)) {
     for (const auto& [participant, levels] : task.participants) {
@@ -53,7 +55,10 @@ std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers, dou
       result.scene = task.scene;
       result.participant = participant;
       for (const auto& [x, score] : levels) result.scores.push_back({x, score});
-      result.fit = fit_psychometric(result.scores, guess, lapse, level, &result.no_fit);
+      PsychometricResult found = fit_psychometric(result.scores, settings);
+      result.fit = found.fit;
+      result.no_fit = found.no_fit;
+      result.bounds = found.bounds;
     }
   }
   return out;
@@ -67,16 +72,29 @@ int level_digits(std::span<const LevelScore> scores) {
   return std::min(kMost, kOfRange + std::max(0, static_cast<int>(more)));
 }
 
-const char* in_words(NoFit reason) {
+std::string in_words(NoFit reason, AnswerKind kind) {
+  const std::string answers = kind == AnswerKind::Right ? "right answers" : "answers for the level";
   switch (reason) {
     case NoFit::TooFewLevels:
       return "all answers are at one level";
     case NoFit::NotGrowing:
-      return "right answers do not grow with the level, or hardly";
+      return answers + " do not grow with the level, or hardly";
+    case NoFit::Falling:
+      return answers + " fall with the level";
     case NoFit::Step:
       return "a step fits as well as any slope";
+    case NoFit::BelowLevels:
+      return answers + " are as many as can be at the lowest level already";
+    case NoFit::AboveLevels:
+      return answers + " are as few as can be at the highest level still";
   }
   return "";
+}
+
+std::string bounds_text(const Interval& of, int digits) {
+  if (std::isinf(of.low)) return fmt::format("below {:.{}g}", of.high, digits);
+  if (std::isinf(of.high)) return fmt::format("above {:.{}g}", of.low, digits);
+  return fmt::format("{:.{}g} to {:.{}g}", of.low, digits, of.high, digits);
 }
 
 }  // namespace prostm

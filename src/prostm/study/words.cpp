@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "prostm/study/analysis.hpp"
 
@@ -20,6 +22,12 @@ class Words {
 
   std::string text() {
     const SceneResult& all = analysis_.scenes.front();
+    say_missing();
+    if (is_one_person()) {
+      say("All answers are of one participant: they tell about this person alone, so what is about "
+          "people in general is left out (tests over participants, dispersion, participants "
+          "needed)");
+    }
     if (analysis_.kind == AnswerKind::Felt) {
       say("Answers are for the level or not, and neither is wrong: yes, or the level's interval of "
           "two");
@@ -41,6 +49,16 @@ class Words {
   void say(const std::string& sentence) {
     text_ += text_.empty() ? "" : " ";
     text_ += sentence + '.';
+  }
+
+  bool is_one_person() const { return analysis_.participants.size() == 1; }
+
+  void say_missing() {
+    const std::string missing = in_words(analysis_.missing, analysis_.kind);
+    text_ += missing;
+    if (analysis_.left_out.empty()) return;
+    say(fmt::format("Left out, since some scene has no answer of theirs: {}",
+                    fmt::join(analysis_.left_out, ", ")));
   }
 
   bool is_significant(double p) const { return p < alpha_; }
@@ -68,15 +86,23 @@ class Words {
                     "{} (z = {:.2f}, {})",
                     of.first, of.second, verdict(of.pooled_z.p), of.pooled_z.statistic,
                     p_in_words(of.pooled_z.p)));
+    if (is_one_person()) return;
     say_dispersion();
+    if (!of.permutation) {
+      say(fmt::format(
+          "A test over participants needs two with each method, and {} or {} has one, so "
+          "that these answers cannot tell methods from people",
+          of.first, of.second));
+      return;
+    }
     const bool within = analysis_.groups == Groups::Within;
     std::string sentence = fmt::format(
         "Over participants, the test that holds for other people, it is {} (permutation {}",
-        verdict(of.permutation.p), p_in_words(of.permutation.p));
+        verdict(of.permutation->p), p_in_words(of.permutation->p));
     if (of.t)
       sentence += fmt::format("; {} {}", within ? "paired t" : "Welch's t", p_in_words(of.t->p));
     say(sentence + ")");
-    if (!is_significant(of.permutation.p)) {
+    if (!is_significant(of.permutation->p)) {
       say(fmt::format(
           "So these data do not show that {} and {} differ for people in general; nor do "
           "they show that they do not",
@@ -108,12 +134,16 @@ class Words {
         }
         return 0.0;
       };
-      say(
-          fmt::format("In {} alone ({:.1f} % with {}, {:.1f} % with {}) the difference is {} over "
-                      "answers (z = {:.2f}, {}) and {} over participants ({})",
-                      scene.scene, share(of.first), of.first, share(of.second), of.second,
-                      verdict(of.pooled_z.p), of.pooled_z.statistic, p_in_words(of.pooled_z.p),
-                      verdict(of.permutation.p), p_in_words(of.permutation.p)));
+      std::string sentence = fmt::format(
+          "In {} alone ({:.1f} % with {}, {:.1f} % with {}) the difference is {} over answers (z = "
+          "{:.2f}, {})",
+          scene.scene, share(of.first), of.first, share(of.second), of.second,
+          verdict(of.pooled_z.p), of.pooled_z.statistic, p_in_words(of.pooled_z.p));
+      if (of.permutation) {
+        sentence += fmt::format(" and {} over participants ({})", verdict(of.permutation->p),
+                                p_in_words(of.permutation->p));
+      }
+      say(sentence);
     }
   }
 
@@ -146,40 +176,86 @@ class Words {
       say_threshold(all[i], std::span(all).subspan(i + 1, end - i - 1));
       i = end;
     }
+    const std::string lapse =
+        analysis_.settings.lapse
+            ? fmt::format("{:g} %", 100.0 * (1.0 - *analysis_.settings.lapse))
+            : fmt::format("1 minus the lapse rate, which is fitted from 0 to {:g} %",
+                          100.0 * kMostLapse);
     say(
-        fmt::format("A threshold is the level half-way between {} ({:g} %) and the most "
-                    "({:g} %); intervals are as if answers were independent, and too narrow for "
-                    "people in general where participants differ",
+        fmt::format("A threshold is the level half-way between {} ({:g} %) and the most ({}); "
+                    "intervals are as if answers were independent{}",
                     analysis_.kind == AnswerKind::Right ? "guessing" : "the least",
-                    100.0 * *analysis_.settings.guess, 100.0 * (1.0 - *analysis_.settings.lapse)));
+                    100.0 * *analysis_.settings.guess, lapse,
+                    is_one_person() ? ""
+                                    : ", and too narrow for people in general where participants "
+                                      "differ"));
+  }
+
+  /// A threshold that is fitted, or the bounds of one.
+  std::string threshold_text(const ThresholdResult& of) const {
+    const int digits = level_digits(of.scores);
+    const double percent = 100.0 * analysis_.settings.level;
+    const auto is_open = [](const Interval& x) { return std::isinf(x.low) && std::isinf(x.high); };
+    const std::string why = in_words(of.no_fit, analysis_.kind);
+    if (of.fit) {
+      const std::string found =
+          fmt::format("the threshold is {:.{}g}", of.fit->function.threshold, digits);
+      if (!of.fit->threshold) return found + ", and the answers leave its interval open";
+      return fmt::format("{} ({:g} % interval {})", found, percent,
+                         bounds_text(*of.fit->threshold, digits));
+    }
+    if (!of.bounds) return "no threshold can be fitted: " + why;
+    const std::string best = bounds_text(of.bounds->best, digits);
+    if (is_open(of.bounds->interval)) {
+      return fmt::format("{}; the threshold is best {}, and its interval is open", why, best);
+    }
+    const bool between = of.no_fit == NoFit::Step;
+    return fmt::format(
+        "{}, so that the answers bound the threshold and no slope: it is {}{} ({:g} % interval of "
+        "the likelihood over all slopes: {})",
+        why, between ? "best from " : "", best, percent, bounds_text(of.bounds->interval, digits));
   }
 
   void say_threshold(const ThresholdResult& of, std::span<const ThresholdResult> participants) {
-    std::string sentence = fmt::format("With {} in {}, ", of.method, of.scene);
-    const auto text = [digits = level_digits(of.scores)](double level) {
-      return fmt::format("{:.{}g}", level, digits);
-    };
-    if (!of.fit) {
-      sentence += fmt::format("no threshold can be fitted: {}", in_words(of.no_fit));
-    } else if (const auto& interval = of.fit->threshold) {
-      sentence += fmt::format("the threshold is {} ({:g} % interval {} to {})",
-                              text(of.fit->function.threshold), 100.0 * analysis_.settings.level,
-                              text(interval->low), text(interval->high));
-    } else {
-      sentence += fmt::format("the threshold is {}, and the answers leave its interval open",
-                              text(of.fit->function.threshold));
+    std::string sentence =
+        fmt::format("With {} in {}, {}", of.method, of.scene, threshold_text(of));
+    if (participants.size() > 1) {
+      const auto fitted = std::count_if(participants.begin(), participants.end(),
+                                        [](const ThresholdResult& x) { return !!x.fit; });
+      const auto bounded = std::count_if(participants.begin(), participants.end(),
+                                         [](const ThresholdResult& x) { return !!x.bounds; });
+      sentence += fmt::format("; {} of {} single participants' answers have a fit", fitted,
+                              participants.size());
+      if (bounded > 0) sentence += fmt::format(", {} bounds alone", bounded);
+      sentence += thresholds_text(of, participants);
     }
+    say(sentence);
+    if (of.fit && of.fit->misfit && is_significant(of.fit->misfit->p)) say_misfit(of);
+  }
+
+  /// The range of the thresholds that single participants have.
+  static std::string thresholds_text(const ThresholdResult& all,
+                                     std::span<const ThresholdResult> participants) {
     std::vector<double> own;
     for (const ThresholdResult& x : participants) {
       if (x.fit) own.push_back(x.fit->function.threshold);
     }
-    sentence += fmt::format("; {} of {} single participants' answers have a fit", own.size(),
-                            participants.size());
-    if (!own.empty()) {
-      const auto [low, high] = std::minmax_element(own.begin(), own.end());
-      sentence += fmt::format(", with thresholds from {} to {}", text(*low), text(*high));
-    }
-    say(sentence);
+    if (own.empty()) return {};
+    const auto [low, high] = std::minmax_element(own.begin(), own.end());
+    const int digits = level_digits(all.scores);
+    return fmt::format(", with thresholds from {:.{}g} to {:.{}g}", *low, digits, *high, digits);
+  }
+
+  void say_misfit(const ThresholdResult& of) {
+    const Misfit& misfit = *of.fit->misfit;
+    std::string why = is_one_person()
+                          ? "this person lapses more often than that or changes with time"
+                          : "participants differ, or lapse more often than that";
+    say(
+        fmt::format("This function does not fit the answers (deviance {:.1f} with {} degrees of "
+                    "freedom, {}), so its threshold and interval may be wrong; perhaps {}{}",
+                    misfit.deviance, misfit.df, p_in_words(misfit.p), why,
+                    analysis_.settings.lapse ? " (--fit-lapse)" : ""));
   }
 
   std::string had() const {
@@ -201,6 +277,25 @@ class Words {
 
 std::string p_in_words(double p) {
   return p < 0.001 ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);
+}
+
+std::string in_words(std::span<const MissingAnswers> missing, AnswerKind kind) {
+  if (missing.empty()) return {};
+  std::string out;
+  for (const MissingAnswers& of : missing) {
+    if (of.missing == 0) continue;
+    out += fmt::format("{}with {} in {} {} of {} trials ({:.1f} %, of {} participant{}",
+                       out.empty() ? "" : ", ", of.method, of.scene, of.missing, of.trials,
+                       100.0 * of.missing / of.trials, of.participants,
+                       of.participants == 1 ? "" : "s");
+    if (kind == AnswerKind::Right) {
+      out += fmt::format("; if all were wrong or all right, {:.1f} or {:.1f} % would be right",
+                         100.0 * of.if_answered.low, 100.0 * of.if_answered.high);
+    }
+    out += ')';
+  }
+  return "Trials without an answer are left out: " + out +
+         ". Shares are biased if answers are missing more often where they would be wrong.";
 }
 
 std::string in_words(const Analysis& analysis) {
