@@ -147,7 +147,8 @@ bool is_finger_of(const JsonNode& node, std::int64_t hand) {
 int type_of(const JsonNode& node, std::int64_t hand) {
   if (node.has("type")) return node.at("type", "").integer(0, 4);
   const std::int64_t type = whole(node, "id").value_or(-1) - 10 * hand;
-  if (type < 0 || type > 4) node.at("type", "0 (thumb) to 4 (little finger)").integer(0, 4);
+  if (type < 0 || type > 4)
+    node.fail("has no \"type\" from 0 to 4; services before version 2 send no types and no joints");
   return static_cast<int>(type);
 }
 
