@@ -8,9 +8,9 @@
 namespace prostm {
 namespace {
 
-constexpr float kRounding = 1e-4F;    // rounding of floats, which is no excess
-constexpr float kSilence = 0.01F;     // intensity
-constexpr float kFarthest = 100.0F;   // [m], beyond which there are no focal points
+constexpr float kRounding = 1e-4F;       // rounding of floats, which is no excess
+constexpr float kSilence = 0.01F;        // intensity
+constexpr float kFarthest = 100.0F;      // [m], beyond which there are no focal points
 constexpr double kPlaceRounding = 1e-3;  // of a step, for places in floats
 constexpr double kRampTime = 0.050, kSilenceTime = 0.100, kMuteTime = 0.010;  // [s]
 
