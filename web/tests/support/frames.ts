@@ -1,5 +1,5 @@
 /// Frames and controls for tests, by what matters in them.
-import type { ChoiceControl, Control, NumberControl, State } from "../../src/messages";
+import type { Control, NumberControl, State } from "../../src/messages";
 import { Decoder, kNumbers, type Frame, type NumberName, type Patch, type Run } from "../../src/wire";
 import { encode, type Contents } from "./encode";
 
@@ -21,11 +21,6 @@ export function flatPatch(rows: number, cols: number, at: [number, number, numbe
 const base = { group: "Plan", help: "", enabled: true };
 export const speed: NumberControl = { ...base, id: "speed", label: "Speed", unit: "m/s", kind: "number", value: 7, default: 7, min: 2, max: 8, step: 0.5 };
 export const paths: NumberControl = { ...base, id: "paths", label: "Paths", kind: "number", value: 4, default: 4, min: 1, max: 8, step: 1 };
-export const grid: NumberControl = { ...base, id: "grid", label: "Grid", unit: "cells", kind: "number", value: 64, default: 64, min: 32, max: 128, step: 16 };
-export const preset: ChoiceControl = {
-  ...base, id: "preset", label: "Preset", kind: "choice", value: "best", default: "best",
-  choices: [{ value: "best", label: "Best" }, { value: "fast", label: "Fast" }],
-};
 export const scene: Control = {
   ...base, id: "scene", label: "Scene", kind: "choice", value: "one-plume", default: "one-plume",
   choices: [{ value: "one-plume", label: "One wide plume" }, { value: "still-air", label: "Still air" }],

@@ -4,8 +4,7 @@ import { commandLine } from "../../src/controls/command_line";
 import { RateWatch } from "../../src/panels/rates";
 import { advice, outputOf, placeOf, sourceOf } from "../../src/panels/words";
 import { handLength } from "../../src/scene/hand_bones";
-import { frameWith, grid, paths, preset, scene, speed, stateWith } from "../support/frames";
-import type { Control } from "../../src/messages";
+import { frameWith, paths, scene, speed, stateWith } from "../support/frames";
 import { skeleton } from "../support/skeleton";
 import { Matrix4 } from "three";
 
