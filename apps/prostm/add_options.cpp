@@ -57,7 +57,7 @@ void add_field_file(CLI::App& command, prostm::FieldFileOptions& o, CLI::Option*
   auto* frame = command.add_option("--frame", o.frame,
                                    "frame of a .h5 recording (default: 0) or of a 3-D array");
   auto* variable =
-      command.add_option("--variable", o.variable, "array of a .npz file that holds several");
+      add_name(command, "--variable", o.variable, "array of a .npz file that holds several");
   if (of == nullptr) return;
   for (CLI::Option* option : {cell, width, invert, frame, variable}) option->needs(of);
 }
