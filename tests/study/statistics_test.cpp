@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/hypergeometric.hpp>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -109,6 +112,39 @@ TEST(Statistics, OfThePapersScoresAreThose) {
   EXPECT_NEAR(*effect_size(shares(am, 16), shares(stm, 16)), 0.76, 0.005);
   EXPECT_EQ(participants_needed(*effect_size(shares(am, 16), shares(stm, 16)), Groups::Between),
             29);
+}
+
+// Sums of Boost's densities, which take a second for a hundred thousand answers.
+TEST(Statistics, ExactTestsAreSumsOfDensities) {
+  constexpr double kTie = 1.0 + 1e-7;
+  Random random(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int of_a = 1 + random.below(120), of_b = 1 + random.below(120);
+    const Proportion a{random.below(of_a + 1), of_a}, b{random.below(of_b + 1), of_b};
+    const int right = a.successes + b.successes;
+    const boost::math::hypergeometric_distribution<> tables(static_cast<unsigned>(right),
+                                                            static_cast<unsigned>(of_a),
+                                                            static_cast<unsigned>(of_a + of_b));
+    const auto likely = [&](int k) { return pdf(tables, static_cast<unsigned>(k)); };
+    double fisher = 0.0;
+    for (int k = std::max(0, right - of_b); k <= std::min(right, of_a); ++k)
+      fisher += likely(k) <= likely(a.successes) * kTie ? likely(k) : 0.0;
+    EXPECT_NEAR(fisher_exact_p(a, b), fisher, 1e-9 * fisher);
+
+    const double chance = trial % 10 == 0 ? 0.5 : random.uniform(0.01, 0.99);
+    const boost::math::binomial_distribution<> guesses(of_a, chance);
+    double binomial = 0.0;
+    for (int k = 0; k <= of_a; ++k)
+      binomial += pdf(guesses, k) <= pdf(guesses, a.successes) * kTie ? pdf(guesses, k) : 0.0;
+    EXPECT_NEAR(binomial_p(a, chance), binomial, 1e-9 * binomial);
+  }
+}
+
+TEST(Statistics, ExactTestsOfManyAnswersApproachNormalOnes) {
+  constexpr int kAll = 1'000'000;
+  const Proportion a{500'000, kAll}, b{501'000, kAll};
+  EXPECT_NEAR(fisher_exact_p(a, b), two_proportions_z(a, b).p, 1e-3);
+  EXPECT_NEAR(binomial_p(b, 0.5), std::erfc(2.0 / std::sqrt(2.0)), 1e-3);
 }
 
 // Values that do not vary have no test; a table that is all right or all wrong tells of no

@@ -1,9 +1,7 @@
 #include "prostm/study/statistics.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/hypergeometric.hpp>
 #include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -83,6 +81,31 @@ double sum_of(std::span<const double> x) {
   return std::accumulate(x.begin(), x.end(), 0.0);
 }
 
+/// Whole numbers from low to high.
+struct Range {
+  int low, high;
+};
+
+/// Returns the probability of all values of a distribution with one mode that are at most as likely
+/// as `observed`. Weights follow from the mode outwards by P(k + 1) = P(k) ratio(k): a product for
+/// each value, and an error of some roundings a step.
+/// @param most_likely the mode is the whole number below.
+template <typename Ratio>
+double as_unlikely_p(Range range, double most_likely, int observed, const Ratio& ratio) {
+  const int mode = std::clamp(static_cast<int>(most_likely), range.low, range.high);
+  std::vector<double> weights(static_cast<std::size_t>(range.high - range.low) + 1);
+  const auto weight = [&](int k) -> double& {
+    return weights[static_cast<std::size_t>(k - range.low)];
+  };
+  weight(mode) = 1.0;
+  for (int k = mode; k < range.high; ++k) weight(k + 1) = weight(k) * ratio(k);
+  for (int k = mode; k > range.low; --k) weight(k - 1) = weight(k) / ratio(k - 1);
+  const double bound = weight(observed) * (1.0 + kTie);
+  double as_unlikely = 0.0;
+  for (const double w : weights) as_unlikely += w <= bound ? w : 0.0;
+  return std::min(1.0, as_unlikely / sum_of(weights));
+}
+
 }  // namespace
 
 Interval wilson_interval(const Proportion& x, double level) {
@@ -104,25 +127,18 @@ TestResult two_proportions_z(const Proportion& a, const Proportion& b) {
 
 double fisher_exact_p(const Proportion& a, const Proportion& b) {
   const int right = a.successes + b.successes, all = a.trials + b.trials;
-  const bm::hypergeometric_distribution<> of_a(
-      static_cast<unsigned>(right), static_cast<unsigned>(a.trials), static_cast<unsigned>(all));
-  const auto likely = [&](int k) { return bm::pdf(of_a, static_cast<unsigned>(k)); };
-  const double bound = likely(a.successes) * (1.0 + kTie);
-  double p = 0.0;
-  for (int k = std::max(0, right - b.trials); k <= std::min(right, a.trials); ++k)
-    p += likely(k) <= bound ? likely(k) : 0.0;
-  return std::min(1.0, p);
+  const double most_likely = (right + 1.0) * (a.trials + 1.0) / (all + 2.0);
+  const auto ratio = [&](int k) {
+    const double down = (k + 1.0) * (all - right - a.trials + k + 1.0);
+    return static_cast<double>(right - k) * (a.trials - k) / down;
+  };
+  return as_unlikely_p({std::max(0, right - b.trials), std::min(right, a.trials)}, most_likely,
+                       a.successes, ratio);
 }
 
 double binomial_p(const Proportion& x, double chance) {
-  const bm::binomial_distribution<> guesses(x.trials, chance);
-  const double bound = bm::pdf(guesses, x.successes) * (1.0 + kTie);
-  double p = 0.0;
-  for (int k = 0; k <= x.trials; ++k) {
-    const double likely = bm::pdf(guesses, k);
-    p += likely <= bound ? likely : 0.0;
-  }
-  return std::min(1.0, p);
+  const auto ratio = [&](int k) { return (x.trials - k) * chance / ((k + 1.0) * (1.0 - chance)); };
+  return as_unlikely_p({0, x.trials}, (x.trials + 1.0) * chance, x.successes, ratio);
 }
 
 std::optional<TestResult> dispersion(std::span<const Proportion> of) {
