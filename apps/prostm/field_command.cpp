@@ -266,6 +266,8 @@ int field_command(const FieldOptionsGiven& given) {
   if (!solve(array, air, loop, given, interrupt, drives)) return interrupt.status();
   const PackedArray packed(array, air);
   WorkerPool pool(all.threads);
+  Progress progress("computing the field");
+  progress.show(0, 2, "steps: pressure on the skin");
   const PhysicalField field = physical_field(packed, air, input.raster, loop, drives, pool);
   if (interrupt.requested()) return interrupt.status();
 
@@ -283,11 +285,14 @@ int field_command(const FieldOptionsGiven& given) {
   report.program = version_text();
   Judgement judgement;
   if (is_felt(input.raster, loop)) {
+    progress.show(1, 2, "steps: what is felt");
     FeelingSkin skin(input.raster);
     judgement.felt = skin.feel(packed, air, input.raster, loop, drives, pool);
     report.felt = &judgement.felt;
     if (given.felt_spectrum) report.spectrum = felt_spectrum(input.raster, skin.motion());
   }
+  progress.clear();
+  if (interrupt.requested()) return interrupt.status();
   if (input.has_target) judge(input, all.plan, report, judgement);
   tell(report, input, given);
   return 0;
