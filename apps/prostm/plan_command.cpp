@@ -24,6 +24,7 @@
 #include "prostm/plan/quasi_static.hpp"
 #include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
+#include "prostm/score/pooled.hpp"
 #include "prostm/score/score.hpp"
 
 namespace prostm::app {
@@ -165,15 +166,16 @@ Result plan_foci(const TargetField& target, const PipelineSettings& settings) {
 /// How good a plan is as it is played. @param widths of the focal point besides that of the
 /// settings [m].
 PlanQuality quality_of(const TargetField& target, const Plan& plan, const SegmentPressures& played,
-                       const PipelineSettings& settings, const std::vector<double>& widths) {
+                       const PipelineSettings& settings, const std::vector<double>& widths,
+                       WorkerPool& pool) {
   const GainLaw gain = settings.plan.gain_law();
   PlanQuality quality;
   quality.sigma = settings.sigma();
   quality.full_scale_pressure = emit_settings(settings, max_pressure(target)).full_scale_pressure;
-  quality.planned = score_plan(target, plan, 0, settings.sigma(), gain);
-  quality.played = score_plan(target, plan, 0, settings.sigma(), gain, &played);
+  quality.planned = score_plan(target, plan, 0, settings.sigma(), gain, nullptr, pool);
+  quality.played = score_plan(target, plan, 0, settings.sigma(), gain, &played, pool);
   for (const double sigma : widths) {
-    quality.at.push_back({sigma, score_plan(target, plan, 0, sigma, gain, &played)});
+    quality.at.push_back({sigma, score_plan(target, plan, 0, sigma, gain, &played, pool)});
   }
   return quality;
 }
@@ -209,15 +211,17 @@ void score(const TargetField& target, const PipelineSettings& settings,
            const std::vector<double>& widths, Result& r) {
   const PlanSettings& s = settings.plan;
   const SegmentPressures pressures = played(target, r.plan, settings);
-  r.quality = quality_of(target, r.plan, pressures, settings, widths);
+  WorkerPool pool(settings.threads);
+  r.quality = quality_of(target, r.plan, pressures, settings, widths, pool);
   if (!target.weight.empty() && !r.plan.empty()) {
     r.weighted = weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law(), &pressures);
   }
   if (r.status != PlanStatus::Planned) return;
   Progress progress("scoring what must lose to the plan");
-  r.controls = controls(target, settings.sigma(), s.gain_law(), s.max_length(), &r.other,
-                        static_cast<std::uint64_t>(s.seed),
-                        [&](int done, int all) { progress.show(done, all, "fields"); });
+  r.controls = controls(
+      target, settings.sigma(), s.gain_law(), s.max_length(), &r.other,
+      static_cast<std::uint64_t>(s.seed),
+      [&](int done, int all) { progress.show(done, all, "fields"); }, pool);
 }
 
 int focal_points(const Plan& plan) {

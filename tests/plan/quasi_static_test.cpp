@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "plan_checks.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/plan/closest_point.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {
@@ -52,6 +57,30 @@ double field_at(const Plan& plan, int patch, const Vec2& x) {
     }
   }
   return pressure / kGain.gain * std::exp(-0.5 * nearest * nearest / (kSigma * kSigma));
+}
+
+// Cells from far finer than segments, which are searched tile by tile, to coarser ones.
+TEST(PathSegments, FindsOnARasterWhatItFindsAtEachPoint) {
+  Random random(22);
+  for (int trial = 0; trial < 60; ++trial) {
+    Plan plan = random_plan(random, 1 + random.below(8), 3 + random.below(62));
+    plan.foci.push_back({0, Vec2(random.uniform(-0.05, 0.05), 0.0), 1.0});
+    TargetField raster = raster_of(1 + random.below(50), 1 + random.below(50));
+    raster.cell = 1e-4 * std::pow(50.0, random.uniform());
+    PathSegments segments(plan, 0), alone(plan, 0);
+    std::vector<int> visits(raster.size(), 0);
+    segments.for_closest(raster, 0, raster.rows, [&](std::size_t cell, const ClosestPoint& found) {
+      ++visits[cell];
+      const auto cols = static_cast<std::size_t>(raster.cols);
+      const ClosestPoint expected = alone.closest(
+          raster.position(static_cast<int>(cell / cols), static_cast<int>(cell % cols)));
+      EXPECT_EQ(found.segment, expected.segment);
+      EXPECT_EQ(found.distance2, expected.distance2);
+      EXPECT_EQ(found.along, expected.along);
+      EXPECT_EQ(found.pressure, expected.pressure);
+    });
+    EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), std::ssize(visits));
+  }
 }
 
 TEST(QuasiStaticField, AgreesWithItsDefinition) {

@@ -1,6 +1,8 @@
 #include "prostm/plan/closest_point.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace prostm {
 
@@ -58,6 +60,39 @@ ClosestPoint PathSegments::closest(const Vec2& x) {
   }
   last_ = best.segment;
   best.pressure = segments_[last_].pressure + best.along * segments_[last_].pressure_change;
+  return best;
+}
+
+PathSegments::Near PathSegments::near(const Vec2& x, double radius) const {
+  constexpr double kRounding = 1e-9;  // [m]
+  std::array<double, kCapacity> distance2;
+  double least = std::numeric_limits<double>::max(), along = 0.0;
+  for (std::size_t s = 0; s < count_; ++s) {
+    distance2[s] = project(s, x, along);
+    least = std::min(least, distance2[s]);
+  }
+  // from x to a point within the radius, no distance changes by more than the radius
+  const double most = std::sqrt(least) + 2.0 * radius + kRounding;
+  Near out;
+  for (std::size_t s = 0; s < count_; ++s) {
+    if (distance2[s] <= most * most) out.push_back(static_cast<std::uint16_t>(s));
+  }
+  return out;
+}
+
+ClosestPoint PathSegments::closest(const Near& among, const Vec2& x) const {
+  ClosestPoint best;
+  best.distance2 = std::numeric_limits<double>::max();
+  for (const std::size_t s : among) {
+    double along = 0.0;
+    const double distance2 = project(s, x, along);
+    if (distance2 >= best.distance2) continue;
+    best.distance2 = distance2;
+    best.segment = s;
+    best.along = along;
+  }
+  const Segment& segment = segments_[best.segment];
+  best.pressure = segment.pressure + best.along * segment.pressure_change;
   return best;
 }
 

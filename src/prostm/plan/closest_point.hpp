@@ -1,10 +1,14 @@
 #pragma once
 /// The closest point of a plan's paths or foci, the search behind Eq. (1) and coverage.
 
+#include <algorithm>
 #include <array>
+#include <boost/container/static_vector.hpp>
 #include <cstddef>
+#include <cstdint>
 
 #include "prostm/plan/plan.hpp"
+#include "prostm/target/target_field.hpp"
 
 namespace prostm {
 
@@ -31,8 +35,17 @@ class PathSegments {
   /// @pre !empty().
   ClosestPoint closest(const Vec2& x);
 
+  /// Calls visit(cell, closest(its position)) for the cells of the raster's rows from `first` to
+  /// `end`, in any order. On rasters much finer than segments it searches tile by tile, among the
+  /// segments that are the closest anywhere in the tile.
+  template <class Visit>
+  void for_closest(const TargetField& raster, int first, int end, Visit&& visit);
+
  private:
-  static constexpr std::size_t kRun = 4;  // segments per box
+  using Near = boost::container::static_vector<std::uint16_t, kCapacity>;
+  static constexpr double kTileEdge = 4e-3;             // [m]
+  static constexpr int kLeastTile = 4, kMostTile = 16;  // cells along an edge
+  static constexpr std::size_t kRun = 4;                // segments per box
 
   struct Segment {
     Vec2 start, edge;
@@ -43,10 +56,37 @@ class PathSegments {
   };
   void add(const Vec2& a, const Vec2& b, double pressure_a, double pressure_b);
   double project(std::size_t s, const Vec2& x, double& along) const;
+  /// Returns all segments that can be the closest within `radius` of x, in their order.
+  Near near(const Vec2& x, double radius) const;
+  ClosestPoint closest(const Near& among, const Vec2& x) const;
 
   std::array<Segment, kCapacity> segments_;
   std::array<Box, kCapacity / kRun> boxes_;
   std::size_t count_ = 0, last_ = 0;
 };
+
+template <class Visit>
+void PathSegments::for_closest(const TargetField& raster, int first, int end, Visit&& visit) {
+  const int tile = std::min(static_cast<int>(kTileEdge / raster.cell), kMostTile);
+  if (tile < kLeastTile) {
+    for (int row = first; row < end; ++row) {
+      for (int col = 0; col < raster.cols; ++col)
+        visit(raster.index(row, col), closest(raster.position(row, col)));
+    }
+    return;
+  }
+  for (int top = first; top < end; top += tile) {
+    for (int left = 0; left < raster.cols; left += tile) {
+      const int bottom = std::min(top + tile, end) - 1;
+      const int right = std::min(left + tile, raster.cols) - 1;
+      const Vec2 corner = raster.position(top, left), other = raster.position(bottom, right);
+      const Near among = near(0.5 * (corner + other), 0.5 * (other - corner).norm());
+      for (int row = top; row <= bottom; ++row) {
+        for (int col = left; col <= right; ++col)
+          visit(raster.index(row, col), closest(among, raster.position(row, col)));
+      }
+    }
+  }
+}
 
 }  // namespace prostm

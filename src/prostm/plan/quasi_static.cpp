@@ -1,10 +1,9 @@
 #include "prostm/plan/quasi_static.hpp"
 
 #include <algorithm>
-#include <boost/container/static_vector.hpp>
 #include <cmath>
 
-#include "prostm/plan/closest_point.hpp"
+#include "prostm/plan/quasi_static_pressure.hpp"
 
 namespace prostm {
 
@@ -16,6 +15,29 @@ double SegmentPressures::at(std::size_t segment, double along) const {
   return from + (place - static_cast<double>(low)) * (to - from);
 }
 
+QuasiStaticPressure::QuasiStaticPressure(const Plan& plan, int patch, double sigma,
+                                         const GainLaw& gain, const SegmentPressures* instead)
+    : exponent_(-0.5 / (sigma * sigma)), instead_(instead) {
+  std::size_t number = 0;
+  for (const FocalPath& path : plan.paths) {
+    const double own = gain.of(path.period);
+    for (std::size_t i = 0; i < path.points.size(); ++i, ++number) {
+      if (path.patch == patch) origins_.push_back({number, own});
+    }
+  }
+  for (const FocalPoint& focus : plan.foci) {
+    if (focus.patch == patch) origins_.push_back({number, 1.0});
+    ++number;
+  }
+}
+
+double QuasiStaticPressure::at(const ClosestPoint& nearest) const {
+  const Origin& origin = origins_[nearest.segment];
+  const double pressure =
+      instead_ != nullptr ? instead_->at(origin.number, nearest.along) : nearest.pressure;
+  return pressure / origin.gain * std::exp(exponent_ * nearest.distance2);
+}
+
 void quasi_static_field(const Plan& plan, int patch, const TargetField& raster, double sigma,
                         const GainLaw& gain, std::span<double> out,
                         const SegmentPressures* instead) {
@@ -24,33 +46,10 @@ void quasi_static_field(const Plan& plan, int patch, const TargetField& raster, 
     std::fill(out.begin(), out.end(), 0.0);
     return;
   }
-  // for each segment of the patch: its number in the plan, and γ of its path; 1 for a focus
-  struct Origin {
-    std::size_t number;
-    double gain;
-  };
-  boost::container::static_vector<Origin, PathSegments::kCapacity> origins;
-  std::size_t number = 0;
-  for (const FocalPath& path : plan.paths) {
-    const double own = gain.of(path.period);
-    for (std::size_t i = 0; i < path.points.size(); ++i, ++number) {
-      if (path.patch == patch) origins.push_back({number, own});
-    }
-  }
-  for (const FocalPoint& focus : plan.foci) {
-    if (focus.patch == patch) origins.push_back({number, 1.0});
-    ++number;
-  }
-  const double exponent = -0.5 / (sigma * sigma);
-  for (int row = 0; row < raster.rows; ++row) {
-    for (int col = 0; col < raster.cols; ++col) {
-      const ClosestPoint nearest = segments.closest(raster.position(row, col));
-      const Origin& origin = origins[nearest.segment];
-      const double pressure =
-          instead != nullptr ? instead->at(origin.number, nearest.along) : nearest.pressure;
-      out[raster.index(row, col)] = pressure / origin.gain * std::exp(exponent * nearest.distance2);
-    }
-  }
+  const QuasiStaticPressure pressure(plan, patch, sigma, gain, instead);
+  segments.for_closest(raster, 0, raster.rows, [&](std::size_t cell, const ClosestPoint& nearest) {
+    out[cell] = pressure.at(nearest);
+  });
 }
 
 }  // namespace prostm

@@ -7,6 +7,7 @@
 #include "prostm/plan/closest_point.hpp"
 #include "prostm/plan/clustering.hpp"
 #include "prostm/score/detail/scorer.hpp"
+#include "prostm/score/pooled.hpp"
 
 namespace prostm {
 namespace {
@@ -74,13 +75,15 @@ Plan random_circles(const TargetField& target, double maximum, double length, do
 /// Eq. (1) is linear in the p_i: each cell sees the two samples beside its closest point. Solved by
 /// projected Gauss-Seidel on the normal equations.
 void solve_pressures(const TargetField& target, double maximum, double sigma, const GainLaw& gain,
-                     Plan& plan) {
+                     const std::vector<ClosestPoint>& nearest_points, Plan& plan) {
   constexpr std::size_t kUnknowns = static_cast<std::size_t>(kCircles) * kCirclePoints;
   std::vector<std::array<double, kUnknowns>> normal(kUnknowns, std::array<double, kUnknowns>{});
   std::array<double, kUnknowns> right{}, solution{};
-  PathSegments segments(plan, 0);
-  for_skin(target, maximum, [&](const Vec2& x, double p) {
-    const ClosestPoint nearest = segments.closest(x);
+  const std::size_t count = plan.paths.size() * kCirclePoints;
+  for (std::size_t cell = 0; cell < target.size(); ++cell) {
+    if (target.skin[cell] == 0) continue;
+    const double p = target.pressure[cell] / maximum;
+    const ClosestPoint& nearest = nearest_points[cell];
     const std::size_t i = nearest.segment;
     const double phi = std::exp(-0.5 * nearest.distance2 / (sigma * sigma)) /
                        gain.of(plan.paths[i / kCirclePoints].period);
@@ -92,19 +95,32 @@ void solve_pressures(const TargetField& target, double maximum, double sigma, co
     normal[j][i] += a * b;
     right[i] += a * p;
     right[j] += b * p;
-  });
+  }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (std::size_t i = 0; i < segments.count(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       // samples that hardly touch the skin stay silent
       if (normal[i][i] < 1e-9) continue;
       double residual = right[i];
-      for (std::size_t j = 0; j < segments.count(); ++j) residual -= normal[i][j] * solution[j];
+      for (std::size_t j = 0; j < count; ++j) residual -= normal[i][j] * solution[j];
       solution[i] = std::max(solution[i] + residual / normal[i][i], 0.0);
     }
   }
-  for (std::size_t i = 0; i < segments.count(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     plan.paths[i / kCirclePoints].pressure[i % kCirclePoints] = solution[i] * maximum;
   }
+}
+
+/// The pressures of a plan's paths themselves, for closest points that were found before these.
+SegmentPressures own_pressures(const Plan& plan) {
+  SegmentPressures out;
+  for (const FocalPath& path : plan.paths) {
+    for (std::size_t i = 0; i < path.pressure.size(); ++i) {
+      out.pressure.push_back(path.pressure[i]);
+      out.pressure.push_back(path.pressure[(i + 1) % path.pressure.size()]);
+      out.end.push_back(out.pressure.size());
+    }
+  }
+  return out;
 }
 
 Vec2 centre_of_mass(const TargetField& target, double maximum) {
@@ -186,21 +202,24 @@ Plan circles_at_mass_centres(const TargetField& target, const GainLaw& gain, dou
   return plan;
 }
 
-std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
-                              double length, const Plan* other, std::uint64_t seed,
-                              const std::function<void(int done, int all)>& progress) {
+namespace {
+
+std::vector<Control> controls_by(WorkerPool* pool, const TargetField& target, double sigma,
+                                 const GainLaw& gain, double length, const Plan* other,
+                                 std::uint64_t seed,
+                                 const std::function<void(int done, int all)>& progress) {
   const double maximum = max_pressure(target);
   if (!(maximum > 0.0)) return {};
-  const Scorer scorer(target);
+  const Scorer scorer(target, pool);
   const bool others = other != nullptr && !other->empty();
   const bool stands_still = others && !other->foci.empty();
   const int all = 2 + kDraws + (stands_still ? kDraws : 0) + (others ? 1 : 0);
   int done = 0;
-  const auto score = [&](const Plan& plan) {
-    const Metrics metrics = scorer.plan(plan, 0, sigma, gain);
+  const auto scored = [&](const Metrics& metrics) {
     if (progress) progress(++done, all);
     return metrics;
   };
+  const auto score = [&](const Plan& plan) { return scored(scorer.plan(plan, 0, sigma, gain)); };
   std::vector<Control> table;
   table.push_back({"flat field", flat_field(target, maximum, scorer)});
   ++done;
@@ -211,8 +230,10 @@ std::vector<Control> controls(const TargetField& target, double sigma, const Gai
   std::vector<Metrics> draws;
   for (int draw = 0; draw < kDraws; ++draw) {
     Plan plan = random_circles(target, maximum, length, 1.0 / gain.draw_rate, random);
-    solve_pressures(target, maximum, sigma, gain, plan);
-    draws.push_back(score(plan));
+    const std::vector<ClosestPoint> nearest = closest_points(target, plan, 0, pool);
+    solve_pressures(target, maximum, sigma, gain, nearest, plan);
+    const SegmentPressures solved = own_pressures(plan);
+    draws.push_back(scored(scorer.plan(plan, 0, sigma, gain, nearest, &solved)));
   }
   table.push_back({"random circles, solved pressures", median(draws)});
 
@@ -226,6 +247,21 @@ std::vector<Control> controls(const TargetField& target, double sigma, const Gai
   table.push_back({stands_still ? "foci of another target" : "paths of another target",
                    score(moved(*other, centre_of_mass(target, maximum), maximum, gain))});
   return table;
+}
+
+}  // namespace
+
+std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
+                              double length, const Plan* other, std::uint64_t seed,
+                              const std::function<void(int done, int all)>& progress) {
+  return controls_by(nullptr, target, sigma, gain, length, other, seed, progress);
+}
+
+std::vector<Control> controls(const TargetField& target, double sigma, const GainLaw& gain,
+                              double length, const Plan* other, std::uint64_t seed,
+                              const std::function<void(int done, int all)>& progress,
+                              WorkerPool& pool) {
+  return controls_by(&pool, target, sigma, gain, length, other, seed, progress);
 }
 
 }  // namespace prostm

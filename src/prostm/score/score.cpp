@@ -3,7 +3,10 @@
 
 #include "prostm/plan/closest_point.hpp"
 #include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static_pressure.hpp"
+#include "prostm/score/detail/bands.hpp"
 #include "prostm/score/detail/scorer.hpp"
+#include "prostm/score/pooled.hpp"
 
 namespace prostm {
 namespace {
@@ -99,27 +102,43 @@ std::vector<double> on_skin(const TargetField& target, const std::vector<double>
   return values;
 }
 
-}  // namespace
-
-double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma) {
-  PathSegments segments(plan, patch);
-  const double maximum = max_pressure(target);
-  if (segments.empty() || !(maximum > 0.0)) return 0.0;
+/// (Q3) from the closest point of each cell.
+double covered_share(const TargetField& target, const std::vector<ClosestPoint>& nearest,
+                     double maximum, double sigma) {
   double covered = 0.0, all = 0.0;
-  for (int row = 0; row < target.rows; ++row) {
-    for (int col = 0; col < target.cols; ++col) {
-      const std::size_t i = target.index(row, col);
-      if (target.skin[i] == 0) continue;
-      const double p = target.pressure[i] / maximum;
-      all += p;
-      if (segments.closest(target.position(row, col)).distance2 <= sigma * sigma) covered += p;
-    }
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    if (target.skin[i] == 0) continue;
+    const double p = target.pressure[i] / maximum;
+    all += p;
+    if (nearest[i].distance2 <= sigma * sigma) covered += p;
   }
   return covered / all;
 }
 
-Scorer::Scorer(const TargetField& target)
-    : target_(target), maximum_(max_pressure(target)), blur_(target) {
+}  // namespace
+
+std::vector<ClosestPoint> closest_points(const TargetField& raster, const Plan& plan, int patch,
+                                         WorkerPool* pool) {
+  const PathSegments segments(plan, patch);
+  if (segments.empty()) return {};
+  std::vector<ClosestPoint> out(raster.size());
+  for_bands(pool, static_cast<std::size_t>(raster.rows), [&](std::size_t first, std::size_t end) {
+    PathSegments own = segments;  // it remembers the last search
+    own.for_closest(raster, static_cast<int>(first), static_cast<int>(end),
+                    [&](std::size_t cell, const ClosestPoint& point) { out[cell] = point; });
+  });
+  return out;
+}
+
+double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma) {
+  const double maximum = max_pressure(target);
+  if (!(maximum > 0.0)) return 0.0;
+  const std::vector<ClosestPoint> nearest = closest_points(target, plan, patch);
+  return nearest.empty() ? 0.0 : covered_share(target, nearest, maximum, sigma);
+}
+
+Scorer::Scorer(const TargetField& target, WorkerPool* pool)
+    : target_(target), maximum_(max_pressure(target)), pool_(pool), blur_(target, pool) {
   if (!(maximum_ > 0.0)) return;
   std::vector<double> share(target.size());
   for (std::size_t i = 0; i < target.size(); ++i) share[i] = target.pressure[i] / maximum_;
@@ -149,9 +168,21 @@ Metrics Scorer::field(const std::vector<double>& rendered, double coverage) cons
 Metrics Scorer::plan(const Plan& plan, int patch, double sigma, const GainLaw& gain,
                      const SegmentPressures* instead) const {
   if (!(maximum_ > 0.0)) return {};
+  const std::vector<ClosestPoint> nearest = closest_points(target_, plan, patch, pool_);
+  if (nearest.empty()) return field(std::vector<double>(target_.size(), 0.0), 0.0);
+  return this->plan(plan, patch, sigma, gain, nearest, instead);
+}
+
+Metrics Scorer::plan(const Plan& plan, int patch, double sigma, const GainLaw& gain,
+                     const std::vector<ClosestPoint>& nearest,
+                     const SegmentPressures* instead) const {
+  const QuasiStaticPressure pressure(plan, patch, sigma, gain, instead);
   std::vector<double> rendered(target_.size());
-  quasi_static_field(plan, patch, target_, sigma, gain, rendered, instead);
-  return field(rendered, plan_coverage(target_, plan, patch, sigma));
+  const auto cols = static_cast<std::size_t>(target_.cols);
+  for_bands(pool_, static_cast<std::size_t>(target_.rows), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first * cols; i < end * cols; ++i) rendered[i] = pressure.at(nearest[i]);
+  });
+  return field(rendered, covered_share(target_, nearest, maximum_, sigma));
 }
 
 Metrics score_field(const TargetField& target, const std::vector<double>& rendered,
@@ -162,6 +193,11 @@ Metrics score_field(const TargetField& target, const std::vector<double>& render
 Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
                    const GainLaw& gain, const SegmentPressures* instead) {
   return Scorer(target).plan(plan, patch, sigma, gain, instead);
+}
+
+Metrics score_plan(const TargetField& target, const Plan& plan, int patch, double sigma,
+                   const GainLaw& gain, const SegmentPressures* instead, WorkerPool& pool) {
+  return Scorer(target, &pool).plan(plan, patch, sigma, gain, instead);
 }
 
 double weighted_rmse(const TargetField& target, const Plan& plan, int patch, double sigma,

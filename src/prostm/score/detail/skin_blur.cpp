@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <span>
+
+#include "prostm/score/detail/bands.hpp"
+#include "prostm/score/detail/blur_kernel.hpp"
 
 namespace prostm {
 namespace {
@@ -12,16 +15,18 @@ constexpr double kBlurReach = 4.0;  // cut-off of the Gaussian along each axis, 
 
 }  // namespace
 
-SkinBlur::SkinBlur(const TargetField& target)
+SkinBlur::SkinBlur(const TargetField& target, WorkerPool* pool)
     : rows_(static_cast<std::size_t>(target.rows)),
       cols_(static_cast<std::size_t>(target.cols)),
-      skin_(target.skin.begin(), target.skin.end()) {
+      skin_(target.skin.begin(), target.skin.end()),
+      pool_(pool) {
   const double reach =
       std::min(kBlurReach * kBlur / target.cell, static_cast<double>(rows_ + cols_));
-  kernel_.resize(static_cast<std::size_t>(reach) + 1);
-  for (std::size_t i = 0; i < kernel_.size(); ++i) {
+  const auto cells = static_cast<std::size_t>(reach);
+  taps_.resize(2 * cells + 1);
+  for (std::size_t i = 0; i <= cells; ++i) {
     const double d = static_cast<double>(i) * target.cell / kBlur;
-    kernel_[i] = std::exp(-0.5 * d * d);
+    taps_[cells - i] = taps_[cells + i] = std::exp(-0.5 * d * d);
   }
   sum_ = blur(skin_);
 }
@@ -34,29 +39,29 @@ std::vector<double> SkinBlur::of(const std::vector<double>& field) const {
   return out;
 }
 
-/// Blurs along rows, then along columns, since the kernel over a square is separable. Both passes
-/// add whole stretches of rows, which vectorises; columns cost no more than rows.
+/// Blurs along rows, then along columns, since the kernel over a square is separable. Columns are
+/// taken in strips narrow enough for all rows within reach to stay in the cache.
 std::vector<double> SkinBlur::blur(const std::vector<double>& in) const {
-  std::vector<double> along(in.size(), 0.0), out(in.size(), 0.0);
-  const auto reach = static_cast<std::ptrdiff_t>(kernel_.size()) - 1;
-  const auto rows = static_cast<std::ptrdiff_t>(rows_), cols = static_cast<std::ptrdiff_t>(cols_);
-  const auto add = [](double weight, const double* from, std::ptrdiff_t count, double* to) {
-    for (std::ptrdiff_t i = 0; i < count; ++i) to[i] += weight * from[i];
-  };
-  const auto weight = [&](std::ptrdiff_t d) {
-    return kernel_[static_cast<std::size_t>(std::abs(d))];
-  };
-  for (std::ptrdiff_t row = 0; row < rows; ++row) {
-    const std::ptrdiff_t start = row * cols;
-    for (std::ptrdiff_t d = std::max(-reach, 1 - cols); d <= std::min(reach, cols - 1); ++d) {
-      add(weight(d), in.data() + start + std::max<std::ptrdiff_t>(d, 0), cols - std::abs(d),
-          along.data() + start + std::max<std::ptrdiff_t>(-d, 0));
+  constexpr std::size_t kStrip = 64;  // columns
+  const std::size_t reach = taps_.size() / 2;
+  std::vector<double> along(in.size()), out(in.size());
+  for_bands(pool_, rows_, [&](std::size_t first, std::size_t end) {
+    std::vector<double> line(cols_ + 2 * reach, 0.0);  // nothing beyond both ends of a row
+    for (std::size_t row = first; row < end; ++row) {
+      std::copy_n(in.data() + row * cols_, cols_, line.data() + reach);
+      weighted_sums(taps_, line.data(), 1, cols_, along.data() + row * cols_);
     }
-  }
-  for (std::ptrdiff_t row = 0; row < rows; ++row) {
-    for (std::ptrdiff_t d = std::max(-reach, -row); d <= std::min(reach, rows - 1 - row); ++d)
-      add(weight(d), along.data() + (row + d) * cols, cols, out.data() + row * cols);
-  }
+  });
+  for_bands(pool_, rows_, [&](std::size_t first, std::size_t end) {
+    for (std::size_t col = 0; col < cols_; col += kStrip) {
+      for (std::size_t row = first; row < end; ++row) {
+        const std::size_t low = row - std::min(row, reach), high = std::min(row + reach + 1, rows_);
+        weighted_sums(std::span(taps_).subspan(low + reach - row, high - low),
+                      along.data() + low * cols_ + col, cols_, std::min(kStrip, cols_ - col),
+                      out.data() + row * cols_ + col);
+      }
+    }
+  });
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "prostm/core/worker_pool.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {
@@ -11,7 +12,8 @@ namespace prostm {
 /// skin itself, which is computed once.
 class SkinBlur {
  public:
-  explicit SkinBlur(const TargetField& target);
+  /// @param pool shares the work where one is given; it must outlive this.
+  explicit SkinBlur(const TargetField& target, WorkerPool* pool = nullptr);
   /// The blurred field, 0 off the skin. @pre field has rows·cols values of the target.
   std::vector<double> of(const std::vector<double>& field) const;
 
@@ -19,8 +21,9 @@ class SkinBlur {
   std::vector<double> blur(const std::vector<double>& in) const;
 
   std::size_t rows_, cols_;
-  std::vector<double> kernel_;      // from the middle outwards
+  std::vector<double> taps_;        // of the kernel along an axis, the middle one among them
   std::vector<double> skin_, sum_;  // 1 on skin; the blur of that
+  WorkerPool* pool_;
 };
 
 }  // namespace prostm
