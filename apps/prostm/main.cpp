@@ -311,7 +311,7 @@ void read_whole_numbers_as_decimal(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
     if (option->get_type_name() != "INT" && option->get_type_name() != "UINT") continue;
     option->transform([](std::string text) {
-      const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+      const std::size_t sign = text.find_first_of("+-") == 0 ? 1 : 0;
       const bool is_decimal = text.find_first_not_of("0123456789", sign) == std::string::npos;
       while (is_decimal && text.size() > sign + 1 && text[sign] == '0') text.erase(sign, 1);
       return text;

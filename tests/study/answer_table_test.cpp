@@ -89,8 +89,8 @@ TEST(AnswerTable, ReadsEncodings) {
   expect_answers(read("\xFE\xFF" + utf16(text, true)), 0.25);
   expect_answers(read(utf16(text, false)), 0.25);
   expect_answers(read(utf16(text, true)), 0.25);
-  std::string windows = text;
-  windows.replace(windows.find("\xC3\xA4"), 2, "\xE4");
+  const std::size_t umlaut = text.find("\xC3\xA4");
+  const std::string windows = text.substr(0, umlaut) + '\xE4' + text.substr(umlaut + 2);
   std::vector<std::string> notes;
   expect_answers(answers_from_csv(windows, "a.csv", {}, &notes), 0.25);
   EXPECT_THAT(notes, Contains(HasSubstr("is not UTF-8 and is read as Windows-1252")));

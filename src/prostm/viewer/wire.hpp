@@ -80,8 +80,8 @@ struct ViewRun {
   double time = 0.0;            ///< of the run [s]
   double recording_time = 0.0;  ///< in the hand's recording [s], NaN without one
   std::uint32_t world_steps = 0, plan_updates = 0;
-  std::uint32_t flags = 0;   ///< of ViewFlag
-  PageHandReport page_hand;  ///< for /numbers.json; not in the message of a frame
+  std::uint32_t flags = 0;        ///< of ViewFlag
+  PageHandReport page_hand = {};  ///< for /numbers.json; not in the message of a frame
 };
 
 /// Position in D [m], orientation as x, y, z, w, radius [m].
