@@ -46,10 +46,10 @@ Vec2 skin_size(const TargetField& field) {
   return field.cell * Vec2(std::max(right - left + 1, 0), std::max(high - low + 1, 0));
 }
 
-/// Whether most cells at the border of the raster carry pressure, as those of white paper do.
-bool presses_on_border(const TargetField& field) {
-  constexpr double kCarries = 0.25;  // of the largest pressure
-  const double least = kCarries * max_pressure(field);
+/// Share of the cells at the border of the raster that carry at least so much of the largest
+/// pressure.
+double border_share(const TargetField& field, double carries) {
+  const double least = carries * max_pressure(field);
   int border = 0, pressed = 0;
   for (int row = 0; row < field.rows; ++row) {
     for (int col = 0; col < field.cols; ++col) {
@@ -60,20 +60,18 @@ bool presses_on_border(const TargetField& field) {
       if (p > 0.0 && p >= least) ++pressed;
     }
   }
-  return 2 * pressed > border;
+  return static_cast<double>(pressed) / std::max(border, 1);
 }
 
-/// Whether nearly all skin carries either full pressure or none, as in a drawing. A photo has all
-/// shades between.
-bool is_drawing(const TargetField& field) {
-  constexpr double kShade = 0.1, kMostShades = 0.25;  // of the largest pressure; of the skin
-  const double largest = max_pressure(field);
-  int shades = 0;
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    const double p = field.pressure[i];
-    if (field.skin[i] != 0 && p > kShade * largest && p < (1.0 - kShade) * largest) ++shades;
-  }
-  return shades <= kMostShades * skin_cells(field);
+/// Whether most of the border carries pressure.
+bool presses_on_border(const TargetField& field) {
+  return border_share(field, 0.25) > 0.5;
+}
+
+/// Whether nearly all of the border carries full pressure, as the paper of a drawing does. The
+/// border of a photo has shades.
+bool is_on_paper(const TargetField& field) {
+  return border_share(field, 0.9) >= 0.9;
 }
 
 /// Whether the pressure is the same on all skin: a flat field then renders it without an error.
@@ -103,7 +101,7 @@ std::string picture_warning(const TargetField& field, bool invert) {
            "transparency alone, which is no skin; put it on a ground without pressure";
   }
   if (!presses_on_border(field)) return {};
-  if (!is_drawing(field))
+  if (!is_on_paper(field))
     return "most of the picture's border presses on the skin: brightness is pressure, so a photo "
            "presses nearly everywhere; cut its ground out (black, or transparent for no skin)";
   return fmt::format(

@@ -1,5 +1,6 @@
 """Bad input gets one clear sentence and exit status 2, without crashes or half-written files."""
 
+import copy
 import json
 import os
 import resource
@@ -126,6 +127,7 @@ def test_bad_recordings(refuses, tmp_path, fault):
 
 def test_a_bad_hand_is_counted(prostm, tmp_path):
     header, frames = hand_lines()
+    frames[2] = copy.deepcopy(frames[2])
     frames[2]["hands"][0]["p"][4] = None
     path = tmp_path / "one.hands.jsonl"
     path.write_text("\n".join(json.dumps(line) for line in [header] + frames) + "\n")
@@ -186,7 +188,7 @@ def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):
         (["report", "--out", "x", "--seed", "-1"], ["--seed = -1", "between 0"]),
         (["report", "--out", "x", "--paper-data", "nowhere"], ["--paper-data nowhere is no folder"]),
         (["play", "x"], ["not built yet"]),
-        (["study"], ["study needs one of its commands: run, analyse, simulate", "prostm study --help"]),
+        (["study"], ["study needs one of its commands: check, run, status, analyse, simulate", "prostm study --help"]),
         (["study", "analize"], ['study has no command "analize"; did you mean "analyse"? See prostm study --help']),
         (["study", "run", "p.toml"], ["--participant is missing"]),
         (["study", "simulate", "--trials", "15"], ["trials = 15 must be even"]),

@@ -107,7 +107,7 @@ TEST(HandsJsonl, SaysWhatIsWrongAndWhere) {
   expect_jsonl_error(with_number("p", 4, "NaN"), "must be a number");
   expect_jsonl_error(with_number("p", 4, 1e200), "from -10 to 10");
   expect_jsonl_error(with_number("q", 3, 0.5), "has a quaternion of length 0.5");
-  expect_jsonl_error(with_number("r", 1, 0.05), "has a radius of 50 mm at joint wrist");
+  expect_jsonl_error(with_number("r", 1, 0.05), "has a radius of 50.0 mm at joint wrist");
   expect_jsonl_error(with_number("r", 1, 0.0), "radii must be from 3 to 40 mm");
   expect_jsonl_error(with_number("p", 3 * kIndexTip, 0.5),
                      "from index-distal to index-tip; bones must be from 8 to 120 mm");

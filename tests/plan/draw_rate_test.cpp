@@ -27,7 +27,7 @@ PlanSettings settings_at(const std::string& preset, double speed, double draw_ra
 
 TEST(DrawRate, TheDefaultsAreThePapersLengthToTheBit) {
   EXPECT_EQ(PlanSettings{}.max_length(), 0.140);
-  EXPECT_EQ(settings_at("best", 14.0, 100.0).max_length(), 0.140);
+  EXPECT_DOUBLE_EQ(settings_at("best", 3.5, 25.0).max_length(), 0.140);
   EXPECT_DOUBLE_EQ(settings_at("best", 5.0, 25.0).max_length(), 0.2);
 }
 
@@ -69,11 +69,11 @@ TEST(DrawRate, PathsDependOnTheLengthsAlone) {
   for (const char* preset : {"paper", "paper-valid", "best", "fast"}) {
     const TargetField field = fields::make(Pattern::FourPlumes, 2);
     // the lengths of a path and of an intensity's rise are the same in both plans
-    PlanSettings settings = settings_at(preset, 3.5, 25.0);
-    settings.rise_time = 2e-3;
+    PlanSettings settings = settings_at(preset, 1.75, 12.5);
+    settings.rise_time = 4e-3;
     const Plan slow = test::plan_of(settings, field);
-    settings = settings_at(preset, 14.0, 100.0);
-    settings.rise_time = 0.5e-3;
+    settings = settings_at(preset, 7.0, 50.0);
+    settings.rise_time = 1e-3;
     const Plan fast = begun_like(test::plan_of(settings, field), slow);
     ASSERT_NO_FATAL_FAILURE(test::expect_same_plan(slow, fast, 1.0));
     for (std::size_t k = 0; k < slow.paths.size(); ++k) {
@@ -118,11 +118,11 @@ TEST(DrawRate, OutOfBoundsIsToldInOneSentence) {
   EXPECT_EQ(message(7.0, 7.0), "");
   EXPECT_EQ(message(7.0, 700.0), "");
   EXPECT_EQ(message(0.1, 0.1), "");
-  EXPECT_EQ(message(100.0, 10'000.0), "");
+  EXPECT_EQ(message(8.0, 790.0), "");
   EXPECT_EQ(message(7.0, 0.0), "draw_rate = 0 Hz must be between 0.1 and 10000 Hz");
   EXPECT_EQ(message(7.0, 5.0), "speed / draw_rate = 1.4 m must be between 0.01 and 1 m");
   EXPECT_EQ(message(7.0, 1000.0), "speed / draw_rate = 0.007 m must be between 0.01 and 1 m");
-  EXPECT_EQ(message(200.0, 50.0), "speed = 200 m/s must be between 0.1 and 100 m/s");
+  EXPECT_EQ(message(8.1, 50.0), "speed = 8.1 m/s must be between 0.1 and 8 m/s");
 }
 
 }  // namespace

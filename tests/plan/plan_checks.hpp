@@ -60,7 +60,8 @@ inline void expect_finite_plan(const Plan& plan, int samples) {
     for (const double p : path.pressure) ASSERT_TRUE(std::isfinite(p) && p >= 0.0) << p;
     ASSERT_GT(path.length, 0.0);
     ASSERT_DOUBLE_EQ(path.length, closed_length(path));
-    ASSERT_DOUBLE_EQ(path.period * path.speed, path.length);
+    // the period is that of the length on the skin, which is flat here and summed otherwise
+    ASSERT_NEAR(path.period * path.speed, path.length, 1e-12 * path.length);
   }
 }
 

@@ -109,7 +109,7 @@ TEST(Course, FindsWhatWasFelt) {
 TEST(Course, DrawsIntervalsAndTurnsFairly) {
   const Protocol p = test::study_protocol(
       "[trials]\ntask = \"forced-choice\"\n[level]\nsetting = \"plan.speed\"\nlow = 3\nhigh = "
-      "9\nreference = 3\nprocedure = \"bayes\"\ntrials = 40\n",
+      "8\nreference = 3\nprocedure = \"bayes\"\ntrials = 40\n",
       "[method.a]\n");
   int first = 0, all = 0, leads = 0, rounds = 0;
   for (int participant = 1; participant <= 60; ++participant) {
@@ -148,16 +148,16 @@ TEST(Course, ACorrectedAnswerLeadsWhereTheRightOneWouldHaveLed) {
 TEST(Course, AdjustmentsBeginOnBothSidesAndEndWhereTheyAreAccepted) {
   const Protocol p = test::study_protocol(
       "[trials]\ntask = \"adjustment\"\nrepeats = 6\n[level]\nsetting = \"plan.speed\"\nlow = "
-      "2\nhigh = 10\nreference = 7\nstep = 0.1\n",
+      "2\nhigh = 8\nreference = 7\nstep = 0.1\n",
       "[method.a]\n");
   Course course(p, 1);
   EXPECT_EQ(course.most(), 12U);
   std::map<int, int> below;
   while (!course.is_done()) {
     const Trial t = course.trial();
-    below[t.track] += *t.level < 6.0 ? 1 : 0;
-    course.tune(*t.level < 6.0 ? 2 : -2, false);
-    EXPECT_NEAR(*course.trial().level, *t.level + (*t.level < 6.0 ? 0.2 : -0.2), 1e-4);
+    below[t.track] += *t.level < 5.0 ? 1 : 0;
+    course.tune(*t.level < 5.0 ? 2 : -2, false);
+    EXPECT_NEAR(*course.trial().level, *t.level + (*t.level < 5.0 ? 0.2 : -0.2), 1e-4);
     course.tune(-100, true);
     EXPECT_EQ(*course.trial().level, 2.0);
     course.accept(7.0 + 0.1 * static_cast<double>(course.done() % 2));

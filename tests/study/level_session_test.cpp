@@ -290,7 +290,7 @@ TEST(LevelSession, SaysThatAFileHasLevelsThatItsStaircaseDoesNotAskFor) {
     }
   }
   EXPECT_THAT(test::input_error([&] { Sitting s(p, path); }),
-              HasSubstr("trial 1 has level 3, and its staircase asks for 10"));
+              HasSubstr("trial 1 has level 3, and its staircase asks for 8"));
 }
 
 // ---- what sessions find ----

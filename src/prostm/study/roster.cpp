@@ -46,7 +46,7 @@ std::optional<RosterEntry> roster_entry(std::string_view text, const std::string
     entry.order = first.value("order", own_order(entry.participant));
     entry.trials = first.at("trials");
     entry.rehearsal = first.at("run").at("rehearsal");
-    entry.protocol = first.at("protocol");
+    entry.protocol = first.value("protocol", ResponseLine());
   } catch (const ResponseLine::exception& error) {
     throw InputError(fmt::format("{}, line 1: {}", file, error.what()));
   }

@@ -319,8 +319,10 @@ void Files::read(std::span<const std::string> paths) {
   std::map<std::string, std::vector<RosterEntry>> rosters;  // of each folder that has its numbers
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (!is_responses(paths[i])) continue;
-    auto entry = roster_entry(read_file(paths[i], kMaxBytes), paths[i]);
-    if (entry) rosters[by_folder ? prefixes[i] : ""].push_back(std::move(*entry));
+    std::vector<std::string> faults;  // reading the answers reports them
+    std::vector<RosterEntry> entry = read_roster(paths.subspan(i, 1), &faults);
+    std::move(entry.begin(), entry.end(),
+              std::back_inserter(rosters[by_folder ? prefixes[i] : ""]));
   }
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (was_replaced(paths[i], rosters[by_folder ? prefixes[i] : ""])) continue;
