@@ -59,7 +59,7 @@ void write_plan_file(const Path& path, const Plan& plan, const TargetField& targ
 void bind_fields(py::module_& m) {
   m.def(
       "read_field",
-      [](const Path& path, std::optional<double> cell_mm, int frame, bool invert,
+      [](const Path& path, std::optional<double> cell_mm, std::optional<int> frame, bool invert,
          std::optional<double> width_mm, const std::string& variable) {
         FieldFileOptions options = file_options(cell_mm, width_mm, frame, invert);
         options.variable = variable;
@@ -67,11 +67,13 @@ void bind_fields(py::module_& m) {
       },
       "Reads a field by the ending of its name, as the command line does: .json\n"
       "(prostm-field/1), .npy, .npz and .png (which need cell_mm, or the width of the whole field\n"
-      "as width_mm), .h5. frame: of a .h5 or of a 3-D array. invert: a .png is drawn black on\n"
+      "as width_mm), .h5. frame: of a .h5 (default 0) or of a 3-D array. invert: a .png is drawn "
+      "black on\n"
       "white, so that black is the pressure. variable: the array of an .npz that holds several.\n"
       "Raises InputError, a ValueError, with a sentence that names the file.",
-      py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = 0, py::kw_only(),
-      py::arg("invert") = false, py::arg("width_mm") = py::none(), py::arg("variable") = "");
+      py::arg("path"), py::arg("cell_mm") = py::none(), py::arg("frame") = py::none(),
+      py::kw_only(), py::arg("invert") = false, py::arg("width_mm") = py::none(),
+      py::arg("variable") = "");
   m.def(
       "write_field",
       [](const Path& path, const TargetField& field) {
@@ -119,7 +121,7 @@ void bind_plans(py::module_& m) {
 }  // namespace
 
 FieldFileOptions file_options(std::optional<double> cell_mm, std::optional<double> width_mm,
-                              int frame, bool invert) {
+                              std::optional<int> frame, bool invert) {
   return {cell_mm, width_mm, frame, invert, {"cell_mm", "width_mm", "frame", "invert", "variable"},
           {}};
 }
@@ -127,7 +129,7 @@ FieldFileOptions file_options(std::optional<double> cell_mm, std::optional<doubl
 py::object target_of(const py::object& target, const FieldFileOptions& options) {
   if (py::isinstance<py::str>(target) || py::hasattr(target, "__fspath__"))
     return py::cast(read_field_file(target.cast<Path>(), options));
-  if (!options.cell_mm && !options.width_mm && options.frame == 0 && !options.invert) return target;
+  if (!options.cell_mm && !options.width_mm && !options.frame && !options.invert) return target;
   const bool sized = py::isinstance<TargetField>(target) || py::isinstance<TargetFrame>(target);
   throw std::invalid_argument(
       "cell_mm, width_mm, frame and invert belong to the name of a file, not to " +

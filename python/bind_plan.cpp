@@ -73,7 +73,8 @@ std::unique_ptr<PlanResult> plan_with(SharedPlanner<P>& self, const py::object& 
 }
 
 std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::object& given,
-                                       bool trace, std::optional<double> cell_mm, int frame_index,
+                                       bool trace, std::optional<double> cell_mm,
+                                       std::optional<int> frame_index,
                                        std::optional<double> width_mm, bool invert) {
   const py::object target = target_of(given, file_options(cell_mm, width_mm, frame_index, invert));
   if (trace && py::isinstance<TargetFrame>(target))
@@ -87,7 +88,7 @@ std::unique_ptr<PlanResult> plan_paths(SharedPlanner<Planner>& self, const py::o
 }
 
 std::unique_ptr<PlanResult> plan_foci(SharedPlanner<AmPlanner>& self, const py::object& target,
-                                      std::optional<double> cell_mm, int frame_index,
+                                      std::optional<double> cell_mm, std::optional<int> frame_index,
                                       std::optional<double> width_mm, bool invert) {
   return plan_with(self, target_of(target, file_options(cell_mm, width_mm, frame_index, invert)),
                    [&](const TargetField* field, const TargetFrame* frame, PlanResult& r) {
@@ -135,8 +136,8 @@ void bind_planner(py::module_& m) {
            "ValueError for more than max_cells cells, a pressure above 1e300, a cell that is not\n"
            "1e-6 to 1 m wide.",
            py::arg("target"), py::arg("trace") = false, py::kw_only(),
-           py::arg("cell_mm") = py::none(), py::arg("frame") = 0, py::arg("width_mm") = py::none(),
-           py::arg("invert") = false);
+           py::arg("cell_mm") = py::none(), py::arg("frame") = py::none(),
+           py::arg("width_mm") = py::none(), py::arg("invert") = false);
 }
 
 void bind_am_planner(py::module_& m) {
@@ -162,8 +163,9 @@ void bind_am_planner(py::module_& m) {
            "the file of a field, given by its name as for Planner.plan().\n\n"
            "Returns a PlanResult. A field without pressure gives a plan without foci. Raises\n"
            "ValueError as Planner.plan() does.",
-           py::arg("target"), py::kw_only(), py::arg("cell_mm") = py::none(), py::arg("frame") = 0,
-           py::arg("width_mm") = py::none(), py::arg("invert") = false);
+           py::arg("target"), py::kw_only(), py::arg("cell_mm") = py::none(),
+           py::arg("frame") = py::none(), py::arg("width_mm") = py::none(),
+           py::arg("invert") = false);
 }
 
 // ---- what came out

@@ -6,6 +6,7 @@
 
 #include "bindings.hpp"
 #include "plan_result.hpp"
+#include "prostm/commit.hpp"
 #include "prostm/core/file.hpp"
 #include "prostm/core/require.hpp"
 #include "prostm/io/array_file.hpp"
@@ -67,6 +68,7 @@ void write(const PlanResult& result, const std::filesystem::path& path) {
   extras.preset = settings.preset;
   extras.stats = &result.stats;
   extras.quality = &quality;
+  extras.program = version_text();
   write_file(path.string(), plan_to_json(result.plan, field, extras, settings.groups));
 }
 

@@ -44,7 +44,7 @@ double largest_pressure(py::handle target);
 
 /// Returns how a field's file is read, with the names that Python has for it.
 FieldFileOptions file_options(std::optional<double> cell_mm, std::optional<double> width_mm,
-                              int frame, bool invert);
+                              std::optional<int> frame, bool invert);
 /// Reads the field if a target is given by the name of a file; returns other targets as they are.
 /// @throws InputError as read_field() does, std::invalid_argument for options without a file.
 py::object target_of(const py::object& target, const FieldFileOptions& options);

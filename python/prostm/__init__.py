@@ -35,8 +35,8 @@ _explain_wrong_types()
 from ._prostm import (AmPlanner, AmSettings, Control, EmitSettings, EmitStats, Emitter, FeltPlan, FocalPath, FocalPoint,
                       FieldShape, FocusEmitter, GateResult, InputError, LiftedFocus, LiftedPath, LiftedPlan, Metrics,
                       PathEmitter, Plan, PlanFile, Planner, PlanResult, PlanSettings, PlanStats, PlanStatus, PlanTrace,
-                      Recording, SkinSettings, TakeOver, TargetField, TargetFrame, __commit__, __version__, closed_length, controls,
-                      drive_intensity, even_share, felt_plan, felt_skins, field_from_json, field_shape, field_to_json,
+                      Recording, SkinSettings, TakeOver, TargetField, TargetFrame, __commit__, __version__, closed_length,
+                      controls, drive_intensity, even_share, felt_plan, felt_skins, field_from_json, field_shape, field_to_json,
                       height_at, kMaxFieldCells, kMaxPatches, kMaxPathPoints, kMaxPaths, kMostSamples as _kMostSamples,
                       lift, max_pressure, plan_from_json, plan_to_json, quasi_static_field, read_field, read_plan,
                       score_field, score_plan, write_field, write_plan)
@@ -62,7 +62,7 @@ def _target(field, cell, cell_mm, width_mm, frame, invert):
         if cell is not None:
             raise ValueError("the cell of a file is given in millimetres, as cell_mm")
         return read_field(field, cell_mm=cell_mm, width_mm=width_mm, frame=frame, invert=invert)
-    if frame != 0:
+    if frame is not None:
         raise ValueError("frame belongs to the name of a recording")
     if width_mm is not None or invert:
         raise ValueError("width_mm and invert belong to the name of a file; an array has cell or cell_mm")
@@ -73,7 +73,7 @@ def _target(field, cell, cell_mm, width_mm, frame, invert):
     return field
 
 
-def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, width_mm=None, frame=0, invert=False,
+def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, width_mm=None, frame=None, invert=False,
          settings=None, trace=False, **more):
     """Plans one field as `prostm plan` does, with the same plan to the bit, and returns a PlanResult.
 
@@ -83,7 +83,7 @@ def plan(field, preset=None, *, method="pro-stm", cell=None, cell_mm=None, width
     method: "pro-stm": paths, or "am": foci that stand still, which takes neither preset nor trace.
     cell, cell_mm: edge of a cell [m] or [mm]; an array needs one of them, a .npy or .png file needs cell_mm or
         width_mm, the width of the whole field [mm].
-    frame: frame of a recording (.h5), counted from 0.
+    frame: frame of a recording (.h5, default 0) or of a 3-D array, counted from 0.
     invert: a .png file is drawn black on white, so that black is the pressure.
     settings: PlanSettings, or AmSettings for "am"; None: the defaults. Further keywords are settings, e.g. paths=2,
         draw_rate=70.

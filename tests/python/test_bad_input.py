@@ -106,12 +106,12 @@ def test_a_cell_that_is_given_twice(field, tmp_path):
 
 
 def test_files_are_refused_in_the_words_of_the_command_line(program, tmp_path):
-    np.save(tmp_path / "three.npy", np.zeros((2, 2, 2)))
+    np.save(tmp_path / "four.npy", np.zeros((2, 2, 2, 2)))
     (tmp_path / "cut.json").write_text('{"format": "prostm-field/1", "cell_mm"')
     (tmp_path / "negative.json").write_text(
         '{"format":"prostm-field/1","cell_mm":5,"origin_mm":[0,0],"rows":1,"cols":2,"pressure":[[1,-2]]}')
     (tmp_path / "field.txt").write_text("1 2 3")
-    for name, cell in [("three.npy", 5), ("cut.json", None), ("negative.json", None), ("absent.json", None),
+    for name, cell in [("four.npy", 5), ("cut.json", None), ("negative.json", None), ("absent.json", None),
                        ("field.txt", None)]:
         there = program("plan", tmp_path / name, *(["--cell-mm", cell] if cell else []), status=2).stderr
         with pytest.raises(prostm.InputError) as refused:
