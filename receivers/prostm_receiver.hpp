@@ -211,6 +211,7 @@ class Receiver {
   bool subscribed_ = false, stopped_ = false;
   double rate_ = 40e3;  // [Hz]
   std::int64_t newest_ = -1, played_ = -1;
+  std::int64_t rejected_ = -1;  // newest sample that broke the protocol
   Ns heard_ = 0, best_trip_ = 0, best_at_ = 0;
   double wanted_offset_ = 0, offset_ = 0;  // prostm's clock less this machine's [ns]
   bool has_offset_ = false;
@@ -224,7 +225,8 @@ class Receiver {
 inline bool Receiver::bridges(const Sample& last, const Sample& next) const {
   const std::int64_t missing = (next.index - last.index) / settings_.every - 1;
   const auto period = static_cast<Ns>(1e9 / rate_) * settings_.every;
-  return last.index >= 0 && last.foci == next.foci && missing * period <= kConcealed &&
+  const bool wrong = last.index < rejected_ && rejected_ < next.index;  // and not lost
+  return !wrong && last.index >= 0 && last.foci == next.foci && missing * period <= kConcealed &&
          missing * last.foci * 16 <= kDatagram &&
          std::abs(next.time - last.time - (missing + 1) * period) <= period;
 }
@@ -528,7 +530,10 @@ inline void Receiver::take_block(const std::uint8_t* body, std::size_t size) {
              focus.intensity >= 0.0F && focus.intensity <= 1.0F;
     }
     ++count_.samples;
-    if (!good) ++count_.malformed;
+    if (!good) {
+      ++count_.malformed;
+      rejected_ = std::max(rejected_, sample.index);
+    }
     if (sample.time < here) ++count_.late;
     if (!good || sample.index <= played_) continue;
     slot(sample.index) = sample;
@@ -554,7 +559,7 @@ inline void Receiver::take_time(const std::uint8_t* body) {
 
 /// prostm has started anew: its clock and its samples are others.
 inline void Receiver::forget() {
-  newest_ = played_ = -1;
+  newest_ = played_ = rejected_ = -1;
   has_offset_ = subscribed_ = stopped_ = false;
   for (Sample& sample : ring_) sample.index = -1;
 }

@@ -88,6 +88,7 @@ class Receiver:
         self.blocks = []  # by index
         self.next_index = None  # index of the sample that plays next
         self.next_time = 0  # its time by prostm's clock
+        self.rejected = -1  # index of the newest sample that broke the protocol
         self.best_trip, self.best_at = 0, 0
         self.rate = 40e3
 
@@ -254,6 +255,7 @@ class Receiver:
             return
         if not math.isfinite(sum(data)) or not 0.0 <= min(data[3::4]) <= max(data[3::4]) <= 1.0:
             self.counts["malformed"] += 1
+            self.rejected = max(self.rejected, index + (count - 1) * stride)
             return
         if play_time < self.heard + self.offset:
             self.counts["late"] += count
@@ -301,6 +303,8 @@ class Receiver:
         if not 0 < missing <= DATAGRAM // (foci * FOCUS_BYTES) or gap > CONCEALED or after.foci != foci:
             return
         if abs(after.time - gap - self.next_time) > period:  # the play times jump
+            return
+        if self.next_index <= self.rejected < after.index:  # not lost, but wrong
             return
         first, data = after.sample(0), array("f")
         for i in range(1, missing + 1):

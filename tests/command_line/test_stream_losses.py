@@ -101,6 +101,15 @@ def test_two_lost_datagrams_in_a_row_are_silence(foci):
     assert playback.receiver.counts["concealed"] == 0
 
 
+def test_samples_that_break_the_protocol_are_silence():
+    arrivals, count = arrivals_of(4, {80}, 1)
+    sent, body = datagram(80 * count, count, 4)
+    playback = Playback(4)
+    playback.run([*arrivals, (sent, body[:44] + struct.pack("<f", 1.5) + body[48:])])
+    assert playback.receiver.counts["malformed"] == 1
+    assert playback.receiver.counts["silences"] == 2 and playback.receiver.counts["concealed"] == 0
+
+
 def test_a_datagram_that_comes_after_its_time_is_concealed_and_dropped():
     arrivals, count = arrivals_of(4, {80}, 1)
     sent, body = datagram(80 * count, count, 4)
