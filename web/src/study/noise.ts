@@ -9,6 +9,7 @@ export class Noise {
   private context: AudioContext | null = null;
   private gain: GainNode | null = null;
   private analyser: AnalyserNode | null = null;
+  private wanted = false; // by play(), which may come before there is audio
   private readonly samples = new Float32Array(2048);
   private moved = { audio: 0, at: -Infinity }; // the audio's clock [s], and when it was seen to move [ms]
 
@@ -43,10 +44,12 @@ export class Noise {
     this.analyser.connect(context.destination);
     context.addEventListener("statechange", this.changed);
     source.start();
+    this.play(this.wanted);
     await context.resume();
   }
 
   play(on: boolean): void {
+    this.wanted = on;
     if (this.context === null || this.gain === null) return;
     this.gain.gain.setTargetAtTime(on ? kLevel : 0, this.context.currentTime, kFade / 3);
   }
