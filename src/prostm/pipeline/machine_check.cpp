@@ -83,8 +83,7 @@ std::vector<CheckedSetup> checked_setups(std::span<const std::string> scenes) {
     grids.insert(grids.end(), coarser.begin(), coarser.end());
   }
   std::ranges::sort(grids, std::greater{});
-  const auto same = std::ranges::unique(grids);
-  grids.erase(same.begin(), same.end());
+  grids.erase(std::unique(grids.begin(), grids.end()), grids.end());
   std::vector<CheckedSetup> setups = {{kDefaultCells, Preset::Best}, {kDefaultCells, Preset::Fast}};
   for (const int cells : grids) setups.push_back({cells, Preset::Best});
   if (!grids.empty()) setups.push_back({grids.back(), Preset::Fast});
