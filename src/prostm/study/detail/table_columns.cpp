@@ -136,9 +136,10 @@ std::string ColumnPlaces::example(const std::vector<Column>& missing) const {
   for (const Column column : missing) {
     std::string found = "COLUMN";
     for (const auto& [meaning, others] : kOthersNames) {
-      const auto at = std::find_if(header_.begin(), header_.end(), [&](const std::string& name) {
-        return meaning == column && spelling_key(name) == others;
-      });
+      if (meaning != column) continue;
+      const auto at = std::find_if(
+          header_.begin(), header_.end(),
+          [&, key = others](const std::string& name) { return spelling_key(name) == key; });
       if (at != header_.end()) found = *at;
     }
     out += fmt::format("{}{}={}", out.empty() ? "" : ",", name_of(column), found);
