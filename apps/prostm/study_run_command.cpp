@@ -12,6 +12,7 @@
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/study/roster.hpp"
 #include "prostm/study/session.hpp"
+#include "prostm/study/spelling.hpp"
 #include "study_protocol.hpp"
 #include "view.hpp"
 
@@ -66,7 +67,7 @@ class PagesEnd {
 /// The number that --participant gives; 01 is 1. @throws InputError: it is not a number, or out of
 /// range.
 int participant_of(const StudyRunOptionsGiven& given) {
-  const std::string id = plain_id(given.participant);
+  const std::string id = study::trimmed(given.participant);
   int number = 0;
   const auto [end, wrong] = std::from_chars(id.data(), id.data() + id.size(), number);
   if (wrong != std::errc() || end != id.data() + id.size() || number < 1 ||
@@ -129,8 +130,8 @@ std::optional<Replacement> replacement_for(const StudyRunOptionsGiven& given, in
         "{} to go on with it",
         participant, self->file, path));
   }
-  if (self != nullptr &&
-      (given.replaces.empty() || plain_id(given.replaces) == plain_id(self->replaces))) {
+  if (self != nullptr && (given.replaces.empty() || study::spelling_key(given.replaces) ==
+                                                        study::spelling_key(self->replaces))) {
     if (self->replaces.empty()) return {};
     return Replacement{self->replaces, self->order};
   }

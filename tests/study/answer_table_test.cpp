@@ -2,8 +2,8 @@
 #include <array>
 #include <string>
 
-#include "prostm/study/detail/spelling.hpp"
 #include "prostm/study/scores.hpp"
+#include "prostm/study/spelling.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -6,6 +6,7 @@
 #include "prostm/core/file.hpp"
 #include "prostm/study/scores.hpp"
 #include "prostm/study/session.hpp"
+#include "prostm/study/spelling.hpp"
 #include "prostm/study/study_status.hpp"
 #include "study/study_support.hpp"
 #include "support/input_errors.hpp"
@@ -44,12 +45,13 @@ std::vector<Trial> write_participant(const Protocol& protocol, const std::string
 }
 
 TEST(Roster, IdsThatDifferInSpellingAloneAreTheSame) {
-  for (const char* id : {"7", "07", "007", " 7", "7 ", "\t7\r\n"}) EXPECT_EQ(plain_id(id), "7");
-  EXPECT_EQ(plain_id("P07"), plain_id(" p07 "));
-  EXPECT_NE(plain_id("70"), plain_id("7"));
-  EXPECT_EQ(plain_id("000"), "0");
-  EXPECT_EQ(plain_id("  "), "");
-  EXPECT_EQ(plain_id(""), "");
+  for (const char* id : {"7", "07", "007", " 7", "7 ", "\t7\r\n"})
+    EXPECT_EQ(study::spelling_key(id), "7");
+  EXPECT_EQ(study::spelling_key("P07"), study::spelling_key(" p07 "));
+  EXPECT_NE(study::spelling_key("70"), study::spelling_key("7"));
+  EXPECT_EQ(study::spelling_key("000"), "0");
+  EXPECT_EQ(study::spelling_key("  "), "");
+  EXPECT_EQ(study::spelling_key(""), "");
 }
 
 TEST(Roster, AReplacementHasTheOrderOfTheReplacedAndAnalysisLeavesThoseOut) {

@@ -8,7 +8,7 @@
 
 #include "prostm/core/file.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/lower_case.hpp"
+#include "prostm/study/spelling.hpp"
 
 namespace prostm {
 namespace {
@@ -23,15 +23,6 @@ int own_order(const std::string& participant) {
 }
 
 }  // namespace
-
-std::string plain_id(std::string_view id) {
-  constexpr std::string_view kBlanks = " \t\r\n\v\f";
-  const std::size_t first = std::min(id.find_first_not_of(kBlanks), id.size());
-  id.remove_prefix(first);
-  id.remove_suffix(id.size() - std::min(id.find_last_not_of(kBlanks) + 1, id.size()));
-  id.remove_prefix(id.empty() ? 0 : std::min(id.find_first_not_of('0'), id.size() - 1));
-  return lower_case(id);
-}
 
 std::optional<RosterEntry> roster_entry(std::string_view text, const std::string& file) {
   if (text.find(kResponseFormat) == std::string_view::npos) return {};
@@ -85,17 +76,17 @@ std::vector<RosterEntry> read_roster(std::span<const std::string> files,
 }
 
 const RosterEntry* find_participant(std::span<const RosterEntry> roster, std::string_view id) {
-  const std::string wanted = plain_id(id);
+  const std::string wanted = study::spelling_key(id);
   const auto found = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& e) {
-    return plain_id(e.participant) == wanted;
+    return study::spelling_key(e.participant) == wanted;
   });
   return found == roster.end() ? nullptr : &*found;
 }
 
 const RosterEntry* replacement_of(std::span<const RosterEntry> roster, const RosterEntry& entry) {
-  const std::string replaced = plain_id(entry.participant);
+  const std::string replaced = study::spelling_key(entry.participant);
   const auto found = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& e) {
-    return !e.replaces.empty() && plain_id(e.replaces) == replaced;
+    return !e.replaces.empty() && study::spelling_key(e.replaces) == replaced;
   });
   return found == roster.end() ? nullptr : &*found;
 }

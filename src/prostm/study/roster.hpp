@@ -37,10 +37,6 @@ struct RosterEntry {
   ResponseLine protocol;
 };
 
-/// Returns an id without blanks around it and zeros before it, with small letters: two ids that
-/// differ in spelling alone become the same.
-std::string plain_id(std::string_view id);
-
 /// Reads a participant's file. @return nothing: the file does not begin as one.
 /// @throws InputError: what responses_from_text() throws, a first line that is not whole.
 std::optional<RosterEntry> roster_entry(std::string_view text, const std::string& file);
@@ -53,7 +49,7 @@ std::vector<std::string> response_files_in(const std::string& folder);
 std::vector<RosterEntry> read_roster(std::span<const std::string> files,
                                      std::vector<std::string>* faults = nullptr);
 
-/// The entry of a participant, by plain_id(); null without one.
+/// The entry of a participant, by study::spelling_key(); null without one.
 const RosterEntry* find_participant(std::span<const RosterEntry> roster, std::string_view id);
 
 /// The entry that took the place of this one; null if none did.

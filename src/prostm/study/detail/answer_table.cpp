@@ -14,8 +14,8 @@
 #include "prostm/core/nearest_name.hpp"
 #include "prostm/study/detail/cells.hpp"
 #include "prostm/study/detail/csv.hpp"
-#include "prostm/study/detail/spelling.hpp"
 #include "prostm/study/detail/table_columns.hpp"
+#include "prostm/study/spelling.hpp"
 
 namespace prostm::study {
 namespace {

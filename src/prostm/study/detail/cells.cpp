@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "prostm/study/detail/spelling.hpp"
+#include "prostm/study/spelling.hpp"
 
 namespace prostm::study {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/nearest_name.hpp"
-#include "prostm/study/detail/spelling.hpp"
+#include "prostm/study/spelling.hpp"
 
 namespace prostm::study {
 namespace {

@@ -11,10 +11,9 @@ namespace prostm::study {
 std::string trimmed(std::string_view name);
 
 /// Returns what names that differ in spelling alone have in common: without leading zeros of whole
-/// numbers and zeros after their decimal mark ("01", "1", "1.0"), with small letters, composed
-/// accents, full-width characters as ASCII, and one "-" in place of white space, underscores and
-/// dashes. Invisible characters are left out. Letters of Latin, Greek and Cyrillic scripts are
-/// made small; accents are composed in Latin-1 and Latin Extended-A. @pre UTF-8.
+/// numbers and zeros after their decimal mark ("01", "1", "1.0"), in Unicode's form NFKC_Casefold
+/// (UAX 31: small letters, composed accents, full-width characters as ASCII, nothing invisible),
+/// and with one "-" in place of white space, underscores and dashes. @pre UTF-8.
 std::string spelling_key(std::string_view name);
 
 }  // namespace prostm::study
