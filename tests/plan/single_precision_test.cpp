@@ -68,7 +68,7 @@ double apart(const Plan& a, const Plan& b) {
 
 TEST(SinglePrecision, DoesNotChangeThePathsOfFast) {
   Random random(7);
-  for (const double cell : {4e-3, 5e-3, 5.2e-3, 7.8125e-3}) {
+  for (const double cell : {4e-3, 5e-3, 5.2e-3, 20e-3 / 3.0, 7.8125e-3}) {
     for (int round = 0; round < 30; ++round) {
       const TargetField field = bumps(random, cell);
       const TargetField copy = in_single_precision(field);
