@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 #include <vector>
 
@@ -115,6 +116,65 @@ TEST(LeapFrame, FingersMayBendByAnyAngle) {
           last[knuckle] = hand.orientation[knuckle];
         }
       }
+    }
+  }
+}
+
+/// Bends and swings every joint of a flat hand at random within the range of people, which includes
+/// fists, grasps, pinches and crossed fingers, and turns the whole hand. Frames follow their bones.
+Hand any_posture(Side side, std::mt19937& random) {
+  constexpr double kDegree = 3.14159265358979 / 180.0;
+  const auto draw = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random) * kDegree;
+  };
+  HandFrame frame;
+  make_study_hand({.side = side})->sample(0.0, frame);
+  Hand hand = frame.hands.at(0);
+  const Hand flat = hand;
+  // flexion of the joint at the knuckle and of the two behind it; the thumb has its own first bone
+  const auto bend = [&](std::size_t knuckle, std::array<double, 3> flexion, double swing) {
+    Quat turn(Eigen::AngleAxisd(swing, flat.orientation[knuckle] * Vec3::UnitY()));
+    for (std::size_t b = 0; b < 3; ++b) {
+      const std::size_t j = knuckle + b;
+      turn = turn * Quat(Eigen::AngleAxisd(-flexion[b], flat.orientation[j] * Vec3::UnitX()));
+      hand.orientation[j] = turn * flat.orientation[j];
+      hand.position[j + 1] = hand.position[j] + turn * (flat.position[j + 1] - flat.position[j]);
+    }
+    hand.orientation[knuckle + 3] = hand.orientation[knuckle + 2];
+  };
+  for (std::size_t base = kIndexMetacarpal; base < kJointCount; base += 5)
+    bend(base + 1, {draw(-30, 110), draw(0, 120), draw(-10, 90)}, draw(-25, 25));
+  bend(kThumbMetacarpal, {draw(-20, 50), draw(-10, 70), draw(-20, 90)}, draw(-20, 40));
+  std::normal_distribution<double> normal;
+  const Vec3 axis(normal(random), normal(random), normal(random));
+  const Quat whole(Eigen::AngleAxisd(draw(-180, 180), axis.normalized()));
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    hand.position[j] = flat.position[kPalm] + whole * (hand.position[j] - flat.position[kPalm]);
+    hand.orientation[j] = whole * hand.orientation[j];
+  }
+  return hand;
+}
+
+TEST(LeapFrame, EveryPostureIsAHandWithAndWithoutBases) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 4000; ++round) {
+    const Side side = round % 2 == 0 ? Side::Left : Side::Right;
+    std::normal_distribution<double> noise(0.0, round % 3 == 0 ? 1e-12 : 4e-4);
+    HandFrame sent;
+    sent.hands.push_back(any_posture(side, random));
+    for (Vec3& x : sent.hands[0].position)
+      for (double& value : x) value += noise(random);
+    nlohmann::json message = test::leap_json(sent);
+    if (round % 4 < 2)
+      for (nlohmann::json& finger : message["pointables"]) finger.erase("bases");
+    HandFrame frame;
+    HandFaults faults;
+    ASSERT_EQ(leap_message(message.dump(), frame, faults), LeapMessage::Frame);
+    ASSERT_FALSE(faults.any()) << "round " << round << ": " << faults.first;
+    const Hand& hand = frame.hands.at(0);
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      ASSERT_TRUE(hand.orientation[j].coeffs().allFinite());
+      ASSERT_NEAR(hand.orientation[j].norm(), 1.0, 1e-6);
     }
   }
 }
