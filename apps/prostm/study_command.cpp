@@ -193,7 +193,8 @@ int analyse_adjusted(const AnalyseOptionsGiven& options, const std::vector<Answe
   const std::vector<AdjustedResult> results = adjusted_levels(answered, level);
   const std::vector<MissingAnswers> missing = missing_answers(answers);
   std::string words = in_words(missing, AnswerKind::Adjusted);
-  words += (words.empty() ? "" : " ") + in_words(results, level);
+  if (!words.empty()) words += ' ';
+  words += in_words(results, level);
   std::FILE* out = prose(options.json);
   print_notes(out, notes);
   print_missing(out, missing);
