@@ -61,27 +61,26 @@ double smooth_height(const FlatPath& flat, const Lengths& height, std::size_t i,
   return sum / weights;
 }
 
-/// Cuts the segments into pieces; the points are in the plane P (z = 0).
-void subdivide(const FocalPath& path, LiftedPath& out) {
+/// Cuts the segments into pieces: calls add(i, next, t) for the points from i (t = 0) to next
+/// (t = 1, left out). A path at rest has one point.
+template <class Add>
+void subdivide(const FocalPath& path, const Add& add) {
   const std::size_t n = path.points.size();
   const bool rests = std::all_of(path.points.begin(), path.points.end(),
                                  [&](const Vec2& x) { return x == path.points[0]; });
-  const int pieces = rests ? 1 : kLiftedPointsPerSegment;
-  for (std::size_t i = 0; i < (rests ? 1 : n); ++i) {
-    const std::size_t next = (i + 1) % n;
-    for (int j = 0; j < pieces; ++j) {
-      const double t = static_cast<double>(j) / pieces;
-      const Vec2 x = (1.0 - t) * path.points[i] + t * path.points[next];
-      out.p_D.emplace_back(x.x(), x.y(), 0.0);
-      out.pressure.push_back((1.0 - t) * path.pressure[i] + t * path.pressure[next]);
-    }
+  if (rests) return add(std::size_t{0}, std::size_t{0}, 0.0);
+  constexpr int kPieces = kLiftedPointsPerSegment;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int j = 0; j < kPieces; ++j) add(i, (i + 1) % n, static_cast<double>(j) / kPieces);
   }
 }
 
-void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out) {
-  out.speed = path.speed;
-  out.patch = path.patch;
-  subdivide(path, out);
+/// All but the pressures.
+void lift_points(const FocalPath& path, const TargetField& field, LiftedPath& out) {
+  subdivide(path, [&](std::size_t i, std::size_t next, double t) {
+    const Vec2 x = (1.0 - t) * path.points[i] + t * path.points[next];
+    out.p_D.emplace_back(x.x(), x.y(), 0.0);
+  });
   measure(out);
 
   // heights of the skin, smoothed along the flat path
@@ -96,6 +95,15 @@ void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out)
   // from P to D
   for (Vec3& p : out.p_D) p = field.X_DP * p;
   measure(out);
+}
+
+void lift_path(const FocalPath& path, const TargetField& field, LiftedPath& out) {
+  out.speed = path.speed;
+  out.patch = path.patch;
+  lift_points(path, field, out);
+  subdivide(path, [&](std::size_t i, std::size_t next, double t) {
+    out.pressure.push_back((1.0 - t) * path.pressure[i] + t * path.pressure[next]);
+  });
 }
 
 }  // namespace
@@ -122,7 +130,7 @@ void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept 
 
 double skin_length(const FocalPath& path, const TargetField& field) noexcept {
   LiftedPath lifted;
-  lift_path(path, field, lifted);
+  lift_points(path, field, lifted);
   return lifted.length;
 }
 

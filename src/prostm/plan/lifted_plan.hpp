@@ -49,11 +49,11 @@ struct LiftedPlan {
 /// height of the skin there. Sets all but `id`. @pre every `patch` is an index into frame.patches.
 void lift(const Plan& plan, const TargetFrame& frame, LiftedPlan& out) noexcept;
 
-/// Returns the length on the skin of one path over `field`, as lift() makes it [m].
+/// Returns the length on the skin of one path over `field`, as lift() makes it [m]. Its pressures
+/// are not read.
 double skin_length(const FocalPath& path, const TargetField& field) noexcept;
 
-/// Computes `s` and `length` from the points. @pre p_D.size() == pressure.size(), coordinates
-/// finite.
+/// Computes `s` and `length` from the points. @pre coordinates are finite.
 void measure(LiftedPath& path) noexcept;
 
 /// Position and rendered pressure on a path at arc length s (taken modulo the length), linear
