@@ -32,7 +32,7 @@ class LiveStudy {
     auto hands = link_.make_hands("study", link_.settings.pipeline);
     link_.hands = hands.get();
     pipeline_ = std::make_unique<Pipeline>(link_.settings.pipeline, std::move(hands), link_.mute);
-    view_ = std::make_unique<StudyView>(
+    view_ = std::make_unique<CountingView>(
         link_, ViewHello{"0", "simulated usx", "usx", {}, Vec3::Zero(), 0.36}, session_);
     ViewSettings settings;
     settings.port = 0;
@@ -56,17 +56,41 @@ class LiveStudy {
       if (line["kind"] == "trial") found.push_back(line);
     return found;
   }
+  /// Waits until plans of now press on the hand and the session has seen one; the page reports.
+  void wait_for_pressure(Page& page, const std::string& report) {
+    const auto wait_for = [&](const std::atomic<int>& count, int more) {
+      for (const int end = count + more; count < end;) {
+        page.say(report);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      }
+    };
+    wait_for(observer_.pressing, 3);
+    wait_for(view_->looks, 3);
+  }
   /// Waits until the session is closed.
   void wait() {
     while (!view_->closed()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 
  private:
+  /// Counts what the session has seen.
+  struct CountingView final : StudyView {
+    using StudyView::StudyView;
+    bool refresh_state(Room room, std::string& state) override {
+      if (room == Room::Main) ++looks;
+      return StudyView::refresh_state(room, state);
+    }
+    std::atomic<int> looks{0};
+  };
   struct Observer final : RunObserver {
-    bool on_plan(const WorldFrame&, const PlanFrame&) override { return goes_on(); }
+    bool on_plan(const WorldFrame&, const PlanFrame& plan) override {
+      if (!plan.plan.paths.empty() || !plan.plan.foci.empty()) ++pressing;
+      return goes_on();
+    }
     bool on_progress(double) override { return goes_on(); }
     bool goes_on() const { return !stops; }
     std::atomic<bool> stops{false};
+    std::atomic<int> pressing{0};  // plans with focal points
   };
   static Protocol protocol(const std::string& more) {
     Protocol p = test::study_protocol(more);
@@ -85,7 +109,7 @@ class LiveStudy {
   StudySession session_;
   LiveLink link_;
   std::unique_ptr<Pipeline> pipeline_;
-  std::unique_ptr<StudyView> view_;
+  std::unique_ptr<CountingView> view_;
   std::unique_ptr<ViewServer> server_;
   Observer observer_;
   std::thread thread_;
@@ -126,6 +150,7 @@ TEST(StudyView, LeadsARunThroughTheTrialsAndKeepsThemFromBothPages) {
     EXPECT_TRUE(told.at("condition").is_null());
     EXPECT_EQ(told.at("question"), shown.at("question").at("text"));
     EXPECT_EQ(shown.at("question").at("jets_mm").size(), order[i].question == 0 ? 1U : 4U);
+    study.wait_for_pressure(participant, kReport);
     experimenter.say(R"({"type":"study","do":"answer","yes":true})");
     at_phase(experimenter, i + 1 == order.size()                    ? "done"
                            : order[i + 1].method == order[i].method ? "settling"

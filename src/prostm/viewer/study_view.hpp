@@ -24,7 +24,7 @@ StudySight study_time();
 /// The experimenter is in the main room. The participant is the guest, who gets only what the
 /// protocol shows: nothing that they are sent depends on what is presented, the picture during
 /// training excepted. In a blind study nothing that the experimenter is sent does either.
-class StudyView final : public ViewSource {
+class StudyView : public ViewSource {
  public:
   /// @param session is used by the server's thread from now on. All must outlive this.
   /// @param rehearsal that stands in for people, if any does.
