@@ -216,7 +216,9 @@ void add_loop_rows(const std::vector<LoopDrives>& loops, int threads, std::vecto
     for (int repeat = 0; repeat < 5; ++repeat) {
       time(mean, [&] { ours = mean_radiation_pressure(packed, Medium(), drives, at, pool); });
       time(direct, [&] { product.mean(unit, expected); });
-      time(envelope, [&] { loop = loop_pressure(packed, Medium(), drives, at, 0, pool); });
+      time(envelope, [&] {
+        loop = loop_pressure(packed, Medium(), LoopBasis(packed, drives, pool), at, 0, pool);
+      });
       time(direct_envelope, [&] { product.envelope(unit, largest); });
     }
     reference.mean(unit, expected);

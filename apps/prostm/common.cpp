@@ -1,13 +1,11 @@
 #include "common.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -258,43 +256,6 @@ int tell(const std::exception_ptr& failure) {
 
 void warn(const std::string& sentence) {
   std::fprintf(stderr, "prostm: warning: %s\n", sentence.c_str());
-}
-
-namespace {
-
-/// Whether standard error is a terminal whose lines can be erased.
-bool can_erase_lines() {
-  const char* const kind = std::getenv("TERM");
-  return isatty(STDERR_FILENO) != 0 && kind != nullptr && *kind != '\0' &&
-         std::string_view(kind) != "dumb";
-}
-
-}  // namespace
-
-void Progress::show(double done, double all, const char* unit) {
-  if (!can_erase_lines()) return;
-  const double t = steady_now();
-  if (t - last_ < 0.2) return;
-  last_ = t;
-  shown_ = true;
-  // a terminal that has gone does not end the work
-  std::fputs(fmt::format("\r{}  {:.0f} of {:.0f} {} ", what_, done, all, unit).c_str(), stderr);
-  std::fflush(stderr);
-}
-
-void Progress::say(std::FILE* out, const std::string& line) {
-  clear();
-  fmt::print(out, "{}\n", line);
-  std::fflush(out);
-}
-
-void Progress::clear() {
-  if (shown_) std::fputs("\r\033[K", stderr);
-  shown_ = false;
-}
-
-Progress::~Progress() {
-  clear();
 }
 
 std::FILE* prose(const std::string& json_option) {

@@ -9,6 +9,7 @@
 
 #include "interrupt.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "prostm/acoustics/focus_solver.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/io/settings_file.hpp"
@@ -78,22 +79,6 @@ class Attempts {
 
  private:
   std::exception_ptr first_;
-};
-
-/// One line on a terminal, rewritten a few times a second; silent elsewhere.
-class Progress {
- public:
-  explicit Progress(std::string what) : what_(std::move(what)) {}
-  ~Progress();
-  void show(double done, double all, const char* unit);
-  /// A line that stays, above the one that is rewritten.
-  void say(std::FILE* out, const std::string& line);
-  void clear();  ///< the line, so that something else can be printed
-
- private:
-  std::string what_;
-  double last_ = -1.0;
-  bool shown_ = false;
 };
 
 /// Where a command's prose goes: standard output, or standard error when standard output carries

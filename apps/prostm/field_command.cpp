@@ -159,8 +159,10 @@ void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
   std::array<double, kTiltsDegrees.size()> tilts{};
   for (std::size_t i = 0; i < tilts.size(); ++i) tilts[i] = kTiltsDegrees[i] * kPi / 180.0;
   const Medium air;
+  Progress progress("measuring foci");
   const std::vector<FocusWidthEntry> table =
       focus_width_table(PackedArray(array, air), air, kHeights, kOffsets, tilts);
+  progress.clear();
 
   std::FILE* out = prose(given.common.json);
   fmt::print(out, "one focus of {} at full drive; sigma along the tilt × across it\n", array.name);
@@ -177,19 +179,20 @@ void tell_widths(const TransducerArray& array, const FieldOptionsGiven& given) {
   say_written(out, given.common.json);
 }
 
-/// Drives for the whole loop, with progress; false when it was interrupted.
-bool solve(const TransducerArray& array, const Medium& air, const LoopSamples& loop,
-           const FieldOptionsGiven& given, const Interrupt& interrupt, LoopDriveResult& drives) {
+/// Drives for the whole loop.
+LoopDriveResult solve(const TransducerArray& array, const Medium& air, const LoopSamples& loop,
+                      const FieldOptionsGiven& given, Progress& progress) {
   LoopDriveSettings settings;
   settings.focus.method = solver_of(given.solver);
   settings.full_scale_pa = given.full_scale_pa;
   settings.transducer.memoryless = given.memoryless;
-  Progress progress("solving");
   const auto go_on = [&](int done, int of) {
     progress.show(done, of, "samples");
-    return !interrupt.requested();
+    return true;  // nothing is written before the end, so a signal may end it anywhere
   };
-  return loop_drives(array, air, loop, settings, go_on, drives);
+  LoopDriveResult drives;
+  loop_drives(array, air, loop, settings, go_on, drives);
+  return drives;
 }
 
 /// The results that a report points to.
@@ -261,15 +264,14 @@ int field_command(const FieldOptionsGiven& given) {
   const LoopSamples loop =
       plan_loop(input.plan, frame, emission_of(all, input), all.emission_rate());
   const Medium air;
-  const Interrupt interrupt;
-  LoopDriveResult drives;
-  if (!solve(array, air, loop, given, interrupt, drives)) return interrupt.status();
+  Progress progress("solving");
+  const LoopDriveResult drives = solve(array, air, loop, given, progress);
   const PackedArray packed(array, air);
   WorkerPool pool(all.threads);
-  Progress progress("computing the field");
-  progress.show(0, 2, "steps: pressure on the skin");
-  const PhysicalField field = physical_field(packed, air, input.raster, loop, drives, pool);
-  if (interrupt.requested()) return interrupt.status();
+  progress.next("computing the pressure on the skin");
+  const bool felt = is_felt(input.raster, loop);
+  const PhysicalField field =
+      physical_field(packed, air, input.raster, loop, drives, felt ? felt_parts(loop) : 0, pool);
 
   PhysicalReport report;
   report.plan = given.plan;
@@ -284,16 +286,16 @@ int field_command(const FieldOptionsGiven& given) {
   report.settings = settings_groups(std::as_const(all));
   report.program = version_text();
   Judgement judgement;
-  if (is_felt(input.raster, loop)) {
-    progress.show(1, 2, "steps: what is felt");
+  if (felt) {
+    progress.next("computing what is felt");
     FeelingSkin skin(input.raster);
-    judgement.felt = skin.feel(packed, air, input.raster, loop, drives, pool);
+    judgement.felt =
+        skin.feel(input.raster, loop.samples / loop.sample_rate, field.parts, field.part);
     report.felt = &judgement.felt;
     if (given.felt_spectrum) report.spectrum = felt_spectrum(input.raster, skin.motion());
   }
-  progress.clear();
-  if (interrupt.requested()) return interrupt.status();
   if (input.has_target) judge(input, all.plan, report, judgement);
+  progress.clear();
   tell(report, input, given);
   return 0;
 }

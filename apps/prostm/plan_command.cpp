@@ -208,7 +208,7 @@ Result plan_field(const TargetField& target, const PipelineSettings& settings, b
 
 /// Fills in how good the plan is. @param widths as of quality_of().
 void score(const TargetField& target, const PipelineSettings& settings,
-           const std::vector<double>& widths, Result& r) {
+           const std::vector<double>& widths, Progress& progress, Result& r) {
   const PlanSettings& s = settings.plan;
   const SegmentPressures pressures = played(target, r.plan, settings);
   WorkerPool pool(settings.threads);
@@ -217,7 +217,7 @@ void score(const TargetField& target, const PipelineSettings& settings,
     r.weighted = weighted_rmse(target, r.plan, 0, settings.sigma(), s.gain_law(), &pressures);
   }
   if (r.status != PlanStatus::Planned) return;
-  Progress progress("scoring what must lose to the plan");
+  progress.next("scoring what must lose to the plan");
   r.controls = controls(
       target, settings.sigma(), s.gain_law(), s.max_length(), &r.other,
       static_cast<std::uint64_t>(s.seed),
@@ -337,6 +337,15 @@ std::optional<double> use_own_width(const PlanOptionsGiven& given, const TargetF
   return own;
 }
 
+/// Fills in all scores, and that of what is felt if an array is given.
+void judge(const TargetField& target, const PipelineSettings& settings,
+           const std::vector<double>& widths, bool by_felt, Result& r) {
+  Progress progress("scoring the plan");
+  score(target, settings, widths, progress, r);
+  progress.next("computing what is felt");
+  if (by_felt) r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
+}
+
 }  // namespace
 
 int plan_command(const PlanOptionsGiven& given) {
@@ -358,8 +367,7 @@ int plan_command(const PlanOptionsGiven& given) {
   print_warnings(out, r.warnings);
   std::fflush(out);
 
-  score(target, settings, other_widths, r);
-  if (given.common.array) r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
+  judge(target, settings, other_widths, given.common.array.has_value(), r);
   const bool by_felt = !felt_words(settings).empty();
   const auto losses = control_warnings(r.quality.played, r.controls, by_felt);
   r.warnings.insert(r.warnings.end(), losses.begin(), losses.end());

@@ -216,7 +216,10 @@ int analyse_command(const AnalyseOptionsGiven& options) {
   const std::vector<Answer> answers = read_answers(options.answers, notes, options.reading);
   if (answers.front().kind == AnswerKind::Adjusted)
     return analyse_adjusted(options, answers, notes);
-  const Analysis analysis = analyse(answers, options.settings);
+  const Analysis analysis = [&] {
+    const Progress progress("analysing");
+    return analyse(answers, options.settings);
+  }();
   const std::string words = in_words(analysis);
   std::FILE* out = prose(options.json);
   const std::size_t people = analysis.participants.size();

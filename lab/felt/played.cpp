@@ -41,8 +41,8 @@ Pressed Player::press(const LoopDriveResult& drives, const TargetField& target, 
   const auto samples = static_cast<int>(drives.output.cols());
   out.period = samples / kRate;
   out.parts = samples / kLoopUnit;
-  const LoopPressure found =
-      loop_pressure(packed_, medium_, drives.output, skin.points, out.parts, *pool_);
+  const LoopPressure found = loop_pressure(
+      packed_, medium_, LoopBasis(packed_, drives.output, *pool_), skin.points, out.parts, *pool_);
   const auto parts = static_cast<std::size_t>(out.parts);
   out.pressure.assign(parts * target.size(), 0.0);
   out.envelope.assign(target.size(), 0.0);

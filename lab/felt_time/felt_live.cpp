@@ -107,7 +107,8 @@ class Playing {
     const std::size_t before = pressure.size(), parts = static_cast<std::size_t>(ticks);
     pressure.resize(before + parts * raster_.size(), 0.0F);
     if (outputs_.isZero(0.0F)) return;
-    const LoopPressure field = loop_pressure(packed_, air_, outputs_, skin_.points, ticks, pool_);
+    const LoopPressure field = loop_pressure(packed_, air_, LoopBasis(packed_, outputs_, pool_),
+                                             skin_.points, ticks, pool_);
     for (std::size_t m = 0; m < skin_.cell.size(); ++m) {
       for (std::size_t k = 0; k < parts; ++k) {
         pressure[before + k * raster_.size() + skin_.cell[m]] = field.frame[m * parts + k];

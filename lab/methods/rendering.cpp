@@ -119,8 +119,8 @@ void Renderer::Parts::play(const TargetField& target, Rendering& out) {
   loop_drives(
       array, medium, loop, {}, [](int, int) { return true; }, drives);
   out.mean_power = drives.mean_power;
-  out.field = physical_field(packed, medium, target, loop, drives, pool);
-  out.felt = skin.feel(packed, medium, target, loop, drives, pool);
+  out.field = physical_field(packed, medium, target, loop, drives, felt_parts(loop), pool);
+  out.felt = skin.feel(target, loop.samples / loop.sample_rate, out.field.parts, out.field.part);
 }
 
 Renderer::Renderer(const TransducerArray& array, const TargetField& raster)

@@ -164,8 +164,8 @@ TEST(DriveBasis, RefusesWhatIsNoLoop) {
 TEST(LoopField, OfSilenceIsNothing) {
   const PackedArray packed(usx_array(), Medium());
   WorkerPool pool(1);
-  const LoopPressure loop =
-      loop_pressure(packed, Medium(), LoopDrives::Zero(256, 8), raster(3), 4, pool);
+  const LoopPressure loop = loop_pressure(
+      packed, Medium(), LoopBasis(packed, LoopDrives::Zero(256, 8), pool), raster(3), 4, pool);
   EXPECT_EQ(loop.mean, std::vector<float>(9, 0.0F));
   EXPECT_EQ(loop.envelope, loop.mean);
 }
@@ -181,7 +181,8 @@ TEST(LoopField, IsThatOfEverySampleByItself) {
       EXPECT_LT(worst(mean_radiation_pressure(packed, Medium(), drives, surface, pool),
                       expected.rowwise().mean()),
                 1e-5);
-      const LoopPressure loop = loop_pressure(packed, Medium(), drives, surface, 30, pool);
+      const LoopPressure loop =
+          loop_pressure(packed, Medium(), LoopBasis(packed, drives, pool), surface, 30, pool);
       EXPECT_LT(worst(loop.mean, expected.rowwise().mean()), 1e-5);
       EXPECT_LT(worst(loop.envelope, expected.rowwise().maxCoeff()), 2e-4);
       ASSERT_EQ(loop.frame.size(), 30u * surface.p_D.size());
@@ -212,8 +213,10 @@ TEST(LoopField, DoesNotDependOnTheNumberOfThreads) {
   const SurfacePoints surface = raster(20, 0.3);
   const LoopDrives drives = two_circles(packed.array, 100);
   WorkerPool one(1), three(3);
-  const LoopPressure a = loop_pressure(packed, Medium(), drives, surface, 10, one);
-  const LoopPressure b = loop_pressure(packed, Medium(), drives, surface, 10, three);
+  const LoopPressure a =
+      loop_pressure(packed, Medium(), LoopBasis(packed, drives, one), surface, 10, one);
+  const LoopPressure b =
+      loop_pressure(packed, Medium(), LoopBasis(packed, drives, three), surface, 10, three);
   EXPECT_EQ(a.mean, b.mean);
   EXPECT_EQ(a.envelope, b.envelope);
   EXPECT_EQ(a.frame, b.frame);
@@ -279,7 +282,8 @@ TEST(LoopField, RefusesWhatHasNoField) {
   refused(surface);
   EXPECT_THROW(mean_radiation_pressure(packed, Medium(), drives.topRows(10), raster(2), pool),
                std::invalid_argument);
-  EXPECT_THROW(loop_pressure(packed, Medium(), drives, raster(2), 4, pool), std::invalid_argument);
+  EXPECT_THROW(loop_pressure(packed, Medium(), LoopBasis(packed, drives, pool), raster(2), 4, pool),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -254,7 +254,7 @@ Skill skill_of(const TargetFrame& target) {
   EXPECT_TRUE(loop_drives(
       usx_array(), air, loop, {}, [](int, int) { return true; }, drives));
   WorkerPool pool(1);
-  const PhysicalField field = physical_field(packed, air, patch, loop, drives, pool);
+  const PhysicalField field = physical_field(packed, air, patch, loop, drives, 0, pool);
   return {score_plan(patch, plan, 0, settings.sigma, settings.gain_law()).skill_0,
           score_physical(patch, field.envelope, 0.0).skill_0};
 }

@@ -72,7 +72,7 @@ TEST(FeltJudge, ScoresAsTheProgramDoes) {
     LoopDriveResult drives;
     loop_drives(
         array, air, loop, {}, [](int, int) { return true; }, drives);
-    const PhysicalField physical = physical_field(packed, air, field, loop, drives, pool);
+    const PhysicalField physical = physical_field(packed, air, field, loop, drives, 0, pool);
     EXPECT_NEAR(judged.envelope.skill_8, score_physical(field, physical.envelope, 0.0).skill_8,
                 1e-6);
     const FeltField felt = FeelingSkin(field).feel(packed, air, field, loop, drives, pool);

@@ -109,8 +109,8 @@ TEST(Physical, LargestValuesDoNotDependOnTheCells) {
   const TargetField coarse = wide_raster(31), fine = wide_raster(155);
   const LoopSamples loop = loop_of(two_squares(coarse, 1.0));
   const LoopDriveResult drives = drives_of(loop, {});
-  const PhysicalField wide = physical_field(packed, Medium(), coarse, loop, drives, pool),
-                      narrow = physical_field(packed, Medium(), fine, loop, drives, pool);
+  const PhysicalField wide = physical_field(packed, Medium(), coarse, loop, drives, 0, pool),
+                      narrow = physical_field(packed, Medium(), fine, loop, drives, 0, pool);
   const auto at_cells = [](const PhysicalField& field) {
     return *std::max_element(field.envelope.begin(), field.envelope.end());
   };
@@ -136,7 +136,7 @@ TEST(Physical, HalfTheTargetGivesHalfTheRadiationPressure) {
     const LoopSamples loop = loop_of(two_squares(field, pressure));
     const LoopDriveResult drives = drives_of(loop, settings);
     EXPECT_EQ(drives.short_samples, 0);
-    fields.push_back(physical_field(packed, Medium(), field, loop, drives, pool));
+    fields.push_back(physical_field(packed, Medium(), field, loop, drives, 0, pool));
   }
   for (std::size_t c = 0; c < field.size(); ++c) {
     EXPECT_NEAR(fields[1].mean[c], 0.5 * fields[0].mean[c], 2e-4 * fields[0].largest_mean);
@@ -210,7 +210,7 @@ TEST(Physical, CompensatedTiltedSkinGetsWhatLevelSkinGets) {
     compensate_tilt(plan, frame, bound);
     const LoopSamples loop = loop_of(plan);
     const PhysicalField out =
-        physical_field(packed, Medium(), field, loop, drives_of(loop, settings), pool);
+        physical_field(packed, Medium(), field, loop, drives_of(loop, settings), 0, pool);
     return out.largest;
   };
   const double level = largest_of(0.0, 1.0);

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "prostm/acoustics/detail/complex_product.hpp"
 #include "prostm/acoustics/propagation.hpp"
 
 namespace prostm {
@@ -71,8 +70,7 @@ void for_blocks(const PackedArray& packed, const SurfacePoints& surface, const P
   });
 }
 
-void check(const PackedArray& packed, const LoopDrives& drives, const SurfacePoints& surface) {
-  validate(surface, packed.array);
+void check(const PackedArray& packed, const LoopDrives& drives) {
   if (static_cast<std::size_t>(drives.rows()) != packed.transducers()) {
     refuse("the loop has drives for " + std::to_string(drives.rows()) +
            " transducers, but the array has " + std::to_string(packed.transducers()));
@@ -142,7 +140,8 @@ std::vector<float> radiation_pressure(const PackedArray& packed, const Medium& m
 std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medium& medium,
                                            const LoopDrives& drives, const SurfacePoints& surface,
                                            WorkerPool& pool) {
-  check(packed, drives, surface);
+  validate(surface, packed.array);
+  check(packed, drives);
   const PackedMatrix right =
       packed_from(covariance_factor(drives, pool, kTolerance), packed.stride());
   const float unit = static_cast<float>(radiation_pressure(1.0, medium));
@@ -158,18 +157,23 @@ std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medi
   return mean;
 }
 
-LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium,
-                           const LoopDrives& drives, const SurfacePoints& surface, int frames,
-                           WorkerPool& pool) {
-  check(packed, drives, surface);
-  const auto samples = static_cast<std::size_t>(drives.cols());
+LoopBasis::LoopBasis(const PackedArray& packed, const LoopDrives& drives, WorkerPool& pool)
+    : samples(static_cast<std::size_t>(drives.cols())), factor(0, 0), course(0, 0) {
+  check(packed, drives);
+  const Eigen::MatrixXcf q = orthonormal(covariance_factor(drives, pool, kTolerance));
+  factor = packed_from(q, packed.stride());
+  course = packed_from(q.adjoint() * drives, factor.cols());
+}
+
+LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium, const LoopBasis& basis,
+                           const SurfacePoints& surface, int frames, WorkerPool& pool) {
+  validate(surface, packed.array);
+  const std::size_t samples = basis.samples;
   if (frames < 0 || (frames > 0 && samples % static_cast<std::size_t>(frames) != 0)) {
     refuse("frames = " + std::to_string(frames) + " must be 0 or a divisor of the loop's " +
            std::to_string(samples) + " samples");
   }
-  const Eigen::MatrixXcf q = orthonormal(covariance_factor(drives, pool, kTolerance));
-  const PackedMatrix factor = packed_from(q, packed.stride());
-  const PackedMatrix course = packed_from(q.adjoint() * drives, factor.cols());
+  const PackedMatrix &factor = basis.factor, &course = basis.course;
   const float unit = static_cast<float>(radiation_pressure(1.0, medium));
   const std::size_t points = surface.p_D.size(), parts = static_cast<std::size_t>(frames);
   LoopPressure out;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "prostm/acoustics/detail/complex_product.hpp"
 #include "prostm/acoustics/drive_basis.hpp"
 #include "prostm/acoustics/propagation_kernels.hpp"
 #include "prostm/core/worker_pool.hpp"
@@ -49,12 +50,21 @@ struct LoopPressure {
   std::vector<float> frame;     ///< mean over each part: points × frames
 };
 
-/// Computes every sample in the same basis, a_k ≈ Q Qᴴ a_k; the error is within 2e-4 of the largest
-/// pressure.
+/// The drives of a loop in a basis that all samples share, a_k ≈ Q Qᴴ a_k.
+struct LoopBasis {
+  /// @throws as covariance_factor() does, and std::invalid_argument if the drives are not those of
+  /// the array.
+  LoopBasis(const PackedArray& packed, const LoopDrives& drives, WorkerPool& pool);
+
+  std::size_t samples;
+  PackedMatrix factor;  ///< Q
+  PackedMatrix course;  ///< Qᴴ a_k, sample by sample
+};
+
+/// Computes every sample in the loop's basis; the error is within 2e-4 of the largest pressure.
 /// @param frames 0, or a divisor of the number of samples.
-/// @throws as mean_radiation_pressure() does, and std::invalid_argument for any other `frames`.
-LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium,
-                           const LoopDrives& drives, const SurfacePoints& surface, int frames,
-                           WorkerPool& pool);
+/// @throws as validate() does, and std::invalid_argument for any other `frames`.
+LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium, const LoopBasis& basis,
+                           const SurfacePoints& surface, int frames, WorkerPool& pool);
 
 }  // namespace prostm

@@ -1,6 +1,7 @@
 #include "prostm/acoustics/skin_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -29,10 +30,11 @@ void SkinMotion::choose_harmonics(double period, int samples, double highest) {
   samples_ = samples;
   harmonics_ = harmonics;
   displacement_.assign(static_cast<std::size_t>(harmonics) * patch_.size(), 0.0);
-  course_.resize(static_cast<std::size_t>(samples));
-  spectrum_.resize(course_.size());
-  // the library makes its tables at the first call for this length
-  time_fft_.fwd(spectrum_.data(), course_.data(), samples);
+  block_.assign(static_cast<std::size_t>(samples) * kBlock, 0.0);
+  wave_.clear();
+  for (int k = 0; k < samples; ++k) {
+    wave_.push_back(std::polar(2.0 / samples, -2.0 * kPi * k / samples));
+  }
 }
 
 void SkinMotion::load(const PressureLoop& loop) {
@@ -43,14 +45,29 @@ void SkinMotion::load(const PressureLoop& loop) {
         "the loop must have the period and the samples that prepare() was given, and a pressure "
         "for each sample and cell");
   }
-  for (std::size_t c = 0; c < cells; ++c) {
-    for (std::size_t k = 0; k < course_.size(); ++k) course_[k] = loop.pressure[k * cells + c];
-    time_fft_.fwd(spectrum_.data(), course_.data(), samples_);
-    for (int n = 1; n <= harmonics_; ++n) {
-      displacement_[static_cast<std::size_t>(n - 1) * cells + c] =
-          2.0 / samples_ * spectrum_[static_cast<std::size_t>(n)];
+  // a few harmonics of many samples: their sums cost less than a transform of each cell
+  for (std::size_t first = 0; first < cells; first += kBlock) {
+    const std::size_t count = std::min(kBlock, cells - first);
+    for (std::size_t k = 0; k < wave_.size(); ++k) {
+      std::copy_n(loop.pressure.begin() + static_cast<std::ptrdiff_t>(k * cells + first), count,
+                  block_.begin() + static_cast<std::ptrdiff_t>(k * kBlock));
+    }
+    for (int n = 1; n <= harmonics_; ++n) sum_harmonic(n, harmonic(n).subspan(first, count));
+  }
+}
+
+/// Sums one harmonic over the samples for the cells of `block_`.
+void SkinMotion::sum_harmonic(int n, std::span<std::complex<double>> out) const {
+  std::array<double, kBlock> re{}, im{};
+  for (std::size_t k = 0; k < wave_.size(); ++k) {
+    const std::complex<double> wave = wave_[static_cast<std::size_t>(n) * k % wave_.size()];
+    const double* const p = &block_[k * kBlock];
+    for (std::size_t c = 0; c < kBlock; ++c) {
+      re[c] += wave.real() * p[c];
+      im[c] += wave.imag() * p[c];
     }
   }
+  for (std::size_t c = 0; c < out.size(); ++c) out[c] = {re[c], im[c]};
 }
 
 std::span<std::complex<double>> SkinMotion::harmonic(int n) {

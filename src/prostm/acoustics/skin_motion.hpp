@@ -4,7 +4,6 @@
 
 #include <complex>
 #include <span>
-#include <unsupported/Eigen/FFT>
 #include <vector>
 
 namespace prostm {
@@ -52,12 +51,15 @@ class SkinMotion {
   std::span<std::complex<double>> harmonic(int n);
 
  private:
+  static constexpr std::size_t kBlock = 64;  // cells whose sums stay in the cache
+  void sum_harmonic(int n, std::span<std::complex<double>> out) const;
+
   SkinPatch patch_;
-  Eigen::FFT<double> time_fft_;
   double period_ = 0.0;
   int samples_ = 0, harmonics_ = 0;
-  std::vector<std::complex<double>> displacement_, spectrum_;
-  std::vector<double> course_;  // pressure of one cell over the period
+  std::vector<std::complex<double>> displacement_;
+  std::vector<std::complex<double>> wave_;  // 2/K e^{−2πi k/K} of K samples
+  std::vector<double> block_;               // pressures of a block of cells, sample by sample
 };
 
 /// Computes the rms velocity of the skin [m/s] in every cell, (S10). @param out rows·cols

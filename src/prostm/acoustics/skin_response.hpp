@@ -2,6 +2,7 @@
 /// The steady vibration of skin without bounds under a periodic pressure: a sum over the harmonics
 /// of the draw rate, (S9) to (S11) of docs/design.md.
 
+#include <array>
 #include <complex>
 #include <span>
 #include <vector>
@@ -37,15 +38,23 @@ class SkinResponse : public SkinMotion {
   void respond(const PressureLoop& loop);
 
  private:
+  static constexpr int kTaps = 12;
+  struct RadiusPlace {
+    int first = 0;                       // radius of the table
+    std::array<double, kTaps> weight{};  // of this and the radii after it
+  };
+  static RadiusPlace place_of(double radius);
   void make_radii();
-  void make_kernel(double omega, std::span<std::complex<double>> kernel);
+  std::complex<double> integrand(double k, double omega) const;
+  void make_kernels(double period);
 
   SkinModel model_;
   SkinPart part_;
   Fft2 fft_;
-  // Green's functions: the distances (radii) between cells, and J_0(k r) for each of them
-  std::vector<int> radius_of_;  // index of the radius of each cell of the padded raster
-  Eigen::MatrixXd bessel_;      // radii × wave numbers
+  // Green's functions: the distances (radii) between cells, and J_0(k r) for even radii
+  std::vector<int> radius_of_;       // index of the radius of each cell of the padded raster
+  std::vector<RadiusPlace> places_;  // of each radius in the table
+  Eigen::MatrixXd bessel_;           // radii of the table × wave numbers
   std::vector<std::complex<double>> kernels_;  // their transforms, padded, one for each harmonic
   std::vector<std::complex<double>> padded_;
 };

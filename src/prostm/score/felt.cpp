@@ -61,6 +61,10 @@ bool is_felt(const TargetField& raster, const LoopSamples& loop) {
          raster.cell <= kLargest;
 }
 
+int felt_parts(const LoopSamples& loop) {
+  return loop.samples / kPart;
+}
+
 FeltField felt_field(const TargetField& raster, const SkinMotion& motion) {
   FeltField out;
   out.percept.resize(raster.size());
@@ -87,9 +91,9 @@ FeltField FeelingSkin::feel(const PackedArray& packed, const Medium& medium,
                             const TargetField& raster, const LoopSamples& loop,
                             const LoopDriveResult& drives, WorkerPool& pool) {
   const SkinSurface skin = skin_surface(raster);
-  const int parts = loop.samples / kPart;
-  const LoopPressure pressure =
-      loop_pressure(packed, medium, drives.output, skin.points, parts, pool);
+  const int parts = felt_parts(loop);
+  const LoopPressure pressure = loop_pressure(
+      packed, medium, LoopBasis(packed, drives.output, pool), skin.points, parts, pool);
   return feel(raster, loop.samples / loop.sample_rate, parts, on_raster(raster, skin, pressure));
 }
 

@@ -18,6 +18,9 @@ inline constexpr double kLongestFelt = 0.25;
 /// skin has too many harmonics or places.
 bool is_felt(const TargetField& raster, const LoopSamples& loop);
 
+/// Number of equal parts of a loop whose mean pressures the skin feels. @pre is_felt(raster, loop)
+int felt_parts(const LoopSamples& loop);
+
 /// Perceived strength of a loop, rows·cols; 0 where there is no skin.
 struct FeltField {
   std::vector<double> percept;  ///< √e, (S7) [m]
@@ -40,8 +43,8 @@ class FeelingSkin {
   /// the constructor.
   FeltField feel(const TargetField& raster, double period, int parts,
                  std::span<const double> pressure);
-  /// Computes the percept of the loop that an array plays. @throws as loop_pressure() does. @pre
-  /// is_felt(raster, loop)
+  /// Computes the percept of the loop that an array plays. @throws as LoopBasis and
+  /// loop_pressure() do. @pre is_felt(raster, loop)
   FeltField feel(const PackedArray& packed, const Medium& medium, const TargetField& raster,
                  const LoopSamples& loop, const LoopDriveResult& drives, WorkerPool& pool);
   /// The skin's motion under the last loop.

@@ -81,16 +81,18 @@ class Looking {
  public:
   Looking(const PackedArray& packed, const Medium& medium, const TargetField& raster,
           const SkinSurface& skin, const LoopSamples& loop, const LoopDriveResult& drives,
-          WorkerPool& pool)
+          int parts_of_loop, WorkerPool& pool)
       : packed_(packed),
         medium_(medium),
         raster_(raster),
         skin_(skin),
         places_(places_of(loop)),
-        drives_(drives),
+        basis_(packed, drives.output, pool),
         pool_(pool) {
     field.mean.assign(raster.size(), 0.0);
     field.envelope.assign(raster.size(), 0.0);
+    field.parts = parts_of_loop;
+    field.part.assign(raster.size() * static_cast<std::size_t>(parts_of_loop), 0.0);
     // an odd number along each edge, so that one point is in the middle
     const int parts =
         1 + 2 * std::max(0, static_cast<int>(std::ceil(raster.cell / kLook / 2 - 0.5)));
@@ -98,19 +100,24 @@ class Looking {
     for (std::size_t m = 0; m < skin.cell.size(); ++m) {
       divide({m, raster.position(skin.cell[m])}, raster.cell, parts, all);
     }
-    const LoopPressure found = look(all);
+    const LoopPressure found = look(all, parts_of_loop);
     const auto of_a_cell = static_cast<std::size_t>(parts) * static_cast<std::size_t>(parts);
+    const auto frames = static_cast<std::size_t>(parts_of_loop);
     for (std::size_t m = 0; m < skin.cell.size(); ++m) {
-      field.mean[skin.cell[m]] = static_cast<double>(found.mean[m * of_a_cell + of_a_cell / 2]);
-      field.envelope[skin.cell[m]] =
-          static_cast<double>(found.envelope[m * of_a_cell + of_a_cell / 2]);
+      const std::size_t middle = m * of_a_cell + of_a_cell / 2, cell = skin.cell[m];
+      field.mean[cell] = static_cast<double>(found.mean[middle]);
+      field.envelope[cell] = static_cast<double>(found.envelope[middle]);
+      for (std::size_t k = 0; k < frames; ++k) {
+        field.part[k * raster.size() + cell] =
+            static_cast<double>(found.frame[middle * frames + k]);
+      }
     }
     // a place also stands for its surroundings, which may be beside the paths where it is not
     for (const Place& place : std::exchange(highest_, {})) {
       divide(place, 2.0 * kLook, 2 * kFiner, near);
     }
     std::erase_if(near, [&](const Place& place) { return !on_skin(place.x); });
-    look(near);
+    look(near, 0);
     if (field.largest > 0.0) field.side_lobe = beside_ / field.largest;
   }
 
@@ -151,14 +158,14 @@ class Looking {
   }
 
   /// Updates the largest values, and adds the highest places of each kind to `highest_`.
-  LoopPressure look(const std::vector<Place>& at) {
+  LoopPressure look(const std::vector<Place>& at, int frames) {
     SurfacePoints points;
     for (const Place& place : at) {
       const double height = height_at(raster_, place.x);
       points.p_D.push_back(raster_.X_DP * Vec3(place.x.x(), place.x.y(), height));
       points.normal.push_back(skin_.points.normal[place.of]);
     }
-    LoopPressure found = loop_pressure(packed_, medium_, drives_.output, points, 0, pool_);
+    LoopPressure found = loop_pressure(packed_, medium_, basis_, points, frames, pool_);
     const auto take = [&](const std::vector<float>& value, auto&& counts, double& largest) {
       std::vector<std::size_t> order(at.size());
       std::iota(order.begin(), order.end(), std::size_t{0});
@@ -189,7 +196,7 @@ class Looking {
   const TargetField& raster_;
   const SkinSurface& skin_;
   std::vector<Eigen::Vector3f> places_;
-  const LoopDriveResult& drives_;
+  LoopBasis basis_;
   WorkerPool& pool_;
   std::vector<Place> highest_;
   double beside_ = 0.0;  // the largest of the envelope beside the paths
@@ -260,12 +267,12 @@ FocusAccuracy focus_accuracy(const PackedArray& packed, const LoopSamples& loop,
 
 PhysicalField physical_field(const PackedArray& packed, const Medium& medium,
                              const TargetField& raster, const LoopSamples& loop,
-                             const LoopDriveResult& drives, WorkerPool& pool) {
+                             const LoopDriveResult& drives, int parts, WorkerPool& pool) {
   const SkinSurface skin = skin_surface(raster);
   if (skin.cell.empty()) {
     throw std::invalid_argument("the raster has no skin; at least one cell must have a height");
   }
-  return Looking(packed, medium, raster, skin, loop, drives, pool).field;
+  return Looking(packed, medium, raster, skin, loop, drives, parts, pool).field;
 }
 
 Metrics score_physical(const TargetField& target, const std::vector<double>& field,

@@ -49,13 +49,15 @@ struct PhysicalField {
   double largest = 0.0;       ///< largest of the envelope
   double largest_mean = 0.0;  ///< largest of the mean
   double side_lobe = 0.0;     ///< largest of the envelope beside the paths, over `largest`
+  int parts = 0;              ///< number of equal parts that the loop is cut into
+  std::vector<double> part;   ///< mean over each part: rows·cols values, part by part
 };
 
-/// Computes the field. @throws std::invalid_argument as loop_pressure() does, and if the raster has
-/// no skin.
+/// Computes the field. @param parts as `frames` of loop_pressure(). @throws std::invalid_argument
+/// as LoopBasis and loop_pressure() do, and if the raster has no skin.
 PhysicalField physical_field(const PackedArray& packed, const Medium& medium,
                              const TargetField& raster, const LoopSamples& loop,
-                             const LoopDriveResult& drives, WorkerPool& pool);
+                             const LoopDriveResult& drives, int parts, WorkerPool& pool);
 
 /// Computes the metrics (Q1) to (Q7) of a physical field against a target on the same raster, after
 /// scaling the field by the least-squares gain g = Σ p* p / Σ p²: the target's unit does not

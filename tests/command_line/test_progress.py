@@ -1,0 +1,80 @@
+"""Progress of long work on a terminal, and its end by Ctrl-C."""
+
+import os
+import pty
+import re
+import signal
+import subprocess
+
+import numpy as np
+import pytest
+
+
+def ring(path, side, edge_mm):
+    """Writes a ring of pressure of 22 mm radius."""
+    x = (np.arange(side) - side / 2 + 0.5) * edge_mm
+    np.save(path, np.exp(-((np.hypot(*np.meshgrid(x, x)) - 22) / 5) ** 2))
+
+
+class OnTerminal:
+    """A command whose standard error is a terminal."""
+
+    def __init__(self, program, folder, *arguments, term="xterm"):
+        self.master, end = pty.openpty()
+        self.process = subprocess.Popen([str(program), *map(str, arguments)], cwd=folder, stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.DEVNULL, stderr=end, env={**os.environ, "TERM": term})
+        os.close(end)
+        self.shown = ""
+
+    def read(self):
+        """Adds what comes next to `shown`; false at the end."""
+        try:
+            data = os.read(self.master, 1 << 16)
+        except OSError:
+            data = b""
+        self.shown += data.decode()
+        return bool(data)
+
+    def end(self):
+        while self.read():
+            pass
+        os.close(self.master)
+        return self.process.wait(timeout=60)
+
+
+@pytest.mark.long
+def test_stages_show_their_counts_or_their_time(program, tmp_path):
+    ring(tmp_path / "ring.npy", 400, 0.35)
+    planning = OnTerminal(program, tmp_path, "plan", "ring.npy", "--cell-mm", "0.35", "--json", "plan.json")
+    assert planning.end() == 0
+    assert re.search(r"\rscoring what must lose to the plan  \d+ of \d+ fields ", planning.shown)
+    assert planning.shown.endswith("\r\033[K")
+    field = OnTerminal(program, tmp_path, "field", "plan.json", "--field", "ring.npy", "--cell-mm", "0.35", "--json",
+                       "field.json")
+    assert field.end() == 0
+    # the work of half a minute on one core
+    assert re.search(r"\rcomputing the pressure on the skin  [2-9] s ", field.shown), field.shown
+    assert field.shown.endswith("\r\033[K")
+
+
+@pytest.mark.long
+def test_ctrl_c_ends_long_work_without_files(program, tmp_path):
+    ring(tmp_path / "ring.npy", 400, 0.35)
+    subprocess.run([str(program), "plan", "ring.npy", "--cell-mm", "0.35", "--json", "plan.json"], cwd=tmp_path, check=True,
+                   stdout=subprocess.DEVNULL)
+    before = sorted(tmp_path.iterdir())
+    field = OnTerminal(program, tmp_path, "field", "plan.json", "--field", "ring.npy", "--cell-mm", "0.35", "--json",
+                       "field.json", "--figure", "field.png")
+    while "computing the pressure" not in field.shown:
+        assert field.read(), "the stage never showed its time"
+    field.process.send_signal(signal.SIGINT)
+    assert field.end() == -signal.SIGINT
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("term", ["dumb", ""])
+def test_a_terminal_that_cannot_erase_gets_no_progress(program, tmp_path, term):
+    ring(tmp_path / "ring.npy", 200, 0.7)
+    planning = OnTerminal(program, tmp_path, "plan", "ring.npy", "--cell-mm", "0.7", term=term)
+    assert planning.end() == 0
+    assert "\r" not in planning.shown.replace("\r\n", "\n") and "\033" not in planning.shown
