@@ -39,6 +39,7 @@ const kReleased: Record<State["transport"]["page_hand"], string> = {
 /// Where the hands come from, for the page with this number.
 export function sourceOf({ source, hand_page: holder, page_hand: hand }: State["transport"], page: number): string {
   if (source !== "page") return (kSources[source] ?? source) + kReleased[hand];
+  if (holder === null) return "no page’s hand" + kReleased[hand];
   return holder === page ? "hand from this page" : "hand from another page";
 }
 

@@ -31,6 +31,7 @@ describe("the source of the hands", () => {
     expect(sourceOf(transport, 1)).toBe("scripted hand");
     expect(sourceOf({ ...transport, source: "page", hand_page: 1 }, 1)).toBe("hand from this page");
     expect(sourceOf({ ...transport, source: "page", hand_page: 2 }, 1)).toBe("hand from another page");
+    expect(sourceOf({ ...transport, source: "page", page_hand: "hidden" }, 1)).toBe("no page’s hand; the page that held the hand is hidden");
     expect(sourceOf({ ...transport, page_hand: "hidden" }, 1)).toBe("scripted hand; the page that held the hand is hidden");
     expect(sourceOf({ ...transport, page_hand: "late" }, 1)).toBe("scripted hand; the page that held the hand is late");
   });
