@@ -212,7 +212,7 @@ void add_loop_rows(const std::vector<LoopDrives>& loops, int threads, std::vecto
     DirectProduct<float> product(packed, at, drives);
     DirectProduct<double> reference(packed, at, drives);
     std::vector<float> ours;
-    LoopPressure loop;
+    LoopPressure loop(0, 0);
     for (int repeat = 0; repeat < 5; ++repeat) {
       time(mean, [&] { ours = mean_radiation_pressure(packed, Medium(), drives, at, pool); });
       time(direct, [&] { product.mean(unit, expected); });

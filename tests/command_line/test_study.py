@@ -127,6 +127,11 @@ def test_levels_that_some_answers_lack_are_refused(prostm, refuses, tmp_path):
     assert "all answers are at one level" in prostm("study", "analyse", "a.csv").stdout
 
 
+def test_a_list_in_json_is_refused_with_its_conversion(refuses, tmp_path):
+    (tmp_path / "jspsych.json").write_text('\n[{"participant": "a", "method": "am", "scene": "x", "correct": true}]')
+    refuses("study", "analyse", "jspsych.json", words=["jspsych.json", "list", "CSV", "to_csv"])
+
+
 def test_a_tidy_table_has_the_same_answers(prostm, refuses, tmp_path):
     assert prostm("study", "analyse", MADE_UP, "--tidy", "a.csv").stdout.endswith("wrote a.csv\n")
     assert (tmp_path / "a.csv").read_bytes().count(b"\r\n") == len(MADE_UP.read_text().splitlines())

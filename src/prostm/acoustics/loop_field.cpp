@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -42,9 +41,12 @@ struct Course {
   std::vector<float> re, im, pressure;
 };
 
+Eigen::Map<const Eigen::ArrayXf> course_of(std::span<const float> x) {
+  return {x.data(), static_cast<Eigen::Index>(x.size())};
+}
+
 float mean_of(std::span<const float> x) {
-  return static_cast<float>(std::accumulate(x.begin(), x.end(), 0.0) /
-                            static_cast<double>(x.size()));
+  return static_cast<float>(course_of(x).cast<double>().mean());
 }
 
 /// Calls f(first point, number of points, scratch, thread) for all blocks. Each thread has its own
@@ -157,6 +159,22 @@ std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medi
   return mean;
 }
 
+LoopPressure::LoopPressure(std::size_t points, int parts)
+    : mean(points),
+      envelope(points),
+      frames(parts),
+      frame(points * static_cast<std::size_t>(parts)) {}
+
+void LoopPressure::take(std::size_t point, std::span<const float> pressure) {
+  mean[point] = mean_of(pressure);
+  envelope[point] = course_of(pressure).maxCoeff();
+  const auto parts = static_cast<std::size_t>(frames);
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t length = pressure.size() / parts;
+    frame[point * parts + part] = mean_of(pressure.subspan(part * length, length));
+  }
+}
+
 LoopBasis::LoopBasis(const PackedArray& packed, const LoopDrives& drives, WorkerPool& pool)
     : samples(static_cast<std::size_t>(drives.cols())), factor(0, 0), course(0, 0) {
   check(packed, drives);
@@ -175,12 +193,7 @@ LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium, cons
   }
   const PackedMatrix &factor = basis.factor, &course = basis.course;
   const float unit = static_cast<float>(radiation_pressure(1.0, medium));
-  const std::size_t points = surface.p_D.size(), parts = static_cast<std::size_t>(frames);
-  LoopPressure out;
-  out.mean.resize(points);
-  out.envelope.resize(points);
-  out.frames = frames;
-  out.frame.resize(points * parts);
+  LoopPressure out(surface.p_D.size(), frames);
   std::vector<Course> courses(static_cast<std::size_t>(pool.threads()), Course(course.cols()));
   for_blocks(packed, surface, factor, pool,
              [&](std::size_t first, std::size_t count, const Scratch& s, std::size_t thread) {
@@ -189,16 +202,10 @@ LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium, cons
                complex_product({s.z_re.data(), s.z_im.data(), count, factor.cols()}, course, 0,
                                c.re.data(), c.im.data());
                for (std::size_t m = 0; m < count; ++m) {
-                 const std::size_t at = m * course.cols(), point = first + m;
+                 const std::size_t at = m * course.cols();
                  squares(c.re.data() + at, c.im.data() + at, course.cols(), unit,
                          c.pressure.data());
-                 const std::span<const float> all(c.pressure.data(), samples);
-                 out.mean[point] = mean_of(all);
-                 out.envelope[point] = *std::max_element(all.begin(), all.end());
-                 for (std::size_t part = 0; part < parts; ++part) {
-                   out.frame[point * parts + part] =
-                       mean_of(all.subspan(part * (samples / parts), samples / parts));
-                 }
+                 out.take(first + m, std::span<const float>(c.pressure).first(samples));
                }
              });
   return out;

@@ -44,9 +44,14 @@ std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medi
 
 /// Radiation pressure over a loop [Pa].
 struct LoopPressure {
+  /// All zeros. @param parts are `frames`.
+  LoopPressure(std::size_t points, int parts);
+  /// Sets the values of a point from its pressure in all samples.
+  void take(std::size_t point, std::span<const float> pressure);
+
   std::vector<float> mean;      ///< over all samples, one per point
   std::vector<float> envelope;  ///< largest of all samples, one per point
-  int frames = 0;               ///< number of equal parts that the loop is cut into
+  int frames;                   ///< number of equal parts that the loop is cut into
   std::vector<float> frame;     ///< mean over each part: points × frames
 };
 

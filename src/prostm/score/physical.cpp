@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "prostm/acoustics/flat_field.hpp"
 #include "prostm/acoustics/focus_width.hpp"
 #include "prostm/target/skin_normal.hpp"
 
@@ -75,6 +76,16 @@ std::vector<Eigen::Vector3f> places_of(const LoopSamples& loop) {
   return places;
 }
 
+/// Whether all skin has one height.
+bool is_flat(const TargetField& raster) {
+  const auto first = std::ranges::find(raster.skin, 1) - raster.skin.begin();
+  const double height = raster.height[static_cast<std::size_t>(first)];
+  for (std::size_t c = 0; c < raster.size(); ++c) {
+    if (raster.skin[c] != 0 && raster.height[c] != height) return false;
+  }
+  return true;
+}
+
 /// Computes a PhysicalField. Cells may be wider than a lobe, so its largest values are searched on
 /// points 2 mm apart or less, and then on points 0.5 mm apart around the highest of these.
 class Looking {
@@ -100,7 +111,11 @@ class Looking {
     for (std::size_t m = 0; m < skin.cell.size(); ++m) {
       divide({m, raster.position(skin.cell[m])}, raster.cell, parts, all);
     }
-    const LoopPressure found = look(all, parts_of_loop);
+    const std::vector<Vec3> places = on_skin(all);
+    const LoopPressure found = parts == 1 && is_flat(raster)
+                                   ? flat_pressure(parts_of_loop)
+                                   : pressure_at(all, places, parts_of_loop);
+    look(all, places, found);
     const auto of_a_cell = static_cast<std::size_t>(parts) * static_cast<std::size_t>(parts);
     const auto frames = static_cast<std::size_t>(parts_of_loop);
     for (std::size_t m = 0; m < skin.cell.size(); ++m) {
@@ -116,8 +131,9 @@ class Looking {
     for (const Place& place : std::exchange(highest_, {})) {
       divide(place, 2.0 * kLook, 2 * kFiner, near);
     }
-    std::erase_if(near, [&](const Place& place) { return !on_skin(place.x); });
-    look(near, 0);
+    std::erase_if(near, [&](const Place& place) { return !has_skin(place.x); });
+    const std::vector<Vec3> places_near = on_skin(near);
+    look(near, places_near, pressure_at(near, places_near, 0));
     if (field.largest > 0.0) field.side_lobe = beside_ / field.largest;
   }
 
@@ -142,7 +158,7 @@ class Looking {
     }
   }
 
-  bool on_skin(const Vec2& x) const {
+  bool has_skin(const Vec2& x) const {
     const Vec2 q = (x - raster_.origin) / raster_.cell;
     const long row = std::lround(q.y()), col = std::lround(q.x());
     return row >= 0 && col >= 0 && row < raster_.rows && col < raster_.cols &&
@@ -157,15 +173,37 @@ class Looking {
     });
   }
 
-  /// Updates the largest values, and adds the highest places of each kind to `highest_`.
-  LoopPressure look(const std::vector<Place>& at, int frames) {
-    SurfacePoints points;
+  std::vector<Vec3> on_skin(const std::vector<Place>& at) const {
+    std::vector<Vec3> out;
     for (const Place& place : at) {
       const double height = height_at(raster_, place.x);
-      points.p_D.push_back(raster_.X_DP * Vec3(place.x.x(), place.x.y(), height));
-      points.normal.push_back(skin_.points.normal[place.of]);
+      out.push_back(raster_.X_DP * Vec3(place.x.x(), place.x.y(), height));
     }
-    LoopPressure found = loop_pressure(packed_, medium_, basis_, points, frames, pool_);
+    return out;
+  }
+
+  LoopPressure pressure_at(const std::vector<Place>& at, const std::vector<Vec3>& p_D, int frames) {
+    SurfacePoints points{p_D, {}};
+    for (const Place& place : at) points.normal.push_back(skin_.points.normal[place.of]);
+    return loop_pressure(packed_, medium_, basis_, points, frames, pool_);
+  }
+
+  /// In the middles of all cells with skin. @pre is_flat(raster_)
+  LoopPressure flat_pressure(int frames) {
+    const Eigen::Matrix3d& axes = raster_.X_DP.linear();
+    FlatRaster flat;
+    const double height = raster_.height[skin_.cell.front()];
+    flat.corner = raster_.X_DP * Vec3(raster_.origin.x(), raster_.origin.y(), height);
+    flat.right = raster_.cell * axes.col(0);
+    flat.down = raster_.cell * axes.col(1);
+    flat.normal = skin_.points.normal.front();
+    flat.rows = raster_.rows;
+    flat.cols = raster_.cols;
+    return flat_loop_pressure(packed_, medium_, basis_, flat, skin_.cell, frames, pool_);
+  }
+
+  /// Updates the largest values, and adds the highest places of each kind to `highest_`.
+  void look(const std::vector<Place>& at, const std::vector<Vec3>& p_D, const LoopPressure& found) {
     const auto take = [&](const std::vector<float>& value, auto&& counts, double& largest) {
       std::vector<std::size_t> order(at.size());
       std::iota(order.begin(), order.end(), std::size_t{0});
@@ -187,8 +225,7 @@ class Looking {
     take(found.envelope, anywhere, field.largest);
     take(found.mean, anywhere, field.largest_mean);
     take(
-        found.envelope, [&](std::size_t i) { return beside_paths(points.p_D[i]); }, beside_);
-    return found;
+        found.envelope, [&](std::size_t i) { return beside_paths(p_D[i]); }, beside_);
   }
 
   const PackedArray& packed_;

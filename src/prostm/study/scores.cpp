@@ -415,6 +415,17 @@ std::vector<Answer> Files::take() {
   return std::move(all_);
 }
 
+/// Refuses a table as jsPsych and pandas write it in JSON.
+void refuse_list(std::string_view text, const std::string& path) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || text[first] != '[') return;
+  throw InputError(
+      fmt::format("{0}: is a list, as jsPsych writes JSON; save the answers as CSV, or convert "
+                  "them: python3 -c "
+                  "'import pandas; pandas.read_json(\"{0}\").to_csv(\"{0}.csv\", index=False)'",
+                  path));
+}
+
 }  // namespace
 
 std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
@@ -424,8 +435,11 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
 
 std::vector<Answer> read_answers(std::span<const std::string> paths,
                                  std::vector<std::string>& notes, const ReadingSettings& settings) {
-  if (paths.size() == 1 && paths.front().ends_with(".json"))
-    return answers_from_paper(read_file(paths.front(), kMaxBytes), paths.front());
+  if (paths.size() == 1 && paths.front().ends_with(".json")) {
+    const std::string text = read_file(paths.front(), kMaxBytes);
+    refuse_list(text, paths.front());
+    return answers_from_paper(text, paths.front());
+  }
   Files files(settings, notes);
   files.read(paths);
   return files.take();
