@@ -251,6 +251,41 @@ TEST(SkinResponse, ConvergesWithTheCell) {
   EXPECT_GT(error(6e-3), error(3e-3));
 }
 
+// (S9) and (S11) without tables and transforms: one cell is pressed, and others answer.
+TEST(SkinResponse, IsTheSumOverWaveNumbers) {
+  Random random(11);
+  const SkinModel skin{SkinSettings{}};
+  for (const double cell : {0.35e-3, 1e-3, 3e-3}) {
+    const SkinPatch patch{23, 40, cell};
+    const int samples = 21, cells = patch.rows * patch.cols;
+    SkinResponse response(skin, patch);
+    response.prepare(9e-3, samples);
+    const int pressed = random.below(cells);
+    std::vector<double> pressure(static_cast<std::size_t>(samples * cells), 0.0);
+    for (int k = 0; k < samples; ++k)
+      pressure[static_cast<std::size_t>(k * cells + pressed)] = random.uniform(0.0, 100.0);
+    response.respond({9e-3, samples, pressure});
+    for (int trial = 0; trial < 20; ++trial) {
+      const int n = 1 + random.below(response.harmonics());
+      const int felt = trial == 0 ? pressed : random.below(cells);
+      const auto displacement = [&](int at) {
+        const double r = cell * std::hypot(at / patch.cols - pressed / patch.cols,
+                                           at % patch.cols - pressed % patch.cols);
+        Complex loop = 0.0, sum = 0.0;
+        for (int k = 0; k < samples; ++k) {
+          loop += 2.0 / samples * std::polar(1.0, -2.0 * kPi * n * k / samples) *
+                  pressure[static_cast<std::size_t>(k * cells + pressed)];
+        }
+        for (double k = 1.0; k < kPi / cell + 1.0; k += 1.0)
+          sum += skin.compliance(k, 2.0 * kPi * response.frequency(n)) * j0(k * r) * k;
+        return loop * sum * cell * cell / (2.0 * kPi);
+      };
+      const Complex found = response.displacement(n)[static_cast<std::size_t>(felt)];
+      EXPECT_LT(std::abs(found - displacement(felt)), 1e-10 * std::abs(displacement(pressed)));
+    }
+  }
+}
+
 TEST(SkinResponse, RespondAllocatesNothing) {
   const SkinPatch patch{20, 30, 2e-3};
   SkinResponse response(SkinModel{SkinSettings{}}, patch);
