@@ -138,6 +138,11 @@ TEST(FlatField, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(a.mean, b.mean);
   EXPECT_EQ(a.envelope, b.envelope);
   EXPECT_EQ(a.frame, b.frame);
+  for (const int frames : {-1, 5}) {
+    EXPECT_THROW(
+        flat_loop_pressure(packed, air, LoopBasis(packed, drives, one), flat, cells, frames, one),
+        std::invalid_argument);
+  }
 }
 
 }  // namespace

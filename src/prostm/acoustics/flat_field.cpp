@@ -1,6 +1,7 @@
 #include "prostm/acoustics/flat_field.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -13,6 +14,7 @@ constexpr int kBefore = kTaps / 2 - 1;        // points of the interpolation bef
 constexpr double kBandwidthTimesStep = 0.97;  // (A24): an error of 2e-6 along each axis
 constexpr double kNear = 50e-3;               // transducers nearer than this need every point [m]
 constexpr double kGrazing = 0.05;             // cosine below which a beam may end [1]
+constexpr int kLargestStep = 64;
 constexpr std::size_t kMostValues = std::size_t{1} << 28;  // pressures kept at once, 1 GB
 
 using Weights = Eigen::Matrix<float, kTaps, 1>;
@@ -81,9 +83,49 @@ void interpolate(const float* from, std::size_t stride, const Weights& weights, 
   to.noalias() = courses * weights;
 }
 
+/// The pressure of all samples along one column of cells, at every step-th row.
+class Column {
+ public:
+  Column(const Coarse& coarse, std::size_t samples)
+      : samples_(samples),
+        values_(static_cast<std::size_t>(coarse.rows) * samples),
+        course_(samples) {}
+
+  void load(const std::vector<float>& table, const Coarse& coarse, int col) {
+    for (int row = 0; row < coarse.rows; ++row) {
+      const auto from = static_cast<std::size_t>(row * coarse.cols + col / coarse.step);
+      interpolate(table.data() + from * samples_, samples_, coarse.weights_of(col),
+                  course_at(values_.data() + static_cast<std::size_t>(row) * samples_));
+    }
+  }
+  /// Interpolates at a row of cells; valid until the next call.
+  std::span<const float> at(const Coarse& coarse, int row) {
+    const auto from = static_cast<std::size_t>(row / coarse.step);
+    Course here = course_at(course_.data());
+    interpolate(values_.data() + from * samples_, samples_, coarse.weights_of(row), here);
+    here = here.cwiseMax(0.0F);
+    return course_;
+  }
+
+ private:
+  Course course_at(float* data) const { return {data, static_cast<Eigen::Index>(samples_)}; }
+
+  std::size_t samples_;
+  std::vector<float> values_, course_;
+};
+
 }  // namespace
 
 int flat_step(const PackedArray& packed, const FlatRaster& raster, std::size_t samples) {
+  const auto count = [&](int by) {
+    return static_cast<std::size_t>((raster.rows - 1) / by + kTaps) *
+           static_cast<std::size_t>((raster.cols - 1) / by + kTaps);
+  };
+  const auto saves = [&](int by) {
+    return 2 * count(by) <
+           static_cast<std::size_t>(raster.rows) * static_cast<std::size_t>(raster.cols);
+  };
+  if (!saves(kLargestStep)) return 1;
   constexpr int kLooks = 5;  // along each edge
   double bandwidth = 0.0;
   for (int j = 0; j < kLooks; ++j) {
@@ -94,13 +136,8 @@ int flat_step(const PackedArray& packed, const FlatRaster& raster, std::size_t s
     }
   }
   const double cells = kBandwidthTimesStep / (bandwidth * raster.right.norm());
-  const int step = static_cast<int>(std::clamp(cells, 1.0, 64.0));
-  if (step == 1) return 1;
-  const auto rows = static_cast<std::size_t>((raster.rows - 1) / step + kTaps);
-  const auto cols = static_cast<std::size_t>((raster.cols - 1) / step + kTaps);
-  const bool saves = 2 * rows * cols <
-                     static_cast<std::size_t>(raster.rows) * static_cast<std::size_t>(raster.cols);
-  return saves && rows * cols * samples <= kMostValues ? step : 1;
+  const int step = static_cast<int>(std::clamp(cells, 1.0, 1.0 * kLargestStep));
+  return step > 1 && saves(step) && count(step) * samples <= kMostValues ? step : 1;
 }
 
 LoopPressure flat_loop_pressure(const PackedArray& packed, const Medium& medium,
@@ -117,6 +154,7 @@ LoopPressure flat_loop_pressure(const PackedArray& packed, const Medium& medium,
     }
     return loop_pressure(packed, medium, basis, points, frames, pool);
   }
+  validate_frames(frames, basis.samples);
   const Coarse coarse(raster, step);
   // a part of the loop for each sample
   const std::size_t samples = basis.samples;
@@ -125,23 +163,14 @@ LoopPressure flat_loop_pressure(const PackedArray& packed, const Medium& medium,
   std::vector<std::vector<std::size_t>> in_column(width);  // indices in `cells`
   for (std::size_t i = 0; i < cells.size(); ++i) in_column[cells[i] % width].push_back(i);
   LoopPressure out(cells.size(), frames);
-  pool.run(raster.cols, [&](int col) {
-    const auto& members = in_column[static_cast<std::size_t>(col)];
-    if (members.empty()) return;
-    std::vector<float> column(static_cast<std::size_t>(coarse.rows) * samples), course(samples);
-    for (int row = 0; row < coarse.rows; ++row) {
-      const auto at = static_cast<std::size_t>(row * coarse.cols + col / step);
-      interpolate(table.data() + at * samples, samples, coarse.weights_of(col),
-                  Course(column.data() + static_cast<std::size_t>(row) * samples,
-                         static_cast<Eigen::Index>(samples)));
-    }
-    for (const std::size_t i : members) {
-      const int row = static_cast<int>(cells[i] / width);
-      Course here(course.data(), static_cast<Eigen::Index>(samples));
-      interpolate(column.data() + static_cast<std::size_t>(row / step) * samples, samples,
-                  coarse.weights_of(row), here);
-      here = here.cwiseMax(0.0F);
-      out.take(i, course);
+  std::vector<Column> scratch(static_cast<std::size_t>(pool.threads()), Column(coarse, samples));
+  std::atomic<int> next{0};
+  pool.run(pool.threads(), [&](int thread) {
+    Column& mine = scratch[static_cast<std::size_t>(thread)];
+    for (int col = next++; col < raster.cols; col = next++) {
+      mine.load(table, coarse, col);
+      for (const std::size_t i : in_column[static_cast<std::size_t>(col)])
+        out.take(i, mine.at(coarse, static_cast<int>(cells[i] / width)));
     }
   });
   return out;

@@ -159,6 +159,12 @@ std::vector<float> mean_radiation_pressure(const PackedArray& packed, const Medi
   return mean;
 }
 
+void validate_frames(int frames, std::size_t samples) {
+  if (frames == 0 || (frames > 0 && samples % static_cast<std::size_t>(frames) == 0)) return;
+  refuse("frames = " + std::to_string(frames) + " must be 0 or a divisor of the loop's " +
+         std::to_string(samples) + " samples");
+}
+
 LoopPressure::LoopPressure(std::size_t points, int parts)
     : mean(points),
       envelope(points),
@@ -187,10 +193,7 @@ LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium, cons
                            const SurfacePoints& surface, int frames, WorkerPool& pool) {
   validate(surface, packed.array);
   const std::size_t samples = basis.samples;
-  if (frames < 0 || (frames > 0 && samples % static_cast<std::size_t>(frames) != 0)) {
-    refuse("frames = " + std::to_string(frames) + " must be 0 or a divisor of the loop's " +
-           std::to_string(samples) + " samples");
-  }
+  validate_frames(frames, samples);
   const PackedMatrix &factor = basis.factor, &course = basis.course;
   const float unit = static_cast<float>(radiation_pressure(1.0, medium));
   LoopPressure out(surface.p_D.size(), frames);

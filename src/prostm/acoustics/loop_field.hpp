@@ -66,9 +66,12 @@ struct LoopBasis {
   PackedMatrix course;  ///< Qᴴ a_k, sample by sample
 };
 
+/// Checks the number of parts that a loop is cut into.
+/// @throws std::invalid_argument unless it is 0 or a divisor of the number of samples.
+void validate_frames(int frames, std::size_t samples);
+
 /// Computes every sample in the loop's basis; the error is within 2e-4 of the largest pressure.
-/// @param frames 0, or a divisor of the number of samples.
-/// @throws as validate() does, and std::invalid_argument for any other `frames`.
+/// @throws as validate() and validate_frames() do.
 LoopPressure loop_pressure(const PackedArray& packed, const Medium& medium, const LoopBasis& basis,
                            const SurfacePoints& surface, int frames, WorkerPool& pool);
 
