@@ -342,8 +342,9 @@ void judge(const TargetField& target, const PipelineSettings& settings,
            const std::vector<double>& widths, bool by_felt, Result& r) {
   Progress progress("scoring the plan");
   score(target, settings, widths, progress, r);
+  if (!by_felt) return;
   progress.next("computing what is felt");
-  if (by_felt) r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
+  r.quality.played.felt_skill = felt_skill_of(target, r.plan, settings);
 }
 
 }  // namespace
