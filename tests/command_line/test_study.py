@@ -129,7 +129,8 @@ def test_levels_that_some_answers_lack_are_refused(prostm, refuses, tmp_path):
 
 def test_a_list_in_json_is_refused_with_its_conversion(refuses, tmp_path):
     (tmp_path / "jspsych.json").write_text('\n[{"participant": "a", "method": "am", "scene": "x", "correct": true}]')
-    refuses("study", "analyse", "jspsych.json", words=["jspsych.json", "list", "CSV", "to_csv"])
+    for files in (["jspsych.json"], [MADE_UP, "jspsych.json"]):
+        refuses("study", "analyse", *files, words=["jspsych.json", "list", "CSV", "to_csv"])
 
 
 def test_a_tidy_table_has_the_same_answers(prostm, refuses, tmp_path):

@@ -435,10 +435,11 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
 
 std::vector<Answer> read_answers(std::span<const std::string> paths,
                                  std::vector<std::string>& notes, const ReadingSettings& settings) {
-  if (paths.size() == 1 && paths.front().ends_with(".json")) {
-    const std::string text = read_file(paths.front(), kMaxBytes);
-    refuse_list(text, paths.front());
-    return answers_from_paper(text, paths.front());
+  for (const std::string& path : paths) {
+    if (!path.ends_with(".json")) continue;
+    const std::string text = read_file(path, kMaxBytes);
+    refuse_list(text, path);
+    if (paths.size() == 1) return answers_from_paper(text, path);
   }
   Files files(settings, notes);
   files.read(paths);
