@@ -349,9 +349,21 @@ void Files::refuse_copies(const std::string& path, const std::string& text) {
   }
 }
 
+/// Refuses a table as jsPsych and pandas write it in JSON.
+void refuse_list(std::string_view text, const std::string& path) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || text[first] != '[') return;
+  throw InputError(
+      fmt::format("{0}: is a list, as jsPsych writes JSON; save the answers as CSV, or convert "
+                  "them: python3 -c "
+                  "'import pandas; pandas.read_json(\"{0}\").to_csv(\"{0}.csv\", index=False)'",
+                  path));
+}
+
 void Files::read_one(const std::string& path, const std::string& prefix) {
   const auto is_table = [&](std::string_view ending) { return path.ends_with(ending); };
   constexpr std::array<std::string_view, 3> kTables = {".csv", ".tsv", ".txt"};
+  if (is_table(".json")) refuse_list(read_file(path, kMaxBytes), path);
   if (!is_responses(path) && std::none_of(kTables.begin(), kTables.end(), is_table)) {
     throw InputError(
         path +
@@ -415,17 +427,6 @@ std::vector<Answer> Files::take() {
   return std::move(all_);
 }
 
-/// Refuses a table as jsPsych and pandas write it in JSON.
-void refuse_list(std::string_view text, const std::string& path) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos || text[first] != '[') return;
-  throw InputError(
-      fmt::format("{0}: is a list, as jsPsych writes JSON; save the answers as CSV, or convert "
-                  "them: python3 -c "
-                  "'import pandas; pandas.read_json(\"{0}\").to_csv(\"{0}.csv\", index=False)'",
-                  path));
-}
-
 }  // namespace
 
 std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
@@ -435,11 +436,10 @@ std::vector<Answer> answers_from_responses(std::string_view text, const std::str
 
 std::vector<Answer> read_answers(std::span<const std::string> paths,
                                  std::vector<std::string>& notes, const ReadingSettings& settings) {
-  for (const std::string& path : paths) {
-    if (!path.ends_with(".json")) continue;
-    const std::string text = read_file(path, kMaxBytes);
-    refuse_list(text, path);
-    if (paths.size() == 1) return answers_from_paper(text, path);
+  if (paths.size() == 1 && paths.front().ends_with(".json")) {
+    const std::string text = read_file(paths.front(), kMaxBytes);
+    refuse_list(text, paths.front());
+    return answers_from_paper(text, paths.front());
   }
   Files files(settings, notes);
   files.read(paths);
