@@ -13,7 +13,7 @@ namespace {
 
 TargetField random_target(Random& random) {
   TargetField target;
-  target.resize(1 + random.below(40), 1 + random.below(90));
+  target.resize(1 + random.below(150), 1 + random.below(90));
   target.cell = 0.3e-3 * std::pow(100.0, random.uniform());
   for (std::size_t i = 0; i < target.size(); ++i) {
     target.skin[i] = random.uniform() < 0.7 ? 1 : 0;

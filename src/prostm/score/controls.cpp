@@ -6,6 +6,7 @@
 #include "prostm/core/random.hpp"
 #include "prostm/plan/closest_point.hpp"
 #include "prostm/plan/clustering.hpp"
+#include "prostm/score/detail/bands.hpp"
 #include "prostm/score/detail/scorer.hpp"
 #include "prostm/score/pooled.hpp"
 
@@ -49,16 +50,24 @@ Metrics flat_field(const TargetField& target, double maximum, const Scorer& scor
   return scorer.field(std::vector<double>(target.size(), sum / cells * maximum), 0.0);
 }
 
-/// Makes up to four circles that do not cross, around random skin cells.
-Plan random_circles(const TargetField& target, double maximum, double length, double period,
-                    Random& random) {
+/// Positions of the skin cells.
+std::vector<Vec2> skin_of(const TargetField& target, double maximum) {
   std::vector<Vec2> skin;
   for_skin(target, maximum, [&](const Vec2& x, double) { skin.push_back(x); });
+  return skin;
+}
+
+const Vec2& any_of(const std::vector<Vec2>& skin, Random& random) {
+  return skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
+}
+
+/// Makes up to four circles that do not cross, around random skin cells.
+Plan random_circles(const std::vector<Vec2>& skin, double length, double period, Random& random) {
   std::vector<Vec2> centres;
   const double apart = 1.01 * length / kPi;
   for (int k = 0; k < kCircles; ++k) {
     for (int attempt = 0; attempt < kPlacements; ++attempt) {
-      const Vec2& x = skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
+      const Vec2& x = any_of(skin, random);
       const bool free = std::all_of(centres.begin(), centres.end(),
                                     [&](const Vec2& c) { return (c - x).norm() > apart; });
       if (!free) continue;
@@ -71,30 +80,52 @@ Plan random_circles(const TargetField& target, double maximum, double length, do
   return plan;
 }
 
+/// Sums of one segment's cells, a and b the shares of its first and second sample in p̂ there.
+enum SegmentSum : std::size_t { kAA, kAB, kBB, kAP, kBP, kSegmentSums };
+constexpr std::size_t kUnknowns = static_cast<std::size_t>(kCircles) * kCirclePoints;
+using NormalSums = std::array<double, kSegmentSums * kUnknowns>;
+
+NormalSums normal_sums(const TargetField& target, double maximum, double sigma, const GainLaw& gain,
+                       const std::vector<ClosestPoint>& nearest_points, const Plan& plan,
+                       WorkerPool* pool) {
+  const auto cols = static_cast<std::size_t>(target.cols);
+  const auto band = [&](std::size_t first, std::size_t end) {
+    NormalSums sums{};
+    for (std::size_t cell = first * cols; cell < end * cols; ++cell) {
+      if (target.skin[cell] == 0) continue;
+      const double p = target.pressure[cell] / maximum;
+      const ClosestPoint& nearest = nearest_points[cell];
+      const double phi = std::exp(-0.5 * nearest.distance2 / (sigma * sigma)) /
+                         gain.of(plan.paths[nearest.segment / kCirclePoints].period);
+      const double a = (1.0 - nearest.along) * phi, b = nearest.along * phi;
+      double* of_segment = sums.data() + kSegmentSums * nearest.segment;
+      of_segment[kAA] += a * a;
+      of_segment[kAB] += a * b;
+      of_segment[kBB] += b * b;
+      of_segment[kAP] += a * p;
+      of_segment[kBP] += b * p;
+    }
+    return sums;
+  };
+  return sums_of_bands<kSegmentSums * kUnknowns>(pool, static_cast<std::size_t>(target.rows), band);
+}
+
 /// Sets the pressures of circles to the non-negative least-squares solution of p̂ = p* on the skin.
 /// Eq. (1) is linear in the p_i: each cell sees the two samples beside its closest point. Solved by
 /// projected Gauss-Seidel on the normal equations.
-void solve_pressures(const TargetField& target, double maximum, double sigma, const GainLaw& gain,
-                     const std::vector<ClosestPoint>& nearest_points, Plan& plan) {
-  constexpr std::size_t kUnknowns = static_cast<std::size_t>(kCircles) * kCirclePoints;
+void solve_pressures(const NormalSums& sums, double maximum, Plan& plan) {
   std::vector<std::array<double, kUnknowns>> normal(kUnknowns, std::array<double, kUnknowns>{});
   std::array<double, kUnknowns> right{}, solution{};
   const std::size_t count = plan.paths.size() * kCirclePoints;
-  for (std::size_t cell = 0; cell < target.size(); ++cell) {
-    if (target.skin[cell] == 0) continue;
-    const double p = target.pressure[cell] / maximum;
-    const ClosestPoint& nearest = nearest_points[cell];
-    const std::size_t i = nearest.segment;
-    const double phi = std::exp(-0.5 * nearest.distance2 / (sigma * sigma)) /
-                       gain.of(plan.paths[i / kCirclePoints].period);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* of_segment = sums.data() + kSegmentSums * i;
     const std::size_t j = (i + 1) % kCirclePoints == 0 ? i + 1 - kCirclePoints : i + 1;
-    const double a = (1.0 - nearest.along) * phi, b = nearest.along * phi;
-    normal[i][i] += a * a;
-    normal[j][j] += b * b;
-    normal[i][j] += a * b;
-    normal[j][i] += a * b;
-    right[i] += a * p;
-    right[j] += b * p;
+    normal[i][i] += of_segment[kAA];
+    normal[j][j] += of_segment[kBB];
+    normal[i][j] += of_segment[kAB];
+    normal[j][i] += of_segment[kAB];
+    right[i] += of_segment[kAP];
+    right[j] += of_segment[kBP];
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -165,15 +196,10 @@ Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw&
 }
 
 /// Makes foci at random skin cells, with the pressures that AM gives them there.
-Plan random_foci(const TargetField& target, std::size_t count, double sigma, double maximum,
-                 Random& random) {
-  std::vector<Vec2> skin;
-  for_skin(target, maximum, [&](const Vec2& x, double) { skin.push_back(x); });
+Plan random_foci(const TargetField& target, const std::vector<Vec2>& skin, std::size_t count,
+                 double sigma, Random& random) {
   Plan plan;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec2& x = skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
-    plan.foci.push_back({0, x, 0.0});
-  }
+  for (std::size_t k = 0; k < count; ++k) plan.foci.push_back({0, any_of(skin, random), 0.0});
   set_pressures(target, sigma, plan.foci);
   return plan;
 }
@@ -226,12 +252,13 @@ std::vector<Control> controls_by(WorkerPool* pool, const TargetField& target, do
   const Plan circles = circles_at_mass_centres(target, gain, length, seed);
   table.push_back({"four circles at the mass centres", score(circles)});
 
+  const std::vector<Vec2> skin = skin_of(target, maximum);
   Random random(seed);
   std::vector<Metrics> draws;
   for (int draw = 0; draw < kDraws; ++draw) {
-    Plan plan = random_circles(target, maximum, length, 1.0 / gain.draw_rate, random);
+    Plan plan = random_circles(skin, length, 1.0 / gain.draw_rate, random);
     const std::vector<ClosestPoint> nearest = closest_points(target, plan, 0, pool);
-    solve_pressures(target, maximum, sigma, gain, nearest, plan);
+    solve_pressures(normal_sums(target, maximum, sigma, gain, nearest, plan, pool), maximum, plan);
     const SegmentPressures solved = own_pressures(plan);
     draws.push_back(scored(scorer.plan(plan, 0, sigma, gain, nearest, &solved)));
   }
@@ -241,7 +268,7 @@ std::vector<Control> controls_by(WorkerPool* pool, const TargetField& target, do
   if (stands_still) {
     draws.clear();
     for (int draw = 0; draw < kDraws; ++draw)
-      draws.push_back(score(random_foci(target, other->foci.size(), sigma, maximum, random)));
+      draws.push_back(score(random_foci(target, skin, other->foci.size(), sigma, random)));
     table.push_back({"random foci, solved pressures", median(draws)});
   }
   table.push_back({stands_still ? "foci of another target" : "paths of another target",

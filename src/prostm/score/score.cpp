@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "prostm/plan/closest_point.hpp"
@@ -13,105 +14,76 @@ namespace {
 
 constexpr double kSpillShare = 0.1;  // share of max p* below which nothing is to be felt
 
+constexpr std::size_t kBandCells = 4096;
+
 /// Target and rendered field on the skin, both over max p*.
 struct SkinValues {
   const std::vector<double>& target;
   const std::vector<double>& rendered;
 };
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
+/// How two fields on the skin compare: see Metrics.
+struct Comparison {
+  double rmse = 0.0, correlation = 0.0, skill = 0.0, overlap = 0.0, spill = 0.0;
+};
+
+/// Computes sums over cells. @param add adds a cell's target and rendered value to them.
+template <std::size_t kSums, class Add>
+std::array<double, kSums> sums_of(const SkinValues& v, WorkerPool* pool, const Add& add) {
+  const auto band = [&](std::size_t first, std::size_t end) {
+    std::array<double, kSums> sums{};
+    for (std::size_t i = first; i < end; ++i) add(sums, v.target[i], v.rendered[i]);
+    return sums;
+  };
+  return sums_of_bands<kSums>(pool, v.target.size(), band, kBandCells);
 }
 
-double mean(const std::vector<double>& a) {
-  double sum = 0.0;
-  for (const double v : a) sum += v;
-  return a.empty() ? 0.0 : sum / static_cast<double>(a.size());
-}
-
-double squared_deviation(const std::vector<double>& a) {
-  const double m = mean(a);
-  double sum = 0.0;
-  for (const double v : a) sum += (v - m) * (v - m);
-  return sum;
-}
-
-/// The g that minimises Σ (target − g rendered)²; 0 if nothing is rendered.
-double best_gain(const SkinValues& v) {
-  const double norm = dot(v.rendered, v.rendered);
-  return norm > 0.0 ? dot(v.target, v.rendered) / norm : 0.0;
-}
-
-double rmse(const SkinValues& v) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < v.target.size(); ++i) {
-    sum += (v.rendered[i] - v.target[i]) * (v.rendered[i] - v.target[i]);
-  }
-  return v.target.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(v.target.size()));
-}
-
-double correlation(const SkinValues& v) {
-  const double spread = std::sqrt(squared_deviation(v.target) * squared_deviation(v.rendered));
-  if (!(spread > 0.0)) return 0.0;
-  const double target_mean = mean(v.target), rendered_mean = mean(v.rendered);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < v.target.size(); ++i) {
-    sum += (v.target[i] - target_mean) * (v.rendered[i] - rendered_mean);
-  }
-  return sum / spread;
-}
-
-double skill(const SkinValues& v) {
-  const double spread = squared_deviation(v.target);
-  if (!(spread > 0.0)) return 0.0;
-  const double g = best_gain(v);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < v.target.size(); ++i) {
-    sum += (v.target[i] - g * v.rendered[i]) * (v.target[i] - g * v.rendered[i]);
-  }
-  return 1.0 - sum / spread;
-}
-
-double overlap(const SkinValues& v) {
-  const double g = best_gain(v);
-  double shared = 0.0, joint = 0.0;
-  for (std::size_t i = 0; i < v.target.size(); ++i) {
-    shared += std::min(v.target[i], g * v.rendered[i]);
-    joint += std::max(v.target[i], g * v.rendered[i]);
-  }
-  return joint > 0.0 ? shared / joint : 0.0;
-}
-
-double spill(const SkinValues& v) {
-  double outside = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < v.target.size(); ++i) {
-    all += v.rendered[i];
-    if (v.target[i] < kSpillShare) outside += v.rendered[i];
-  }
-  return all > 0.0 ? outside / all : 0.0;
-}
-
-std::vector<double> on_skin(const TargetField& target, const std::vector<double>& field) {
-  std::vector<double> values;
-  values.reserve(field.size());
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    if (target.skin[i] != 0) values.push_back(field[i]);
-  }
-  return values;
+Comparison compare(const SkinValues& v, WorkerPool* pool) {
+  const auto [target, rendered, product, square, errors, outside] =
+      sums_of<6>(v, pool, [](auto& sums, double t, double r) {
+        sums[0] += t;
+        sums[1] += r;
+        sums[2] += t * r;
+        sums[3] += r * r;
+        sums[4] += (r - t) * (r - t);
+        if (t < kSpillShare) sums[5] += r;
+      });
+  const auto cells = static_cast<double>(v.target.size());
+  const double gain = square > 0.0 ? product / square : 0.0;  // minimises Σ (p* − g p̂)²
+  const double target_mean = target / cells, rendered_mean = rendered / cells;
+  const auto [spread, rendered_spread, joint_spread, unexplained, shared, joint] =
+      sums_of<6>(v, pool, [=](auto& sums, double t, double r) {
+        const double dt = t - target_mean, dr = r - rendered_mean, rest = t - gain * r;
+        sums[0] += dt * dt;
+        sums[1] += dr * dr;
+        sums[2] += dt * dr;
+        sums[3] += rest * rest;
+        sums[4] += std::min(t, gain * r);
+        sums[5] += std::max(t, gain * r);
+      });
+  Comparison out;
+  out.rmse = std::sqrt(errors / cells);
+  const double spreads = std::sqrt(spread * rendered_spread);
+  if (spreads > 0.0) out.correlation = joint_spread / spreads;
+  if (spread > 0.0) out.skill = 1.0 - unexplained / spread;
+  if (joint > 0.0) out.overlap = shared / joint;
+  if (rendered > 0.0) out.spill = outside / rendered;
+  return out;
 }
 
 /// (Q3) from the closest point of each cell.
 double covered_share(const TargetField& target, const std::vector<ClosestPoint>& nearest,
-                     double maximum, double sigma) {
-  double covered = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    if (target.skin[i] == 0) continue;
-    const double p = target.pressure[i] / maximum;
-    all += p;
-    if (nearest[i].distance2 <= sigma * sigma) covered += p;
-  }
+                     double sigma, WorkerPool* pool) {
+  const auto band = [&](std::size_t first, std::size_t end) {
+    std::array<double, 2> sums{};
+    for (std::size_t i = first; i < end; ++i) {
+      if (target.skin[i] == 0) continue;
+      sums[0] += target.pressure[i];
+      if (nearest[i].distance2 <= sigma * sigma) sums[1] += target.pressure[i];
+    }
+    return sums;
+  };
+  const auto [all, covered] = sums_of_bands<2>(pool, target.size(), band, kBandCells);
   return covered / all;
 }
 
@@ -131,37 +103,42 @@ std::vector<ClosestPoint> closest_points(const TargetField& raster, const Plan& 
 }
 
 double plan_coverage(const TargetField& target, const Plan& plan, int patch, double sigma) {
-  const double maximum = max_pressure(target);
-  if (!(maximum > 0.0)) return 0.0;
+  if (!(max_pressure(target) > 0.0)) return 0.0;
   const std::vector<ClosestPoint> nearest = closest_points(target, plan, patch);
-  return nearest.empty() ? 0.0 : covered_share(target, nearest, maximum, sigma);
+  return nearest.empty() ? 0.0 : covered_share(target, nearest, sigma, nullptr);
 }
 
 Scorer::Scorer(const TargetField& target, WorkerPool* pool)
     : target_(target), maximum_(max_pressure(target)), pool_(pool), blur_(target, pool) {
   if (!(maximum_ > 0.0)) return;
-  std::vector<double> share(target.size());
-  for (std::size_t i = 0; i < target.size(); ++i) share[i] = target.pressure[i] / maximum_;
-  share_ = on_skin(target, share);
-  blurred_ = on_skin(target, blur_.of(share));
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    if (target.skin[i] != 0) cells_.push_back(i);
+  }
+  share_ = on_skin(target.pressure);
+  blurred_ = on_skin(blur_.of(target.pressure));
+}
+
+std::vector<double> Scorer::on_skin(const std::vector<double>& field) const {
+  std::vector<double> values(cells_.size());
+  const auto band = [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) values[i] = field[cells_[i]] / maximum_;
+  };
+  for_bands(pool_, cells_.size(), band, kBandCells);
+  return values;
 }
 
 Metrics Scorer::field(const std::vector<double>& rendered, double coverage) const {
   Metrics m;
   if (!(maximum_ > 0.0)) return m;
-  std::vector<double> share(rendered.size());
-  for (std::size_t i = 0; i < share.size(); ++i) share[i] = rendered[i] / maximum_;
-  const std::vector<double> on = on_skin(target_, share),
-                            blurred = on_skin(target_, blur_.of(share));
-  const SkinValues v{share_, on};
-  m.rmse = rmse(v);
-  m.correlation = correlation(v);
+  const Comparison sharp = compare({share_, on_skin(rendered)}, pool_);
+  m.rmse = sharp.rmse;
+  m.correlation = sharp.correlation;
   m.coverage = coverage;
-  m.skill_0 = skill(v);
-  m.overlap = overlap(v);
-  m.spill = spill(v);
+  m.skill_0 = sharp.skill;
+  m.overlap = sharp.overlap;
+  m.spill = sharp.spill;
   // the same skill after detail finer than b is blurred away
-  m.skill_8 = skill({blurred_, blurred});
+  m.skill_8 = compare({blurred_, on_skin(blur_.of(rendered))}, pool_).skill;
   return m;
 }
 
@@ -182,7 +159,7 @@ Metrics Scorer::plan(const Plan& plan, int patch, double sigma, const GainLaw& g
   for_bands(pool_, static_cast<std::size_t>(target_.rows), [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first * cols; i < end * cols; ++i) rendered[i] = pressure.at(nearest[i]);
   });
-  return field(rendered, covered_share(target_, nearest, maximum_, sigma));
+  return field(rendered, covered_share(target_, nearest, sigma, pool_));
 }
 
 Metrics score_field(const TargetField& target, const std::vector<double>& rendered,

@@ -2,14 +2,17 @@
 /// The inner loop of SkinBlur, by vectors of whatever length the processor has. Private to score.
 
 #include <cstddef>
-#include <span>
 
 namespace prostm {
 
-/// Computes to[i] = Σ_t taps[t] · from[t·step + i] for i < count; each sum runs over t upwards.
-/// @pre `from` holds (taps.size() − 1)·step + count values; `to` holds count and does not overlap
-/// them. Allocates nothing.
-void weighted_sums(std::span<const double> taps, const double* from, std::size_t step,
-                   std::size_t count, double* to);
+/// Places side by side in a strip, and sums along it that are taken at once: each value is loaded
+/// once for all of them.
+inline constexpr std::size_t kStripWidth = 16, kSumsAtOnce = 8;
+
+/// Computes to[j][i] = Σ_k taps[k − j] · from[k][i] for k < count, j < kSumsAtOnce, i <
+/// kStripWidth, where rows of `from` and `to` are kStripWidth long; each sum runs over k upwards.
+/// @pre taps[1 − kSumsAtOnce] to taps[count − 1] exist; `to` does not overlap `from`. Allocates
+/// nothing.
+void strip_sums(const double* taps, const double* from, std::size_t count, double* to);
 
 }  // namespace prostm

@@ -16,36 +16,32 @@ namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::ScalableTag<double>;
+using D = hn::CappedTag<double, kStripWidth>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
-constexpr std::size_t kVectors = 8;  // sums side by side, so that none waits for its last addition
+// vectors of a row at once: the widest come with registers for two
+constexpr std::size_t kVectors = kLanes >= 8 && 2 * kLanes <= kStripWidth ? 2 : 1;
 
-template <std::size_t kSums>
-HWY_INLINE void SumBlock(std::span<const double> taps, const double* from, std::size_t step,
-                         double* to) {
+void StripSums(const double* taps, const double* from, std::size_t count, double* to) {
   const D d;
-  hn::Vec<D> sum[kSums];
-  for (auto& s : sum) s = hn::Zero(d);
-  for (const double tap : taps) {
-    const auto weight = hn::Set(d, tap);
-    for (std::size_t v = 0; v < kSums; ++v)
-      sum[v] = hn::MulAdd(weight, hn::LoadU(d, from + v * kLanes), sum[v]);
-    from += step;
-  }
-  for (std::size_t v = 0; v < kSums; ++v) hn::StoreU(sum[v], d, to + v * kLanes);
-}
-
-void WeightedSums(std::span<const double> taps, const double* from, std::size_t step,
-                  std::size_t count, double* to) {
-  std::size_t i = 0;
-  for (; i + kVectors * kLanes <= count; i += kVectors * kLanes)
-    SumBlock<kVectors>(taps, from + i, step, to + i);
-  for (; i + kLanes <= count; i += kLanes) SumBlock<1>(taps, from + i, step, to + i);
-  for (; i < count; ++i) {
-    double sum = 0.0;
-    for (std::size_t t = 0; t < taps.size(); ++t) sum += taps[t] * from[t * step + i];
-    to[i] = sum;
+  for (std::size_t i = 0; i < kStripWidth; i += kVectors * kLanes) {
+    hn::Vec<D> sum[kSumsAtOnce][kVectors];
+    for (auto& row : sum)
+      for (auto& s : row) s = hn::Zero(d);
+    for (std::size_t k = 0; k < count; ++k) {
+      hn::Vec<D> value[kVectors];
+      for (std::size_t v = 0; v < kVectors; ++v)
+        value[v] = hn::LoadU(d, from + k * kStripWidth + i + v * kLanes);
+      for (std::size_t j = 0; j < kSumsAtOnce; ++j) {
+        const auto tap =
+            hn::Set(d, taps[static_cast<std::ptrdiff_t>(k) - static_cast<std::ptrdiff_t>(j)]);
+        for (std::size_t v = 0; v < kVectors; ++v) sum[j][v] = hn::MulAdd(tap, value[v], sum[j][v]);
+      }
+    }
+    for (std::size_t j = 0; j < kSumsAtOnce; ++j) {
+      for (std::size_t v = 0; v < kVectors; ++v)
+        hn::StoreU(sum[j][v], d, to + j * kStripWidth + i + v * kLanes);
+    }
   }
 }
 
@@ -56,11 +52,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace prostm {
-HWY_EXPORT(WeightedSums);
+HWY_EXPORT(StripSums);
 
-void weighted_sums(std::span<const double> taps, const double* from, std::size_t step,
-                   std::size_t count, double* to) {
-  HWY_DYNAMIC_DISPATCH(WeightedSums)(taps, from, step, count, to);
+void strip_sums(const double* taps, const double* from, std::size_t count, double* to) {
+  HWY_DYNAMIC_DISPATCH(StripSums)(taps, from, count, to);
 }
 
 }  // namespace prostm

@@ -32,10 +32,14 @@ class Scorer {
                const SegmentPressures* instead = nullptr) const;
 
  private:
+  /// The values of a field on skin, over the target's maximum.
+  std::vector<double> on_skin(const std::vector<double>& field) const;
+
   const TargetField& target_;
   double maximum_;
   WorkerPool* pool_;
   SkinBlur blur_;
+  std::vector<std::size_t> cells_;       // of skin
   std::vector<double> share_, blurred_;  // the target over its maximum, on skin
 };
 

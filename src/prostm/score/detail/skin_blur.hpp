@@ -18,10 +18,15 @@ class SkinBlur {
   std::vector<double> of(const std::vector<double>& field) const;
 
  private:
+  std::size_t reach() const;  // of the kernel, in cells
   std::vector<double> blur(const std::vector<double>& in) const;
+  std::vector<double> columns(const std::vector<double>& in, std::size_t first,
+                              std::size_t end) const;
+  void sums_about(std::size_t first, std::size_t end, const double* strip, std::size_t low,
+                  double* to) const;
 
   std::size_t rows_, cols_;
-  std::vector<double> taps_;        // of the kernel along an axis, the middle one among them
+  std::vector<double> taps_;        // of the kernel along an axis, zeros at both ends
   std::vector<double> skin_, sum_;  // 1 on skin; the blur of that
   WorkerPool* pool_;
 };
