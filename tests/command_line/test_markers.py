@@ -133,6 +133,9 @@ def test_conditions_are_told_where_the_protocol_lets_them(rehearse, tmp_path):
     trials = {line["trial"]: line for line in file if line["kind"] == "trial"}
     for line in written:
         assert (line["method"], line["scene"]) == ("am", trials[line["trial"]]["scene"])
+        # a presentation's newest plan, and means over the trial: modulation has one period throughout
+        assert line["played"] == trials[line["trial"]]["played"]
+        assert line["played"]["period_ms"] == pytest.approx(5.0, abs=0.1)
         place = ["one-plume", "four-plumes"].index(line["scene"])
         assert line["code"] == (16 + place if line["event"] == "stimulus-on" else 2)
 

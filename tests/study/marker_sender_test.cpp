@@ -47,7 +47,7 @@ TEST(MarkerSender, SendsWhenTheSampleLeavesTheArrayAndHandsEveryMarkerOver) {
   for (int start = 1; start <= 2; ++start) {
     ASSERT_EQ(device.start(tone), DeviceStatus::Running);
     for (std::uint32_t trial = 1; trial <= kTrials; ++trial) {
-      sender.present({trial, trial, 0});
+      sender.present({trial, trial, 0}, StudyPlayed{7.0, 0.02, 0});
       mute->set(MuteReason::Study, false);
       play(device, 3);
       mute->set(MuteReason::Study, true);
@@ -70,6 +70,7 @@ TEST(MarkerSender, SendsWhenTheSampleLeavesTheArrayAndHandsEveryMarkerOver) {
     if (i == 2 * static_cast<int>(kTrials)) last = -1;
     EXPECT_GT(marker.sample, last);
     last = marker.sample;
+    EXPECT_FALSE(marker.emission) << "where the condition is not told, its speed is not";
     ASSERT_TRUE(marker.played);
     EXPECT_GE(marker.sent, *marker.played);
     EXPECT_LT(marker.sent, *marker.played + 60.0);
@@ -86,7 +87,7 @@ TEST(MarkerSender, CountsTheSoundsOfAPresentation) {
   SoundWatch watch(mute, device.info().sample_rate);
   Tone tone(mute, watch);
   MarkerSender sender({}, protocol, {1, 1}, device, watch);
-  sender.present({1, 1, 0});
+  sender.present({1, 1, 0}, {});
   ASSERT_EQ(device.start(tone), DeviceStatus::Running);
   for (int part = 1; part <= 3; ++part) {
     mute->set(MuteReason::NoHand, false);  // a hand that goes and comes back
@@ -103,6 +104,34 @@ TEST(MarkerSender, CountsTheSoundsOfAPresentation) {
     EXPECT_EQ(marker.part, i / 2 + 1);
     EXPECT_EQ(code_of(marker), marker.on ? (i == 0 ? 1 : 3) : 2);
   }
+}
+
+TEST(MarkerSender, TellsHowThePresentationsNewestPlanIsPlayed) {
+  const Protocol protocol = test::study_protocol();
+  const auto mute = std::make_shared<Mute>();
+  mute->set(MuteReason::Study, true);
+  SimulatedArray device({}, usx_array(), Medium());
+  SoundWatch watch(mute, device.info().sample_rate);
+  Tone tone(mute, watch);
+  MarkerSender sender({}, protocol, {1, 1}, device, watch);
+  ASSERT_EQ(device.start(tone), DeviceStatus::Running);
+  Marker on, off;
+  const auto next = [&](Marker& marker) {
+    return test::eventually([&] { return sender.next(marker); });
+  };
+  for (std::uint32_t trial = 1; trial <= 3; ++trial) {
+    sender.present({trial, trial, 1}, StudyPlayed{1.0 * trial, 0.02, 0});
+    mute->set(MuteReason::Study, false);
+    ASSERT_TRUE(next(on));
+    sender.tell(StudyPlayed{10.0 * trial, 0.03, 2});
+    mute->set(MuteReason::Study, true);
+    ASSERT_TRUE(next(off));
+    ASSERT_TRUE(on.emission && off.emission);
+    EXPECT_EQ(on.emission->speed, 1.0 * trial);
+    EXPECT_EQ(off.emission->speed, 10.0 * trial);
+    EXPECT_EQ(off.emission->changed, 2);
+  }
+  device.stop();
 }
 
 TEST(MarkerSender, AMarkerOfADeviceThatHasStoppedHasNoTime) {

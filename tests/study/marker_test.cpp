@@ -54,6 +54,14 @@ TEST(Marker, TellsTheConditionOnlyWhereItIsLet) {
   const auto told = marker_json(marker, blind, 2);
   EXPECT_EQ(told["method"], "pro-stm");
   EXPECT_EQ(told["scene"], "four-plumes");
+  EXPECT_TRUE(told["played"].is_null());
+  marker.emission = {.speed = 7.98765432, .period = 0.025, .changed = 1};
+  EXPECT_EQ(
+      marker_json(marker, blind, 2)["played"],
+      (nlohmann::ordered_json{{"speed_m_s", 7.9877}, {"period_ms", 25.0}, {"changed_paths", 1}}));
+  marker.presentation.condition = 0;
+  EXPECT_FALSE(marker_json(marker, blind, 2).contains("played"));
+  marker.presentation.condition = 4;
   marker.played.reset();
   EXPECT_TRUE(marker_json(marker, blind, 2)["late_ms"].is_null());
 }

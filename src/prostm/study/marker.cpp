@@ -59,6 +59,7 @@ nlohmann::ordered_json marker_json(const Marker& marker, const Protocol& protoco
     const auto place = static_cast<std::size_t>(p.condition) - 1, scenes = protocol.scenes.size();
     json["method"] = protocol.methods[place / scenes].name;
     json["scene"] = protocol.scenes[place % scenes].name;
+    json["played"] = marker.emission ? played_json(*marker.emission) : nullptr;
   }
   json["stream"] = marker.stream;
   json["sample"] = marker.sample;

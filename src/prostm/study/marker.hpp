@@ -44,6 +44,8 @@ struct Marker {
   bool on = false;
   Presentation presentation;
   int part = 1;  ///< of the presentation: sounds before it, and 1
+  /// Emission of the presentation's newest plan; none without a plan, or where it is not told.
+  std::optional<StudyPlayed> emission;
   std::int64_t stream = 0, sample = 0;
   double sample_rate = 0.0;  ///< of the device [Hz]
   /// When the sample leaves the array, by the clock that does not jump [s]; nothing if the device

@@ -21,6 +21,12 @@ constexpr double kHandPeriod = 0.05;  // between poses in a trial's line [s]
 
 }  // namespace
 
+nlohmann::ordered_json played_json(const StudyPlayed& played) {
+  return {{"speed_m_s", rounded(played.speed, 4)},
+          {"period_ms", rounded(1e3 * played.period, 4)},
+          {"changed_paths", played.changed}};
+}
+
 StudySession::StudySession(const Protocol& protocol, int participant, ResponseFile& file,
                            const nlohmann::ordered_json& facts, const StudySight& now,
                            const std::optional<Replacement>& replaces)
@@ -245,9 +251,8 @@ void StudySession::add_played(const StudySight& sight) {
 /// Means over the trial; null without a plan.
 nlohmann::ordered_json StudySession::played_json() const {
   if (played_.looks == 0) return nullptr;
-  return {{"speed_m_s", rounded(played_.speed / played_.looks, 4)},
-          {"period_ms", rounded(1e3 * played_.period / played_.looks, 4)},
-          {"changed_paths", played_.changed}};
+  return prostm::played_json(
+      {played_.speed / played_.looks, played_.period / played_.looks, played_.changed});
 }
 
 /// Wants the trial's level, or the standard.

@@ -71,6 +71,8 @@ struct StudyPlayed {
   double period = 0.0;  ///< of its longest lap, or of the modulation [s]
   int changed = 0;      ///< paths that are played at another period than planned
 };
+/// In the units of participants' files.
+nlohmann::ordered_json played_json(const StudyPlayed& played);
 
 /// The run as it is now.
 struct StudySight {

@@ -145,6 +145,8 @@ void StudyView::tick() {
   const StudySight now = sight();
   Marker marker;
   while (markers_ != nullptr && markers_->next(marker)) session_.note(markers_->line(marker), now);
+  played_ = now.played;
+  if (sounds_ && markers_ != nullptr) markers_->tell(played_);
   present(session_.look(now));
   std::string sentence;
   while (session_.next_news(sentence)) news_for_terminal_.push(sentence);
@@ -163,7 +165,7 @@ bool StudyView::is_asked(const StudyWanted& wanted) const {
 /// Lifts the study's mute, or sets it. What sounds is named before.
 void StudyView::let_sound(bool sound) {
   if (sound && !sounds_ && markers_ != nullptr)
-    markers_->present(presentation_of(session_, ++presentations_));
+    markers_->present(presentation_of(session_, ++presentations_), played_);
   sounds_ = sound;
   link_.mute->set(MuteReason::Study, !sound);
 }

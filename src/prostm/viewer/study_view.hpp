@@ -65,7 +65,8 @@ class StudyView : public ViewSource {
   StudySession& session_;
   std::optional<Rehearsal> rehearsal_;
   MarkerSender* markers_;
-  bool sounds_ = false;  // not muted for the study
+  bool sounds_ = false;                // not muted for the study
+  std::optional<StudyPlayed> played_;  // emission of the newest plan
   std::uint32_t presentations_ = 0;
   struct OpenPage {
     Room room = Room::Main;

@@ -40,6 +40,26 @@ void MarkerSender::stop() {
   thread_.join();
 }
 
+void MarkerSender::present(const Presentation& now, const std::optional<StudyPlayed>& played) {
+  {
+    const std::lock_guard hold(lock_);
+    emission_ = {now.number, played};
+  }
+  sound_.label(now.label());
+}
+
+void MarkerSender::tell(const std::optional<StudyPlayed>& played) {
+  const std::lock_guard hold(lock_);
+  emission_.played = played;
+}
+
+/// Only where the condition is told, which it would tell.
+std::optional<StudyPlayed> MarkerSender::emission_of(const Presentation& presentation) {
+  if (presentation.condition == 0) return {};
+  const std::lock_guard hold(lock_);
+  return emission_.presentation == presentation.number ? emission_.played : std::nullopt;
+}
+
 void MarkerSender::work(const std::stop_token& stop) {
   for (;;) {
     const bool last = stop.stop_requested();
@@ -65,6 +85,7 @@ Marker MarkerSender::marker_of(const SoundChange& change) {
   last_ = marker.presentation;
   if (change.on) ++part_;
   marker.part = part_;
+  marker.emission = emission_of(marker.presentation);
   marker.on = change.on;
   marker.sequence = ++sent_;
   marker.stream = change.stream;

@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -37,8 +39,10 @@ class MarkerSender {
   void stop();
 
   // ---- the study's thread ----
-  /// Names what sounds next. Call it before the mute is lifted.
-  void present(const Presentation& now) { sound_.label(now.label()); }
+  /// Names what sounds next, and how its newest plan is played. Call it before the mute is lifted.
+  void present(const Presentation& now, const std::optional<StudyPlayed>& played);
+  /// How the newest plan of what sounds is played.
+  void tell(const std::optional<StudyPlayed>& played);
   /// The oldest marker that was not handed over yet; false without one.
   bool next(Marker& out) { return markers_.pop(out); }
   /// Returns the line that the response file gets.
@@ -54,7 +58,14 @@ class MarkerSender {
     bool failed = false;  // the thread's
   };
 
+  /// How a presentation is played, by its number.
+  struct Emission {
+    std::uint32_t presentation = 0;
+    std::optional<StudyPlayed> played;
+  };
+
   void work(const std::stop_token& stop);
+  std::optional<StudyPlayed> emission_of(const Presentation& presentation);
   Marker marker_of(const SoundChange& change);
   std::optional<double> play_time(const SoundChange& change) const;
   void wait(const SoundChange& change, Marker& marker) const;
@@ -70,6 +81,9 @@ class MarkerSender {
   std::int64_t sent_ = 0;  // markers
   Presentation last_;
   int part_ = 0;
+
+  std::mutex lock_;
+  Emission emission_;  // of the newest presentation, under the lock
 
   SpscRing<Marker> markers_{1024};
   SpscRing<std::string> news_{64};
