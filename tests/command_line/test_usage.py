@@ -141,6 +141,8 @@ def test_a_file_of_another_kind_is_named(refuses, prostm, tmp_path):
     told = refuses("run", "--hand", "run.h5", words=["a recording of prostm (HDF5), not a hand recording"])
     assert "hand-frames JSON Lines (.hands.jsonl)" in told and "docs/hands.md" in told
     refuses("run", "--hand", "text.txt", words=["is not a hand recording", ".hands.jsonl"])
+    (tmp_path / "leap.json.lz").write_text("N4Ig")
+    refuses("run", "--hand", "leap.json.lz", words=["compressed by lz-string", 'writeFileSync("leap.json"'])
     refuses("run", "--hand", "a.npy", words=["is an NPY file, not a hand recording"])
     refuses("plan", "h5.json", words=["is an HDF5 file, not JSON"])
     refuses("plan", "npy.json", words=["is an NPY file, not JSON"])

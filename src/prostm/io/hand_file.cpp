@@ -130,6 +130,15 @@ HandFrame neutral_frame(std::string_view line, const std::string& where, const H
   return frame;
 }
 
+/// Refuses what LeapJS Playback packed.
+[[noreturn]] void refuse_packed(const std::string& path) {
+  throw InputError(fmt::format(
+      "{0} is compressed by lz-string; decompress it: npm install lz-string; node -e 'const fs = "
+      "require(\"fs\"); fs.writeFileSync(\"{1}\", require(\"lz-string\").decompressFromBase64("
+      "fs.readFileSync(\"{0}\", \"utf8\")))'",
+      path, path.substr(0, path.size() - 3)));
+}
+
 }  // namespace
 
 HandRecording hands_from_jsonl(std::string_view text, const std::string& name,
@@ -164,6 +173,7 @@ HandRecording hands_from_jsonl(std::string_view text, const std::string& name,
 HandRecording read_hand_recording(const std::string& path, const ReadProgress& progress) {
   const std::string text = read_file(path, kMaxRecordingBytes);
   if (!is_json_or_lines(text)) {
+    if (path.ends_with(".lz")) refuse_packed(path);
     // people give --hand what --record has written
     const std::string what = kind_by_content(text) == "an HDF5 file"
                                  ? "is a recording of prostm (HDF5), not a hand recording"
