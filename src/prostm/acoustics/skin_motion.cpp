@@ -45,27 +45,43 @@ void SkinMotion::load(const PressureLoop& loop) {
         "the loop must have the period and the samples that prepare() was given, and a pressure "
         "for each sample and cell");
   }
-  // a few harmonics of many samples: their sums cost less than a transform of each cell
+  // sums take the same time for every length of a loop; a transform is slow for large prime factors
   for (std::size_t first = 0; first < cells; first += kBlock) {
     const std::size_t count = std::min(kBlock, cells - first);
     for (std::size_t k = 0; k < wave_.size(); ++k) {
       std::copy_n(loop.pressure.begin() + static_cast<std::ptrdiff_t>(k * cells + first), count,
                   block_.begin() + static_cast<std::ptrdiff_t>(k * kBlock));
     }
+    fold_block();
     for (int n = 1; n <= harmonics_; ++n) sum_harmonic(n, harmonic(n).subspan(first, count));
   }
 }
 
-/// Sums one harmonic over the samples for the cells of `block_`.
+/// Replaces the samples k and K − k by their sum and their difference: a harmonic's real part needs
+/// only the sums, its imaginary part only the differences.
+void SkinMotion::fold_block() {
+  const std::size_t samples = wave_.size();
+  for (std::size_t k = 1; k < samples - k; ++k) {
+    double *const early = &block_[k * kBlock], *const late = &block_[(samples - k) * kBlock];
+    for (std::size_t c = 0; c < kBlock; ++c) {
+      const double sum = early[c] + late[c], difference = early[c] - late[c];
+      early[c] = sum;
+      late[c] = difference;
+    }
+  }
+}
+
+/// Sums one harmonic over the samples for the cells of `block_`, which is folded.
 void SkinMotion::sum_harmonic(int n, std::span<std::complex<double>> out) const {
   std::array<double, kBlock> re{}, im{};
-  for (std::size_t k = 0; k < wave_.size(); ++k) {
-    const std::complex<double> wave = wave_[static_cast<std::size_t>(n) * k % wave_.size()];
-    const double* const p = &block_[k * kBlock];
-    for (std::size_t c = 0; c < kBlock; ++c) {
-      re[c] += wave.real() * p[c];
-      im[c] += wave.imag() * p[c];
-    }
+  const std::size_t samples = wave_.size();
+  for (std::size_t k = 0; k <= samples / 2; ++k) {
+    const std::complex<double> wave = wave_[static_cast<std::size_t>(n) * k % samples];
+    const double* const sum = &block_[k * kBlock];
+    for (std::size_t c = 0; c < kBlock; ++c) re[c] += wave.real() * sum[c];
+    if (k == 0 || 2 * k == samples) continue;  // a sample that is its own partner
+    const double* const difference = &block_[(samples - k) * kBlock];
+    for (std::size_t c = 0; c < kBlock; ++c) im[c] += wave.imag() * difference[c];
   }
   for (std::size_t c = 0; c < out.size(); ++c) out[c] = {re[c], im[c]};
 }

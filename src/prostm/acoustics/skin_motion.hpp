@@ -52,6 +52,7 @@ class SkinMotion {
 
  private:
   static constexpr std::size_t kBlock = 64;  // cells whose sums stay in the cache
+  void fold_block();
   void sum_harmonic(int n, std::span<std::complex<double>> out) const;
 
   SkinPatch patch_;
