@@ -30,6 +30,7 @@ int capture_command(const CaptureOptionsGiven& given) {
   settle_hand(given.hand, given.hand_size, settings);
   settings.simulated_array.realtime = false;
   Pipeline pipeline(settings, make_hands(given.hand, settings));
+  warn_of(pipeline.world_stage().hands());
   Recorder recorder(given.out, settings_groups(settings));
   recorder.set_attribute("prostm", version_text());
   recorder.set_attribute("scene", settings.scene);

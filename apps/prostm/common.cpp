@@ -24,6 +24,7 @@
 #include "prostm/io/array_file.hpp"
 #include "prostm/io/hand_file.hpp"
 #include "prostm/io/pose_file.hpp"
+#include "prostm/pipeline/verdict.hpp"
 #include "prostm/track/live/leap_client.hpp"
 #include "prostm/track/live/openxr_hands.hpp"
 #include "prostm/track/live/page_hand.hpp"
@@ -256,6 +257,11 @@ int tell(const std::exception_ptr& failure) {
 
 void warn(const std::string& sentence) {
   std::fprintf(stderr, "prostm: warning: %s\n", sentence.c_str());
+}
+
+void warn_of(const HandSource& hands) {
+  if (hands.reading() == nullptr) return;
+  for (const std::string& sentence : unusual_in(*hands.reading())) warn(sentence);
 }
 
 std::FILE* prose(const std::string& json_option) {

@@ -60,6 +60,8 @@ int tell(const std::exception_ptr& failure);
 
 /// Prints a warning to standard error.
 void warn(const std::string& sentence);
+/// Warns of what is unusual in a recording of hands.
+void warn_of(const HandSource& hands);
 
 /// Does several things, each whatever became of the others.
 class Attempts {

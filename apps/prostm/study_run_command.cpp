@@ -266,6 +266,7 @@ int study_run_command(const StudyRunOptionsGiven& given) {
   hands = view.behind_the_page(std::move(hands));
   obey_lock_memory(given.run.lock_memory, stdout);
   Pipeline pipeline(settings, std::move(hands), view.link().mute);
+  warn_of(pipeline.world_stage().hands());
 
   const Interrupt interrupt;  // from here on a Ctrl-C ends in a report
   ResponseFile file(path, given.take_over ? ForeignLock::Replaced : ForeignLock::Respected);

@@ -137,6 +137,9 @@ def test_a_bad_hand_is_counted(prostm, tmp_path):
     assert counts["frames"] == 5 and counts["dropped"] == 0 and counts["dropped_hands"] == 1
     assert counts["faults"]["member"] == 1 and "line 4" in counts["first"]
     assert any("were dropped (1 member)" in sentence for sentence in result["verdict"]["sentences"])
+    capture = ["capture", "--hand", path, "--grid", "32", "--frames", "1", "--out", "one.h5"]
+    warned = prostm(*capture).stderr
+    assert "warning: 0 of 5 frames and 1 of 5 hands in the recording were dropped" in warned
 
 
 def test_a_recording_whose_hands_are_all_unsure(refuses, prostm, tmp_path):

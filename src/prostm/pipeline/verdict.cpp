@@ -186,16 +186,6 @@ void judge_tracker(const TrackerStatus& tracker, std::vector<std::string>& out) 
   }
 }
 
-void judge_reading(const HandReading& reading, std::vector<std::string>& out) {
-  const HandFaults& faults = reading.faults;
-  if (!reading.doubt.empty()) out.push_back(fmt::format("In {} {}.", reading.file, reading.doubt));
-  if (!faults.any()) return;
-  out.push_back(fmt::format(
-      "{} of {} frames and {} of {} hands in the recording were dropped ({}). The first: {}.",
-      faults.frames(), reading.frames, faults.hands(), reading.hands, causes_of(faults),
-      faults.first));
-}
-
 void judge_contact(const ContactStats& contact, double seconds, bool felt, BoxFollows follows,
                    std::vector<std::string>& out) {
   const double outside = share(contact.joints_outside, contact.joints);
@@ -307,6 +297,18 @@ void judge_safety(const RunSummary& s, std::vector<std::string>& out) {
 
 }  // namespace
 
+std::vector<std::string> unusual_in(const HandReading& reading) {
+  const HandFaults& faults = reading.faults;
+  std::vector<std::string> out;
+  if (!reading.doubt.empty()) out.push_back(fmt::format("In {} {}.", reading.file, reading.doubt));
+  if (!faults.any()) return out;
+  out.push_back(fmt::format(
+      "{} of {} frames and {} of {} hands in the recording were dropped ({}). The first: {}.",
+      faults.frames(), reading.frames, faults.hands(), reading.hands, causes_of(faults),
+      faults.first));
+  return out;
+}
+
 bool HeldRate::held() const {
   return done >= kLeastDone * due;
 }
@@ -353,7 +355,9 @@ Verdict verdict_of(const RunSummary& s, const PipelineSettings& settings,
   judge_safety(s, unusual);
   judge_played(s, unusual);
   if (tracker) judge_tracker(*tracker, unusual);
-  if (reading != nullptr) judge_reading(*reading, unusual);
+  if (reading != nullptr) {
+    for (std::string& sentence : unusual_in(*reading)) unusual.push_back(std::move(sentence));
+  }
   if (!tracker || tracker->frames > 0) {
     judge_contact(s.contact_stats, s.seconds, s.plans > 0, settings.box.follow, unusual);
   }

@@ -23,6 +23,9 @@ Verdict verdict_of(const RunSummary& summary, const PipelineSettings& settings,
                    const std::optional<TrackerStatus>& tracker = {},
                    const HandReading* reading = nullptr);
 
+/// Sentences about what is unusual in a recording of hands: its convention, and what was dropped.
+std::vector<std::string> unusual_in(const HandReading& reading);
+
 /// How often something was done, and how often it was due [Hz].
 struct HeldRate {
   double done = 0.0, due = 0.0;
