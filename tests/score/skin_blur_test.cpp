@@ -7,6 +7,7 @@
 
 #include "prostm/core/random.hpp"
 #include "prostm/score/pooled.hpp"
+#include "support/only_targets.hpp"
 
 namespace prostm {
 namespace {
@@ -55,6 +56,22 @@ TEST(SkinBlur, AgreesWithItsDefinition) {
       const std::size_t cell = target.index(row, col);
       const double expected = target.skin[cell] != 0 ? blurred_at(target, field, row, col) : 0.0;
       EXPECT_NEAR(alone[cell], expected, 1e-12);
+    }
+  }
+}
+
+TEST(SkinBlur, IsTheSameOnEveryVectorTarget) {
+  Random random(7);
+  for (int trial = 0; trial < 5; ++trial) {
+    const TargetField target = random_target(random);
+    std::vector<double> field(target.size());
+    for (double& p : field) p = random.uniform();
+    const std::vector<double> expected = SkinBlur(target).of(field);
+    for (const std::int64_t vectors : hwy::SupportedAndGeneratedTargets()) {
+      const test::OnlyTargets only(vectors);
+      const std::vector<double> found = SkinBlur(target).of(field);
+      for (std::size_t i = 0; i < field.size(); ++i)
+        ASSERT_NEAR(found[i], expected[i], 1e-14) << hwy::TargetName(vectors);
     }
   }
 }

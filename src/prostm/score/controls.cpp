@@ -57,7 +57,7 @@ std::vector<Vec2> skin_of(const TargetField& target, double maximum) {
   return skin;
 }
 
-const Vec2& any_of(const std::vector<Vec2>& skin, Random& random) {
+const Vec2& random_place(const std::vector<Vec2>& skin, Random& random) {
   return skin[static_cast<std::size_t>(random.below(static_cast<int>(skin.size())))];
 }
 
@@ -67,7 +67,7 @@ Plan random_circles(const std::vector<Vec2>& skin, double length, double period,
   const double apart = 1.01 * length / kPi;
   for (int k = 0; k < kCircles; ++k) {
     for (int attempt = 0; attempt < kPlacements; ++attempt) {
-      const Vec2& x = any_of(skin, random);
+      const Vec2& x = random_place(skin, random);
       const bool free = std::all_of(centres.begin(), centres.end(),
                                     [&](const Vec2& c) { return (c - x).norm() > apart; });
       if (!free) continue;
@@ -199,7 +199,7 @@ Plan moved(const Plan& other, const Vec2& centre, double maximum, const GainLaw&
 Plan random_foci(const TargetField& target, const std::vector<Vec2>& skin, std::size_t count,
                  double sigma, Random& random) {
   Plan plan;
-  for (std::size_t k = 0; k < count; ++k) plan.foci.push_back({0, any_of(skin, random), 0.0});
+  for (std::size_t k = 0; k < count; ++k) plan.foci.push_back({0, random_place(skin, random), 0.0});
   set_pressures(target, sigma, plan.foci);
   return plan;
 }
