@@ -185,7 +185,8 @@ SafetyLimiter::Level SafetyLimiter::level(std::span<const FocusSample> samples) 
     squares += intensity * intensity;
     own = std::max(own, intensity * full);
     level.pressure = std::max(level.pressure, full);
-    // a device that takes intensity as a pressure drives harder for a place that is farther
+    // a device that takes intensity as a pressure drives harder for a place that is farther; full
+    // is above 0 where levels are known, and clean() has moved a sample from any other place
     if (full * stretch < full_scale) stretch = full_scale / full;
   }
   level.drive = sum * stretch;
@@ -197,40 +198,37 @@ SafetyLimiter::Level SafetyLimiter::level(std::span<const FocusSample> samples) 
 
 /// Returns the largest drive that keeps all caps where a full drive makes this pressure [Pa]; above
 /// 1 all do.
-float SafetyLimiter::cap_drive(float pressure, SafetyLimit& reason) const noexcept {
+SafetyLimiter::Allowed SafetyLimiter::cap_drive(float pressure) const noexcept {
   const SafetySettings& caps = limits_.caps;
   const float radiation =
       static_cast<float>(limits_.levels->radiation_per_square) * pressure * pressure;
-  // of the square of the drive
   const float acoustic = static_cast<float>(caps.acoustic_pressure) / pressure;
-  const std::array<float, 4> allowed = {
-      acoustic * acoustic, static_cast<float>(caps.radiation_pressure) / radiation,
-      radiation_.allowed(static_cast<float>(caps.mean_radiation_pressure)) / radiation,
-      head_.allowed(head_cap_)};
-  const auto least = std::min_element(allowed.begin(), allowed.end());
-  reason = static_cast<SafetyLimit>(static_cast<std::size_t>(SafetyLimit::AcousticPressure) +
-                                    static_cast<std::size_t>(least - allowed.begin()));
-  return std::sqrt(*least);
+  // of the square of the drive
+  const std::array<Allowed, 4> squares = {{
+      {acoustic * acoustic, SafetyLimit::AcousticPressure},
+      {static_cast<float>(caps.radiation_pressure) / radiation, SafetyLimit::RadiationPressure},
+      {radiation_.allowed(static_cast<float>(caps.mean_radiation_pressure)) / radiation,
+       SafetyLimit::MeanRadiationPressure},
+      {head_.allowed(head_cap_), SafetyLimit::HeadLevel},
+  }};
+  const Allowed least = std::ranges::min(squares, {}, &Allowed::share);
+  return {std::sqrt(least.share), least.limit};
 }
 
 /// Returns the factor of all intensities that keeps power and caps; at most 1.
-float SafetyLimiter::scale(std::span<const FocusSample> now, SafetyLimit& reason) const noexcept {
-  float power = 0.0F, share = 1.0F;
+SafetyLimiter::Allowed SafetyLimiter::scale(std::span<const FocusSample> now) const noexcept {
+  float power = 0.0F;
   for (const FocusSample& sample : now) power += sample.intensity * sample.intensity;
-  if (power > power_) {
-    share = std::sqrt(power_ / (1.0F + kRounding) / power);
-    reason = SafetyLimit::Power;
-  }
-  if (!limits_.levels) return share;
+  const bool strong = power > power_;
+  const Allowed by_power{strong ? std::sqrt(power_ / (1.0F + kRounding) / power) : 1.0F,
+                         SafetyLimit::Power};
+  if (!limits_.levels) return by_power;
   const Level wanted = level(now);
-  if (wanted.drive <= 0.0F) return share;
-  SafetyLimit cap{};
-  const float allowed = cap_drive(wanted.pressure, cap);
-  if (allowed >= kKnee) return share;
-  const float most = largest_sum(allowed) / wanted.drive;
-  if (most >= share) return share;
-  reason = cap;
-  return most;
+  if (wanted.drive <= 0.0F) return by_power;
+  const Allowed cap = cap_drive(wanted.pressure);
+  if (cap.share >= kKnee) return by_power;
+  const Allowed by_cap{largest_sum(cap.share) / wanted.drive, cap.limit};
+  return by_cap.share < by_power.share ? by_cap : by_power;
 }
 
 /// Fades each focal point that jumps where it was. @return whether all are held, since the device
@@ -250,8 +248,7 @@ bool SafetyLimiter::hold_jumps(std::span<FocusSample> now) noexcept {
 
 /// Lowers all intensities as far as the caps need.
 void SafetyLimiter::keep_caps(std::span<FocusSample> now) noexcept {
-  SafetyLimit reason{};
-  const float share = scale(now, reason);
+  const auto [share, reason] = scale(now);
   if (share >= 1.0F) return;
   for (std::size_t f = 0; f < now.size(); ++f) {
     if (share * now[f].intensity < focus_[f].last.intensity - change_) return hold_all(now, reason);

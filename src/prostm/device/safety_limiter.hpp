@@ -113,6 +113,11 @@ class SafetyLimiter final : public SampleStage {
     float own = 0.0F;       ///< pressure that the loudest makes with its own share of a drive
     float energy = 0.0F;    ///< of the drives if focal points do not add up
   };
+  /// What a limit allows: a drive, or a share of all intensities.
+  struct Allowed {
+    float share;
+    SafetyLimit limit;
+  };
   struct Focus {
     FocusSample last;
     float given = 0.0F;          ///< intensity before limits
@@ -132,8 +137,8 @@ class SafetyLimiter final : public SampleStage {
   bool jumps(std::size_t focus, const FocusSample& now) const noexcept;
   void advance_ramps(std::span<const FocusSample> wanted, bool muted) noexcept;
   Level level(std::span<const FocusSample> samples) const noexcept;
-  float cap_drive(float pressure, SafetyLimit& reason) const noexcept;
-  float scale(std::span<const FocusSample> now, SafetyLimit& reason) const noexcept;
+  Allowed cap_drive(float pressure) const noexcept;
+  Allowed scale(std::span<const FocusSample> now) const noexcept;
   bool hold_jumps(std::span<FocusSample> now) noexcept;
   void keep_caps(std::span<FocusSample> now) noexcept;
   void hold(std::size_t focus, FocusSample& now) noexcept;
