@@ -315,6 +315,30 @@ TEST(StudySession, GoesOnOnlyWithItsOwnProtocolAndParticipant) {
               HasSubstr("left"));
 }
 
+TEST(StudySession, IsNotResumedFromTrialsThatLackAValue) {
+  const Protocol protocol = test::study_protocol("[training]\nseconds = 0\n");
+  for (const char* key : {"answer", "target_mn", "rendered_mn"}) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("1.jsonl");
+    std::vector<ResponseLine> lines;
+    {
+      Sitting s(protocol, folder.file("whole.jsonl"));
+      ASSERT_TRUE(s.present());
+      ASSERT_EQ(s.answer(true), "");
+      lines = s.file.lines();
+    }
+    {
+      ResponseFile file(path);
+      for (ResponseLine& line : lines) {
+        if (line["kind"] == "trial") line.erase(key);
+        file.append(line);
+      }
+    }
+    EXPECT_THAT(test::input_error([&] { Sitting s(protocol, path); }),
+                HasSubstr(std::string("trial 1 has no number \"") + key));
+  }
+}
+
 TEST(StudySession, KeepsAnswersWhileTheDiskIsFull) {
   const test::TemporaryFolder folder;
   Sitting s(test::study_protocol("[training]\nseconds = 0\n"), folder.file("1.jsonl"));

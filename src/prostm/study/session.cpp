@@ -105,7 +105,7 @@ StudyPhase StudySession::replay() {
 /// Does again what a trial's line did.
 void StudySession::repeat_trial(const ResponseLine& line) {
   const Trial t = trial();
-  const double level = line.value("level", 0.0);
+  const double level = t.level ? study::number_in(line, "level", file_.path()) : 0.0;
   if (t.level && protocol_.trials.task != StudyTask::Adjustment &&
       std::abs(level - *t.level) > 1e-5 * std::abs(*t.level)) {
     throw InputError(fmt::format(
@@ -113,16 +113,19 @@ void StudySession::repeat_trial(const ResponseLine& line) {
         "prostm that it was begun with",
         file_.path(), trials_done() + 1, level, *t.level));
   }
-  add_strength(t, 1e-3 * line.value("target_mn", 0.0), 1e-3 * line.value("rendered_mn", 0.0));
+  const auto force = [&](const char* key) {
+    return 1e-3 * study::number_in(line, key, file_.path());
+  };
+  add_strength(t, force("target_mn"), force("rendered_mn"));
   page_.end_trial();
   last_trial_ = t;
   if (protocol_.trials.task == StudyTask::Adjustment) return course_.accept(level);
-  last_ = study::chose(protocol_, line);
+  last_ = study::chose(protocol_, line, file_.path());
   course_.answer(study::felt(protocol_, t, *last_));
 }
 
 void StudySession::repeat_correction(const ResponseLine& line) {
-  last_ = study::chose(protocol_, line);
+  last_ = study::chose(protocol_, line, file_.path());
   if (!course_.correct()) throw InputError(file_.path() + " corrects what cannot be corrected");
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
 #include "prostm/study/session.hpp"
 #include "prostm/study/track.hpp"
@@ -86,8 +87,18 @@ void add_answer(ResponseLine& line, const Protocol& protocol, const Trial& trial
   if (has_right_answers(protocol)) line["correct"] = for_level ? 1 : 0;
 }
 
-bool chose(const Protocol& protocol, const ResponseLine& line) {
-  return line.value("answer", 0) == (protocol.trials.task == StudyTask::ForcedChoice ? 2 : 1);
+bool chose(const Protocol& protocol, const ResponseLine& line, const std::string& file) {
+  return number_in(line, "answer", file) ==
+         (protocol.trials.task == StudyTask::ForcedChoice ? 2.0 : 1.0);
+}
+
+double number_in(const ResponseLine& line, const char* key, const std::string& file) {
+  const auto found = line.find(key);
+  if (found != line.end() && found->is_number()) return found->get<double>();
+  throw InputError(fmt::format(
+      "{}: the line of the kind \"{}\" of trial {} has no number \"{}\", so the session "
+      "cannot be resumed",
+      file, line.value("kind", ""), line.value("trial", 0), key));
 }
 
 std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane) {

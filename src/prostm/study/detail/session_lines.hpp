@@ -27,8 +27,10 @@ std::string stimulus_hash(const Protocol& protocol, const Trial& trial);
 void add_stimulus(ResponseLine& line, const Protocol& protocol, const Trial& trial);
 /// Adds the answer, and what it says. @param chosen yes, or the second interval.
 void add_answer(ResponseLine& line, const Protocol& protocol, const Trial& trial, bool chosen);
-/// The same from a line.
-bool chose(const Protocol& protocol, const ResponseLine& line);
+/// The same from a line. @throws InputError if the line has no answer.
+bool chose(const Protocol& protocol, const ResponseLine& line, const std::string& file);
+/// A number of a line of `file`. @throws InputError if it is missing.
+double number_in(const ResponseLine& line, const char* key, const std::string& file);
 /// Whether an answer is for the trial's level: yes, or its interval.
 bool felt(const Protocol& protocol, const Trial& trial, bool chosen);
 /// Says that a track stands at an end of its range; which, only if the study is not blind.
