@@ -153,7 +153,8 @@ void bind_result(py::module_& m) {
           "metrics", &metrics_of,
           "Metrics of the field that is played, with the planner's sigma and gain.\n\n"
           "emission: EmitSettings; None: the attribute emission. A full scale of 0 is the gain\n"
-          "times the target's largest pressure. array: usx, autd3 or the file of an array, whose\n"
+          "times the target's largest pressure. array: a name, as --array takes it, or a file, "
+          "whose\n"
           "output felt_skill judges; without it felt_skill is NaN. score_plan() gives the metrics\n"
           "of the planned pressures.",
           py::arg("patch") = 0, py::arg("emission") = py::none(),

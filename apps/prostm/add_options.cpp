@@ -85,7 +85,7 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
            "still-air");
   add_hand(command, common, hand, hand_size);
   command.add_option("--grid", common.grid, "cells along each edge of the fluid's box");
-  add_array(command, common, "usx (default), autd3, or an array file (.json)");
+  add_array(command, common);
 }
 
 std::array<CLI::Option*, 2> add_address(CLI::App& command, RunOptionsGiven& o) {

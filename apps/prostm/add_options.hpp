@@ -59,7 +59,8 @@ CLI::Option* add_name(CLI::App& command, const std::string& name, Value& value,
 void add_json(CLI::App& command, Files& files, std::string& json);
 /// Settings, JSON, seed, and the options of planning.
 void add_common(CLI::App& command, CommonOptions& o);
-void add_array(CLI::App& command, CommonOptions& o, const std::string& help);
+void add_array(CLI::App& command, CommonOptions& o,
+               const std::string& help = prostm::array_choices(" (default)"));
 /// --device, with the forms that a device's name has.
 void add_device(CLI::App& command, CommonOptions& o);
 void add_lock_memory(CLI::App& command, bool& lock_memory);

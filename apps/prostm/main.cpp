@@ -93,7 +93,7 @@ void add_plan(CLI::App& app, Work& work) {
                  "target, paths (or foci) and field; the six panels of the paper's Fig. 2 for its "
                  "presets (.png, .svg or .pdf)");
   add_array(*command, o->common,
-            "plan with the width that the focus of usx, autd3 or an array file has there");
+            "plan with the width that the focus of an array has there: " + prostm::array_choices());
   add_input(*command, o->common.files, "--beside", o->beside,
             "draw these digitised panels beside ours (JSON)")
       ->needs(figure);
@@ -133,8 +133,7 @@ void add_solve(CLI::App& app, Work& work) {
   auto o = std::make_shared<SolveOptionsGiven>();
   add_input(*command, o->files, "foci", o->foci, "focal points and their pressures (docs/files.md)")
       ->required();
-  add_input_or_name(*command, o->files, "--array", o->array, names_json,
-                    "usx, autd3, or an array file (.json)")
+  add_input_or_name(*command, o->files, "--array", o->array, names_json, prostm::array_choices())
       ->capture_default_str();
   add_name(*command, "--solver", o->solver,
            "superposition, ibp, gs-pat, weighted, eigenvector or lm")
@@ -155,7 +154,7 @@ void add_field(CLI::App& app, Work& work) {
       add_input(*command, o->common.files, "--field", o->target,
                 "the field that was planned, to compare with (.json, .npy, .png or .h5)");
   add_field_file(*command, o->file, target);
-  add_array(*command, o->common, "usx (default), autd3, or an array file (.json)");
+  add_array(*command, o->common);
   add_name(*command, "--solver", o->solver,
            "superposition, ibp, gs-pat, weighted, eigenvector or lm")
       ->capture_default_str();
@@ -181,7 +180,7 @@ void add_levels(CLI::App& app, Work& work) {
       "levels",
       "how loud an array can be, at focal points and at the head, beside caps and limits");
   auto o = std::make_shared<LevelsOptionsGiven>();
-  add_array(*command, o->common, "usx (default), autd3, or an array file (.json)");
+  add_array(*command, o->common);
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
             "settings, of which [safety] has the caps (docs/safety.md)");
   add_json(*command, o->common.files, o->common.json);
@@ -211,7 +210,8 @@ void add_selftest(CLI::App& app, Work& work) {
   add_json(*command, o->common.files, o->common.json);
   add_device(*command, o->common);
   add_array(*command, o->common,
-            "usx, autd3, or an array file (.json); default: the device's, or usx");
+            prostm::array_choices() + "; default: the device's, or " +
+                prostm::array_kinds().front().name);
   add_figure(*command, o->common, "a picture of the array, seen from above (.png, .svg or .pdf)");
   command->add_option("--seconds", o->seconds, "of each figure, 0.2 to 60")->capture_default_str();
   command->add_option("--height-mm", o->height_mm, "of the figures over the array, 50 to 500")

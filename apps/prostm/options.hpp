@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "files.hpp"
+#include "prostm/io/array_file.hpp"
 #include "prostm/io/field_file.hpp"
 #include "prostm/study/analysis.hpp"
 #include "prostm/study/model_study.hpp"
@@ -69,7 +70,7 @@ struct BenchOptionsGiven {
 struct SolveOptionsGiven {
   Files files;
   std::string foci;
-  std::string array = "usx";
+  std::string array = prostm::array_kinds().front().name;
   std::string solver = "weighted";
   std::string json;
 };

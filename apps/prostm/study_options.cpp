@@ -44,7 +44,7 @@ void add_study_run(CLI::App& study, Work& work) {
   add_input(*command, run.common.files, "--settings", run.common.settings_file,
             "settings that all methods begin with, a TOML file (docs/files.md)");
   add_device(*command, run.common);
-  add_array(*command, run.common, "usx (default), autd3, or an array file (.json)");
+  add_array(*command, run.common);
   add_lock_memory(*command, run.lock_memory);
   add_address(*command, run);
   command->footer(
@@ -66,7 +66,7 @@ void add_study_check(CLI::App& study, Work& work) {
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
             "settings that all methods begin with, a TOML file (docs/files.md)");
   add_device(*command, o->common);
-  add_array(*command, o->common, "usx (default), autd3, or an array file (.json)");
+  add_array(*command, o->common);
   add_json(*command, o->common.files, o->common.json);
   command->footer("Example:\n  prostm study check data/protocols/continuity.toml");
   command->callback([o, &work] {

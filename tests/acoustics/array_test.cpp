@@ -26,6 +26,15 @@ std::vector<double> phases_for(const TransducerArray& array, const Medium& air, 
   return phases;
 }
 
+TEST(ArrayKinds, AreValidArraysOfTheirNames) {
+  ASSERT_FALSE(array_kinds().empty());
+  for (const ArrayKind& kind : array_kinds()) {
+    const TransducerArray array = kind.make();
+    EXPECT_EQ(array.name, kind.name);
+    EXPECT_NO_THROW(validate(array)) << kind.name;
+  }
+}
+
 TEST(Array, UsxIsACentredGridOf256) {
   const TransducerArray array = usx_array();
   ASSERT_EQ(array.position.size(), 256u);

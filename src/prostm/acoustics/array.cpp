@@ -1,6 +1,7 @@
 #include "prostm/acoustics/array.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -83,6 +84,14 @@ TransducerArray autd3_array() {
     }
   }
   return array;
+}
+
+std::span<const ArrayKind> array_kinds() {
+  static constexpr std::array<ArrayKind, 2> kKinds = {{
+      {"usx", usx_array},
+      {"autd3", autd3_array},
+  }};
+  return kKinds;
 }
 
 void validate(const TransducerArray& array) {

@@ -39,6 +39,14 @@ TransducerArray usx_array();
 /// as everywhere in D (AUTD3's own is transducer 0). Amplitude 4.386 Pa·m rms.
 TransducerArray autd3_array();
 
+/// An array that is known by name.
+struct ArrayKind {
+  const char* name;
+  TransducerArray (*make)();
+};
+/// All of them; the first is the default.
+std::span<const ArrayKind> array_kinds();
+
 /// Checks an array.
 /// @throws std::invalid_argument for no transducer or more than kMaxTransducers; normals that are
 /// not one per transducer; a position that is not finite or has a coordinate beyond 10 m; a normal

@@ -120,11 +120,21 @@ TransducerArray array_from_json(std::string_view text, const std::string& file) 
 }
 
 TransducerArray array_from_name(const std::string& name) {
-  if (name == "usx") return usx_array();
-  if (name == "autd3") return autd3_array();
+  std::vector<std::string> names;
+  for (const ArrayKind& kind : array_kinds()) {
+    if (name == kind.name) return kind.make();
+    names.emplace_back(kind.name);
+  }
   if (name.ends_with(".json")) return read_array(name);
-  throw InputError("array " + name + " is unknown; it must be usx, autd3 or a file (.json)" +
-                   did_you_mean(name, {"usx", "autd3"}));
+  throw InputError(fmt::format("array {} is unknown; it must be {}{}", name, array_choices(),
+                               did_you_mean(name, names)));
+}
+
+std::string array_choices(const std::string& of_default) {
+  std::string choices;
+  for (const ArrayKind& kind : array_kinds())
+    choices += kind.name + (choices.empty() ? of_default : "") + ", ";
+  return choices + "or an array file (.json)";
 }
 
 TransducerArray read_array(const std::string& path) {

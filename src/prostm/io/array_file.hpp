@@ -17,7 +17,10 @@ std::string array_to_json(const TransducerArray& array);
 TransducerArray array_from_json(std::string_view text, const std::string& file);
 /// The same from a file. @throws InputError also when it cannot be read.
 TransducerArray read_array(const std::string& path);
-/// "usx", "autd3", or a file (.json). @throws InputError also for another name.
+/// An array of array_kinds(), or a file (.json). @throws InputError also for another name.
 TransducerArray array_from_name(const std::string& name);
+/// What array_from_name() takes: "usx (default), autd3, or an array file (.json)".
+/// @param of_default follows the default's name.
+std::string array_choices(const std::string& of_default = "");
 
 }  // namespace prostm

@@ -15,7 +15,7 @@ void list(Settings& s, Visitor& v) {
   v.field({.name = "scene", .help = "what the hand is held into"}, s.scene);
   v.field({.name = "method", .help = "how fields are rendered"}, s.method);
   v.field({.name = "device", .help = "what plays"}, s.device);
-  v.field({.name = "array", .help = "the transducers: usx, autd3 or a file"}, s.array);
+  v.field({.name = "array", .help = "the transducers, by name or a file"}, s.array);
   v.field({.name = "array_width",
            .help = "whether best and fast count on the width of the array's "
                    "focus, not on sigma"},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "prostm/acoustics/array.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/contact/skin_contact.hpp"
 #include "prostm/core/settings.hpp"
@@ -26,8 +27,8 @@ inline constexpr double kLiveBudget = 2e-3;  ///< for a plan of preset best in r
 struct PipelineSettings {
   std::string scene = "one-plume";  ///< see scenes()
   Method method = Method::ProStm;
-  std::string device = "sim";  ///< what plays, see device_named()
-  std::string array = "usx";   ///< what `transducers` are, by name: usx, autd3 or a file
+  std::string device = "sim";                      ///< what plays, see device_named()
+  std::string array = array_kinds().front().name;  ///< what `transducers` are: a name or a file
   /// Plans of presets best and fast count on the width of the array's focus, not on [plan] sigma.
   bool array_width = false;
   std::string tracker = "centre";  ///< what `X_DT` is, by name: centre, a kit or a file
