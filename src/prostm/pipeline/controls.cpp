@@ -94,193 +94,221 @@ void set_sigma(LiveSettings& s, double millimetres) {
   s.pipeline.array_width = false;
 }
 
-std::vector<RunControl> make_controls() {
-  using S = LiveSettings;
-  std::vector<RunControl> all;
-  const auto number = [&](std::string_view group, std::string_view id, std::string_view label,
-                          std::string_view unit, double low, double high, double step,
-                          double (*get)(const S&), void (*set)(S&, double),
-                          bool (*enabled)(const S&), std::string_view help) {
-    all.push_back({id,
-                   group,
-                   label,
-                   help,
-                   unit,
-                   ControlKind::Number,
-                   low,
-                   high,
-                   step,
-                   {},
-                   get,
-                   set,
-                   enabled,
-                   nullptr});
-  };
-  const auto choice = [&](std::string_view group, std::string_view id, std::string_view label,
-                          std::span<const ControlChoice> choices, double (*get)(const S&),
-                          void (*set)(S&, double), bool (*enabled)(const S&),
-                          std::string_view help) {
-    all.push_back({id, group, label, help, "", ControlKind::Choice, 0.0,
-                   static_cast<double>(choices.size()) - 1.0, 1.0, choices, get, set, enabled,
-                   nullptr});
-  };
-  const auto toggle = [&](std::string_view group, std::string_view id, std::string_view label,
-                          double (*get)(const S&), void (*set)(S&, double),
-                          bool (*enabled)(const S&), std::string_view help) {
-    all.push_back({id,
-                   group,
-                   label,
-                   help,
-                   "",
-                   ControlKind::Switch,
-                   0.0,
-                   1.0,
-                   1.0,
-                   {},
-                   get,
-                   set,
-                   enabled,
-                   nullptr});
-  };
+/// Collects controls, group by group.
+class ControlList {
+ public:
+  using Settings = const LiveSettings&;
+  using Get = double (*)(Settings);
+  using Set = void (*)(LiveSettings&, double);
+  using Enabled = bool (*)(Settings);
 
-  choice(
-      "Smoke", "scene", "Scene", kScenes,
-      [](const S& s) { return place(kScenes, s.pipeline.scene); },
+  explicit ControlList(std::string_view group) : group_(group) {}
+
+  void number(std::string_view id, std::string_view label, std::string_view unit, double low,
+              double high, double step, Get get, Set set, Enabled enabled, std::string_view help) {
+    all_.push_back({id,
+                    group_,
+                    label,
+                    help,
+                    unit,
+                    ControlKind::Number,
+                    low,
+                    high,
+                    step,
+                    {},
+                    get,
+                    set,
+                    enabled,
+                    nullptr});
+  }
+  void choice(std::string_view id, std::string_view label, std::span<const ControlChoice> choices,
+              Get get, Set set, Enabled enabled, std::string_view help,
+              bool (*available)(Settings, std::size_t place) = nullptr) {
+    all_.push_back({id, group_, label, help, "", ControlKind::Choice, 0.0,
+                    static_cast<double>(choices.size()) - 1.0, 1.0, choices, get, set, enabled,
+                    available});
+  }
+  void toggle(std::string_view id, std::string_view label, Get get, Set set, Enabled enabled,
+              std::string_view help) {
+    all_.push_back({id,
+                    group_,
+                    label,
+                    help,
+                    "",
+                    ControlKind::Switch,
+                    0.0,
+                    1.0,
+                    1.0,
+                    {},
+                    get,
+                    set,
+                    enabled,
+                    nullptr});
+  }
+  std::vector<RunControl> take() { return std::move(all_); }
+
+ private:
+  std::string_view group_;
+  std::vector<RunControl> all_;
+};
+
+std::vector<RunControl> smoke_controls() {
+  using S = LiveSettings;
+  ControlList list("Smoke");
+  list.choice(
+      "scene", "Scene", kScenes, [](const S& s) { return place(kScenes, s.pipeline.scene); },
       [](S& s, double v) { s.pipeline.scene = chosen(kScenes, v); }, always,
       "The smoke that the hand is held into, with the pressure that counts as full output there.");
-  number(
-      "Smoke", "jet_speed", "Emitter", "×", 0, 2, 0.05,
+  list.number(
+      "jet_speed", "Emitter", "×", 0, 2, 0.05,
       [](const S& s) { return s.pipeline.fluid.jet_speed; },
       [](S& s, double v) { s.pipeline.fluid.jet_speed = v; }, has_jets,
       "Speed of the smoke that the emitter blows, over the scene's own. Pressure goes with its "
       "square.");
-  choice(
-      "Smoke", "jet_place", "Jets", kJetPlaces,
+  list.choice(
+      "jet_place", "Jets", kJetPlaces,
       [](const S& s) { return static_cast<double>(s.pipeline.jets.place); },
       [](S& s, double v) { s.pipeline.jets.place = static_cast<JetPlace>(v); }, has_jets,
       "Over the array's middle, or where the palm is when you choose this, turned and sized with "
       "it.");
-  number(
-      "Smoke", "trim_rate", "Trim", "1/s", 0, 1, 0.05,
-      [](const S& s) { return s.pipeline.jets.trim_rate; },
+  list.number(
+      "trim_rate", "Trim", "1/s", 0, 1, 0.05, [](const S& s) { return s.pipeline.jets.trim_rate; },
       [](S& s, double v) { s.pipeline.jets.trim_rate = v; }, has_jets,
       "How fast several jets are made to press alike on the hand. 0: not at all.");
-  number(
-      "Smoke", "buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
+  list.number(
+      "buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
       [](const S& s) { return s.pipeline.fluid.buoyancy; },
       [](S& s, double v) { s.pipeline.fluid.buoyancy = v; }, always,
       "How strongly undiluted smoke rises.");
-  choice(
-      "Smoke", "pressure_of", "Pressure of", kParts,
+  list.choice(
+      "pressure_of", "Pressure of", kParts,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid_pressure.part); },
       [](S& s, double v) { s.pipeline.fluid_pressure.part = static_cast<PressurePart>(v); }, always,
       "All of the air's pressure, the smoke's share of it, or that of the hand's own movement in "
       "still air. A part takes twice the smoke's time.");
-  toggle(
-      "Smoke", "parts", "Both parts",
-      [](const S& s) { return s.pipeline.fluid_pressure.parts ? 1.0 : 0.0; },
+  list.toggle(
+      "parts", "Both parts", [](const S& s) { return s.pipeline.fluid_pressure.parts ? 1.0 : 0.0; },
       [](S& s, double v) { s.pipeline.fluid_pressure.parts = v != 0.0; }, always,
       "Shows the force of the smoke and that of the hand's own movement apart, whichever is felt, "
       "and records both. It takes twice the smoke's time.");
-  number(
-      "Smoke", "grid", "Grid", "cells", FluidSettings::kLeastCells, FluidSettings::kMostCells, 1,
+  list.number(
+      "grid", "Grid", "cells", FluidSettings::kLeastCells, FluidSettings::kMostCells, 1,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },
       [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, always,
       "Cells along each edge of the smoke's box. Fewer are coarser, and cost less time. The smoke "
       "begins anew.");
+  return list.take();
+}
 
-  choice(
-      "Plan", "method", "Method", kMethods,
+std::vector<RunControl> plan_controls() {
+  using S = LiveSettings;
+  ControlList list("Plan");
+  list.choice(
+      "method", "Method", kMethods,
       [](const S& s) { return static_cast<double>(s.pipeline.method); },
       [](S& s, double v) { s.pipeline.method = static_cast<Method>(v); }, always,
       "PRO-STM moves focal points along closed paths; AM holds them still and modulates them.");
-  choice(
-      "Plan", "preset", "Preset", kPresets,
+  list.choice(
+      "preset", "Preset", kPresets,
       [](const S& s) { return static_cast<double>(s.pipeline.plan.preset); }, set_preset,
       is_pro_stm,
       "How paths are planned: the nearest field, a short search, or the paper's own method.");
-  number(
-      "Plan", "paths", "Paths", "", 1, kMaxPaths, 1,
+  list.number(
+      "paths", "Paths", "", 1, kMaxPaths, 1,
       [](const S& s) {
         return static_cast<double>(is_am(s) ? s.pipeline.am.foci : s.pipeline.plan.paths);
       },
       set_paths, always, "Focal points at the same time; more share the array's power.");
-  number(
-      "Plan", "speed", "Speed", "m/s", 2, 8, 0.5, [](const S& s) { return s.pipeline.plan.speed; },
+  list.number(
+      "speed", "Speed", "m/s", 2, 8, 0.5, [](const S& s) { return s.pipeline.plan.speed; },
       [](S& s, double v) { s.pipeline.plan.speed = v; }, is_pro_stm,
       "Of the focal points; the longest path is the speed over the draw rate.");
-  number(
-      "Plan", "gain", "Gain γ", "", 0.5, 3, 0.1, [](const S& s) { return s.pipeline.plan.gain; },
+  list.number(
+      "gain", "Gain γ", "", 0.5, 3, 0.1, [](const S& s) { return s.pipeline.plan.gain; },
       [](S& s, double v) { s.pipeline.plan.gain = v; }, is_pro_stm,
       "Rendered pressure over the pressure that a path is felt as.");
-  toggle(
-      "Plan", "array_width", "Array's own width",
+  list.toggle(
+      "array_width", "Array's own width",
       [](const S& s) { return s.pipeline.array_width ? 1.0 : 0.0; },
       [](S& s, double v) { s.pipeline.array_width = v != 0.0; }, is_fitted,
       "Presets Best and Fast count on the width of the array's focus where the hand is.");
-  number(
-      "Plan", "sigma", "Width σ", "mm", 4, 20, 0.1,
+  list.number(
+      "sigma", "Width σ", "mm", 4, 20, 0.1,
       [](const S& s) { return std::round(1e4 * s.pipeline.sigma()) * 0.1; }, set_sigma, always,
       "Fall-off of a focal point that the planner counts on where it is not the array's own.");
-  number(
-      "Plan", "bending", "Smoothness", "", 0, 0.3, 0.01,
+  list.number(
+      "bending", "Smoothness", "", 0, 0.3, 0.01,
       [](const S& s) { return s.pipeline.plan.fit_bending; },
       [](S& s, double v) { s.pipeline.plan.fit_bending = v; }, is_fitted,
       "How much bends in a path cost, of the presets Best and Fast.");
-  number(
-      "Plan", "felt_weight", "What is felt", "", 0, 1, 0.05,
+  list.number(
+      "felt_weight", "What is felt", "", 0, 1, 0.05,
       [](const S& s) { return s.pipeline.plan.felt_weight; },
       [](S& s, double v) { s.pipeline.plan.felt_weight = v; }, is_fitted,
       "How much the model of the skin counts when Best and Fast choose pressures; the paths then "
       "run in step. 0 is off, 0.9 is recommended. Nobody has felt it.");
-  number(
-      "Plan", "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
+  list.number(
+      "am_felt_weight", "What is felt of AM", "", 0, 1, 0.05,
       [](const S& s) { return s.pipeline.am.felt_weight; },
       [](S& s, double v) { s.pipeline.am.felt_weight = v; }, is_am,
       "How much the model of the skin counts when pressures and phases of the focal points are "
       "chosen. 0 is off. Nobody has felt it.");
+  return list.take();
+}
 
-  choice(
-      "Output", "switch", "Take over", kSwitches,
+std::vector<RunControl> output_controls() {
+  using S = LiveSettings;
+  ControlList list("Output");
+  list.choice(
+      "switch", "Take over", kSwitches,
       [](const S& s) { return static_cast<double>(s.pipeline.emit.switch_at); },
       [](S& s, double v) { s.pipeline.emit.switch_at = static_cast<SwitchAt>(v); }, is_pro_stm,
       "Whether a new plan waits for the end of each path's lap, or cuts it short.");
-  number(
-      "Output", "tilt", "Tilt compensation", "×", 1, 4, 0.1,
+  list.number(
+      "tilt", "Tilt compensation", "×", 1, 4, 0.1,
       [](const S& s) { return s.pipeline.emit.tilt_bound; },
       [](S& s, double v) { s.pipeline.emit.tilt_bound = v; }, always,
       "The most by which pressure makes up for skin that is tilted away; 1 is off.");
-  number(
-      "Output", "am_frequency", "Modulation", "Hz", 50, 300, 10,
+  list.number(
+      "am_frequency", "Modulation", "Hz", 50, 300, 10,
       [](const S& s) { return s.pipeline.emit.am_frequency; },
       [](S& s, double v) { s.pipeline.emit.am_frequency = v; }, is_am,
       "Of the intensity of AM's focal points.");
-  choice(
-      "Output", "am_waveform", "Waveform", kWaveforms,
+  list.choice(
+      "am_waveform", "Waveform", kWaveforms,
       [](const S& s) { return static_cast<double>(s.pipeline.emit.am_waveform); },
       [](S& s, double v) { s.pipeline.emit.am_waveform = static_cast<Waveform>(v); }, is_am,
       "Of the modulation.");
+  return list.take();
+}
 
-  choice(
-      "Hand", "source", "Hands from", kSources,
-      [](const S& s) { return place(kSources, s.source); },
+std::vector<RunControl> hand_controls() {
+  using S = LiveSettings;
+  ControlList list("Hand");
+  list.choice(
+      "source", "Hands from", kSources, [](const S& s) { return place(kSources, s.source); },
       [](S& s, double v) { s.source = chosen(kSources, v); }, always,
-      "Where hands come from while the page's own hand lets go.");
-  all.back().available = has_source;
-  toggle(
-      "Hand", "prediction", "Prediction",
+      "Where hands come from while the page's own hand lets go.", has_source);
+  list.toggle(
+      "prediction", "Prediction",
       [](const S& s) { return s.pipeline.track.prediction > 0.0 ? 1.0 : 0.0; },
       [](S& s, double v) {
         s.pipeline.track.prediction = v != 0.0 ? TrackSettings{}.prediction : 0.0;
       },
       always, "Moves tracked hands on by the time that passes until they are felt.");
-  return all;
+  return list.take();
 }
 
 }  // namespace
 
 std::span<const RunControl> run_controls() {
-  static const std::vector<RunControl> kControls = make_controls();
+  static const std::vector<RunControl> kControls = [] {
+    std::vector<RunControl> all;
+    for (const auto& of_group :
+         {smoke_controls(), plan_controls(), output_controls(), hand_controls()})
+      all.insert(all.end(), of_group.begin(), of_group.end());
+    return all;
+  }();
   return kControls;
 }
 
