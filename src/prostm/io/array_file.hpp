@@ -19,7 +19,7 @@ TransducerArray array_from_json(std::string_view text, const std::string& file);
 TransducerArray read_array(const std::string& path);
 /// An array of array_kinds(), or a file (.json). @throws InputError also for another name.
 TransducerArray array_from_name(const std::string& name);
-/// What array_from_name() takes: "usx (default), autd3, or an array file (.json)".
+/// Lists the values of array_from_name(): "usx (default), autd3, or an array file (.json)".
 /// @param of_default follows the default's name.
 std::string array_choices(const std::string& of_default = "");
 
