@@ -94,7 +94,7 @@ void set_sigma(LiveSettings& s, double millimetres) {
   s.pipeline.array_width = false;
 }
 
-/// Collects controls, group by group.
+/// Collects the controls of a group.
 class ControlList {
  public:
   using Settings = const LiveSettings&;
@@ -106,44 +106,32 @@ class ControlList {
 
   void number(std::string_view id, std::string_view label, std::string_view unit, double low,
               double high, double step, Get get, Set set, Enabled enabled, std::string_view help) {
-    all_.push_back({id,
-                    group_,
-                    label,
-                    help,
-                    unit,
-                    ControlKind::Number,
-                    low,
-                    high,
-                    step,
-                    {},
-                    get,
-                    set,
-                    enabled,
-                    nullptr});
+    all_.push_back({.id = id,
+                    .group = group_,
+                    .label = label,
+                    .help = help,
+                    .unit = unit,
+                    .low = low,
+                    .high = high,
+                    .step = step,
+                    .choices = {},
+                    .get = get,
+                    .set = set,
+                    .enabled = enabled});
   }
   void choice(std::string_view id, std::string_view label, std::span<const ControlChoice> choices,
               Get get, Set set, Enabled enabled, std::string_view help,
               bool (*available)(Settings, std::size_t place) = nullptr) {
-    all_.push_back({id, group_, label, help, "", ControlKind::Choice, 0.0,
-                    static_cast<double>(choices.size()) - 1.0, 1.0, choices, get, set, enabled,
-                    available});
+    number(id, label, "", 0.0, static_cast<double>(choices.size()) - 1.0, 1.0, get, set, enabled,
+           help);
+    all_.back().kind = ControlKind::Choice;
+    all_.back().choices = choices;
+    all_.back().available = available;
   }
   void toggle(std::string_view id, std::string_view label, Get get, Set set, Enabled enabled,
               std::string_view help) {
-    all_.push_back({id,
-                    group_,
-                    label,
-                    help,
-                    "",
-                    ControlKind::Switch,
-                    0.0,
-                    1.0,
-                    1.0,
-                    {},
-                    get,
-                    set,
-                    enabled,
-                    nullptr});
+    number(id, label, "", 0.0, 1.0, 1.0, get, set, enabled, help);
+    all_.back().kind = ControlKind::Switch;
   }
   std::vector<RunControl> take() { return std::move(all_); }
 
