@@ -35,14 +35,21 @@ void play(const Device& device, std::int64_t blocks) {
   ASSERT_TRUE(test::eventually([&] { return device.stats().blocks >= end; }));
 }
 
-TEST(MarkerSender, SendsWhenTheSampleLeavesTheArrayAndHandsEveryMarkerOver) {
+/// An array that plays a tone while it is not muted, and the markers of it.
+class MarkersOfATone : public testing::Test {
+ protected:
+  void TearDown() override { device.stop(); }
+
   const Protocol protocol = test::study_protocol();
-  const auto mute = std::make_shared<Mute>();
+  const std::shared_ptr<Mute> mute = std::make_shared<Mute>();
+  SimulatedArray device{{}, usx_array(), Medium()};
+  SoundWatch watch{mute, device.info().sample_rate};
+  Tone tone{mute, watch};
+  MarkerSender sender{{}, protocol, {3, 2}, device, watch};
+};
+
+TEST_F(MarkersOfATone, SendsWhenTheSampleLeavesTheArrayAndHandsEveryMarkerOver) {
   mute->set(MuteReason::Study, true);
-  SimulatedArray device({}, usx_array(), Medium());
-  SoundWatch watch(mute, device.info().sample_rate);
-  Tone tone(mute, watch);
-  MarkerSender sender({}, protocol, {3, 2}, device, watch);
   constexpr std::uint32_t kTrials = 5;
   for (int start = 1; start <= 2; ++start) {
     ASSERT_EQ(device.start(tone), DeviceStatus::Running);
@@ -80,13 +87,7 @@ TEST(MarkerSender, SendsWhenTheSampleLeavesTheArrayAndHandsEveryMarkerOver) {
   EXPECT_FALSE(sender.next(marker));
 }
 
-TEST(MarkerSender, CountsTheSoundsOfAPresentation) {
-  const Protocol protocol = test::study_protocol();
-  const auto mute = std::make_shared<Mute>();
-  SimulatedArray device({}, usx_array(), Medium());
-  SoundWatch watch(mute, device.info().sample_rate);
-  Tone tone(mute, watch);
-  MarkerSender sender({}, protocol, {1, 1}, device, watch);
+TEST_F(MarkersOfATone, CountsTheSoundsOfAPresentation) {
   sender.present({1, 1, 0}, {});
   ASSERT_EQ(device.start(tone), DeviceStatus::Running);
   for (int part = 1; part <= 3; ++part) {
@@ -106,14 +107,8 @@ TEST(MarkerSender, CountsTheSoundsOfAPresentation) {
   }
 }
 
-TEST(MarkerSender, TellsHowThePresentationsNewestPlanIsPlayed) {
-  const Protocol protocol = test::study_protocol();
-  const auto mute = std::make_shared<Mute>();
+TEST_F(MarkersOfATone, TellsHowThePresentationsNewestPlanIsPlayed) {
   mute->set(MuteReason::Study, true);
-  SimulatedArray device({}, usx_array(), Medium());
-  SoundWatch watch(mute, device.info().sample_rate);
-  Tone tone(mute, watch);
-  MarkerSender sender({}, protocol, {1, 1}, device, watch);
   ASSERT_EQ(device.start(tone), DeviceStatus::Running);
   Marker on, off;
   const auto next = [&](Marker& marker) {

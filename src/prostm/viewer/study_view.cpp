@@ -146,7 +146,7 @@ void StudyView::tick() {
   Marker marker;
   while (markers_ != nullptr && markers_->next(marker)) session_.note(markers_->line(marker), now);
   played_ = now.played;
-  if (sounds_ && markers_ != nullptr) markers_->tell(played_);
+  if (sounds_ && played_ && markers_ != nullptr) markers_->tell(*played_);
   present(session_.look(now));
   std::string sentence;
   while (session_.next_news(sentence)) news_for_terminal_.push(sentence);

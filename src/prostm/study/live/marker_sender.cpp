@@ -48,7 +48,7 @@ void MarkerSender::present(const Presentation& now, const std::optional<StudyPla
   sound_.label(now.label());
 }
 
-void MarkerSender::tell(const std::optional<StudyPlayed>& played) {
+void MarkerSender::tell(const StudyPlayed& played) {
   const std::lock_guard hold(lock_);
   emission_.played = played;
 }

@@ -41,8 +41,8 @@ class MarkerSender {
   // ---- the study's thread ----
   /// Names what sounds next, and how its newest plan is played. Call it before the mute is lifted.
   void present(const Presentation& now, const std::optional<StudyPlayed>& played);
-  /// How the newest plan of what sounds is played.
-  void tell(const std::optional<StudyPlayed>& played);
+  /// How the newest plan of what sounds is played. It stays so where no plan follows.
+  void tell(const StudyPlayed& played);
   /// The oldest marker that was not handed over yet; false without one.
   bool next(Marker& out) { return markers_.pop(out); }
   /// Returns the line that the response file gets.
