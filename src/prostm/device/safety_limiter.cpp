@@ -211,8 +211,8 @@ SafetyLimiter::Allowed SafetyLimiter::cap_drive(float pressure) const noexcept {
        SafetyLimit::MeanRadiationPressure},
       {head_.allowed(head_cap_), SafetyLimit::HeadLevel},
   }};
-  const Allowed least = std::ranges::min(squares, {}, &Allowed::share);
-  return {std::sqrt(least.share), least.limit};
+  const Allowed least = std::ranges::min(squares, {}, &Allowed::most);
+  return {std::sqrt(least.most), least.limit};
 }
 
 /// Returns the factor of all intensities that keeps power and caps; at most 1.
@@ -226,9 +226,9 @@ SafetyLimiter::Allowed SafetyLimiter::scale(std::span<const FocusSample> now) co
   const Level wanted = level(now);
   if (wanted.drive <= 0.0F) return by_power;
   const Allowed cap = cap_drive(wanted.pressure);
-  if (cap.share >= kKnee) return by_power;
-  const Allowed by_cap{largest_sum(cap.share) / wanted.drive, cap.limit};
-  return by_cap.share < by_power.share ? by_cap : by_power;
+  if (cap.most >= kKnee) return by_power;
+  const Allowed by_cap{largest_sum(cap.most) / wanted.drive, cap.limit};
+  return by_cap.most < by_power.most ? by_cap : by_power;
 }
 
 /// Fades each focal point that jumps where it was. @return whether all are held, since the device

@@ -113,9 +113,9 @@ class SafetyLimiter final : public SampleStage {
     float own = 0.0F;       ///< pressure that the loudest makes with its own share of a drive
     float energy = 0.0F;    ///< of the drives if focal points do not add up
   };
-  /// A drive, or a share of all intensities, that keeps a limit.
+  /// The largest drive, or factor of all intensities, that keeps a limit.
   struct Allowed {
-    float share;
+    float most;
     SafetyLimit limit;
   };
   struct Focus {

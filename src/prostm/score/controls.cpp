@@ -81,7 +81,7 @@ Plan random_circles(const std::vector<Vec2>& skin, double length, double period,
 }
 
 /// Sums of one segment's cells, a and b the shares of its first and second sample in p̂ there.
-enum SegmentSum : std::size_t { kAA, kAB, kBB, kAP, kBP, kSegmentSums };
+constexpr std::size_t kAA = 0, kAB = 1, kBB = 2, kAP = 3, kBP = 4, kSegmentSums = 5;
 constexpr std::size_t kUnknowns = static_cast<std::size_t>(kCircles) * kCirclePoints;
 using NormalSums = std::array<double, kSegmentSums * kUnknowns>;
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSpillShare = 0.1;  // share of max p* below which nothing is to be felt
 
-constexpr std::size_t kBandCells = 4096;
+constexpr std::size_t kBandCells = 4096;  // summed by one thread
 
 /// Target and rendered field on the skin, both over max p*.
 struct SkinValues {
