@@ -12,7 +12,7 @@
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "report.hpp"
 

@@ -18,8 +18,8 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/device/detail/slot_encoder.hpp"
-#include "prostm/device/sample_chain.hpp"
-#include "prostm/device/simulated_array.hpp"
+#include "prostm/device/safety/sample_chain.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/emit/detail/path_emitter.hpp"
 #include "report.hpp"
 

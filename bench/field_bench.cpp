@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "fields/fields.hpp"
-#include "prostm/acoustics/loop_field.hpp"
-#include "prostm/acoustics/propagation_kernels.hpp"
+#include "prostm/acoustics/field/loop_field.hpp"
+#include "prostm/acoustics/field/propagation_kernels.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/planner.hpp"

@@ -14,7 +14,7 @@
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "report.hpp"
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "program.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 #include "prostm/pipeline/runner.hpp"
 
 namespace prostm {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "program.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 #include "prostm/track/detail/causal_track.hpp"
 
 namespace prostm {

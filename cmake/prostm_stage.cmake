@@ -31,10 +31,10 @@ function(prostm_stage name)
   prostm_precompile(prostm_${name} prostm_slow_headers)
 endfunction()
 
-# One test program per folder of tests/, from all its *_test.cpp; each case is one ctest entry. The target prostm_tests
+# One test program per folder of tests/, from all *_test.cpp in it and its subfolders; each case is one ctest entry. The target prostm_tests
 # builds them all. Cases that match prostm_alone_NAME, a filter of GoogleTest, keep real time and run beside no other.
 function(prostm_test name)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${name}/*_test.cpp)
   if(PROSTM_SANITIZE STREQUAL "thread" AND DEFINED prostm_threaded_${name})
     foreach(source ${sources})
       file(STRINGS ${source} threads REGEX "^#include <(thread|atomic|mutex)>" LIMIT_COUNT 1)

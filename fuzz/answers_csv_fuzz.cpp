@@ -7,7 +7,7 @@
 #include <string>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/study/analysis.hpp"
+#include "prostm/study/analysis/analysis.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/device/autd3_array.hpp"
-#include "prostm/device/autd3_reply.hpp"
+#include "prostm/device/autd3/autd3_array.hpp"
+#include "prostm/device/autd3/autd3_reply.hpp"
 
 namespace {
 

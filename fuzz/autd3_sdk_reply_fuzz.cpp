@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "prostm/device/autd3_sdk_reply.hpp"
+#include "prostm/device/autd3_sdk/autd3_sdk_reply.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

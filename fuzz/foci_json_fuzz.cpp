@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "prostm/acoustics/propagation.hpp"
+#include "prostm/acoustics/field/propagation.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/foci_file.hpp"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // most inputs would fail at the header, so the first test supplies it

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

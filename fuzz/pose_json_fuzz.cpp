@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/pose_file.hpp"
+#include "prostm/io/hand/pose_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

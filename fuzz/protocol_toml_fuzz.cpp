@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/study/course.hpp"
+#include "prostm/study/task/course.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

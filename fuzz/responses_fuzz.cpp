@@ -5,8 +5,8 @@
 #include <string>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/study/response_file.hpp"
-#include "prostm/study/scores.hpp"
+#include "prostm/study/analysis/scores.hpp"
+#include "prostm/study/session/response_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;

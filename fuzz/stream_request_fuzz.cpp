@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "prostm/device/stream_request.hpp"
+#include "prostm/device/stream/stream_request.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm::stream;

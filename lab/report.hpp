@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "prostm/core/distribution.hpp"
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 
 namespace prostm::bench {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "bindings.hpp"
-#include "prostm/core/number_text.hpp"
+#include "prostm/core/text/number_text.hpp"
 #include "prostm/plan/felt_plan.hpp"
 
 namespace prostm::python {

@@ -8,8 +8,8 @@
 #include "bindings.hpp"
 #include "hdf5_turn.hpp"
 #include "plan_result.hpp"
-#include "prostm/core/file.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "prostm/io/plan_file.hpp"
 
 namespace prostm::python {

@@ -4,8 +4,8 @@
 
 #include "bindings.hpp"
 #include "plan_result.hpp"
-#include "prostm/core/number_text.hpp"
 #include "prostm/core/require.hpp"
+#include "prostm/core/text/number_text.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static.hpp"
 

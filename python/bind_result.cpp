@@ -7,7 +7,7 @@
 #include "bindings.hpp"
 #include "plan_result.hpp"
 #include "prostm/commit.hpp"
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/require.hpp"
 #include "prostm/io/array_file.hpp"
 #include "prostm/io/plan_file.hpp"

@@ -15,7 +15,7 @@
 
 #include "prostm/core/geometry.hpp"
 #include "prostm/core/quantity.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm::python {

@@ -2,7 +2,7 @@
 
 #include "bindings.hpp"
 #include "prostm/commit.hpp"
-#include "prostm/core/advisory_lock.hpp"
+#include "prostm/core/file/advisory_lock.hpp"
 #include "prostm/core/input_error.hpp"
 
 PYBIND11_MODULE(_prostm, m) {

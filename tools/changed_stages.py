@@ -14,8 +14,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 ALWAYS = {"pipeline", "viewer", "app"}
+# stages that the tests of several others link
+SHARED = (("src", "prostm", "textbook"), ("src", "prostm", "fields"))
+# what tests of devices run against
+DEVICE_SUPPORT = (("tests", "support", "standins"), ("tests", "support", "ultraleap_sdk"))
 # files that no sanitizer or fuzzer covers
-ELSEWHERE = ("docs", "web", "receivers", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md",
+ELSEWHERE = ("docs", "web", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md",
              "CITATION.cff", "LICENSE", ".ci", ".gitignore")
 
 
@@ -26,8 +30,8 @@ def git(*arguments):
 def stage_of(path):
     """Returns the stage of a changed file; "" for a file that affects no stage, None for one that affects all."""
     parts = Path(path).parts
-    if parts[:2] == ("tests", "fields") or parts[:3] == ("src", "prostm", "textbook"):
-        return None  # tests of several stages link them
+    if parts[:3] in SHARED:
+        return None
     if parts[0] in ELSEWHERE:
         return ""
     if parts[0] == "apps" or parts[:2] == ("tests", "command_line"):
@@ -37,7 +41,7 @@ def stage_of(path):
         return folder[0]
     if parts[:2] in (("tests", "python"), ("tests", "lab"), ("tests", "library"), ("tests", "tools")):
         return ""
-    if parts[:2] in (("tests", "standins"), ("tests", "ultraleap"), ("tests", "ultraleap_sdk")):
+    if parts[:2] == ("tests", "ultraleap") or parts[:3] in DEVICE_SUPPORT:
         return "device"
     return None
 

@@ -14,4 +14,4 @@ trap 'rm -rf "$out"' EXIT
 find "${@:-.}" -name '*.hpp' ! -name '*-inl.hpp' -print0 |
   xargs -0 -P "$(nproc)" -I{} sh -c 'o=$1/$(echo "$2" | tr / _).o; shift 2; exec "$@" -o "$o"' \
     sh "$out" {} "${compiler[@]}" -xc++ -std=c++20 -c {} -Wall -Wextra -Wshadow -Werror \
-    -Wno-pragma-once-outside-header -I.. "${libraries[@]/#-I/-isystem}" -isystem ../../tests/ultraleap_sdk/include
+    -Wno-pragma-once-outside-header -I.. "${libraries[@]/#-I/-isystem}" -isystem ../../tests/support/ultraleap_sdk/include

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 LONGEST = 120
-FOLDERS = ("apps", "bench", "cmake", "data", "docs", "examples", "fuzz", "lab", "python", "receivers", "src", "tests", "tools",
+FOLDERS = ("apps", "bench", "cmake", "data", "docs", "examples", "fuzz", "lab", "python", "src", "tests", "tools",
            "web/src", "web/tests")
 DOCUMENTS = (".md",)
 SOURCES = (".cpp", ".hpp", ".py", ".pyi", ".sh", ".ts", ".txt", ".cmake", "run")

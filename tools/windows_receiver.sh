@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compiles receivers/prostm_receiver.cpp for Windows and runs it under Wine against a stream on this machine.
+# Compiles examples/stream/prostm_receiver.cpp for Windows and runs it under Wine against a stream on this machine.
 #
 # usage: tools/windows_receiver.sh [BUILD]     BUILD is the folder with the program (default: build/release)
 #
@@ -31,7 +31,7 @@ clean() {
 }
 trap clean EXIT
 
-"$compiler" -std=c++17 -O2 -Wall -Wextra -static "$root/receivers/prostm_receiver.cpp" -o "$work/prostm_receiver.exe" \
+"$compiler" -std=c++17 -O2 -Wall -Wextra -static "$root/examples/stream/prostm_receiver.cpp" -o "$work/prostm_receiver.exe" \
   -lws2_32
 echo "compiled: $(du -k "$work/prostm_receiver.exe" | cut -f1) kB"
 export WINEPREFIX="$build/wine" WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml=" DISPLAY=

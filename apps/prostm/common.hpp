@@ -10,7 +10,7 @@
 #include "interrupt.hpp"
 #include "options.hpp"
 #include "progress.hpp"
-#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/io/settings_file.hpp"
 #include "prostm/pipeline/runner.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/lower_case.hpp"
+#include "prostm/core/text/lower_case.hpp"
 
 namespace prostm::app {
 

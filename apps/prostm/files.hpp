@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 
 namespace prostm::app {
 

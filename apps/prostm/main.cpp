@@ -13,7 +13,7 @@
 #include "common.hpp"
 #include "options.hpp"
 #include "prostm/commit.hpp"
-#include "prostm/core/advisory_lock.hpp"
+#include "prostm/core/file/advisory_lock.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/io/recorder.hpp"

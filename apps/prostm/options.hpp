@@ -7,9 +7,9 @@
 
 #include "files.hpp"
 #include "prostm/io/array_file.hpp"
-#include "prostm/io/field_file.hpp"
-#include "prostm/study/analysis.hpp"
-#include "prostm/study/model_study.hpp"
+#include "prostm/io/field/field_file.hpp"
+#include "prostm/study/analysis/analysis.hpp"
+#include "prostm/study/analysis/model_study.hpp"
 
 namespace prostm::app {
 

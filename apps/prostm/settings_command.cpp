@@ -6,7 +6,7 @@
 #include "common.hpp"
 #include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/nearest_name.hpp"
+#include "prostm/core/text/nearest_name.hpp"
 
 namespace prostm::app {
 namespace {

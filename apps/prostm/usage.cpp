@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/nearest_name.hpp"
+#include "prostm/core/text/nearest_name.hpp"
 
 namespace prostm::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/random.hpp"
 #include "solvers/solver_tables.hpp"
 

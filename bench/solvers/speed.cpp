@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "fields/moving_foci.hpp"
-#include "prostm/acoustics/live_focus_solver.hpp"
+#include "prostm/acoustics/focus/live_focus_solver.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "solvers/solver_tables.hpp"

@@ -5,8 +5,8 @@
 #include <complex>
 
 #include "fields/moving_foci.hpp"
-#include "prostm/acoustics/live_focus_solver.hpp"
-#include "prostm/acoustics/propagation.hpp"
+#include "prostm/acoustics/field/propagation.hpp"
+#include "prostm/acoustics/focus/live_focus_solver.hpp"
 #include "prostm/core/units.hpp"
 #include "solvers/solver_tables.hpp"
 

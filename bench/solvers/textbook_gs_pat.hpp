@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 
 namespace prostm::bench {
 

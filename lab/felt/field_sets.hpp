@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm::bench {

@@ -8,7 +8,7 @@
 #include <list>
 
 #include "felt/kept.hpp"
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/plan/detail/validity.hpp"
 #include "prostm/plan/lifted_plan.hpp"

@@ -8,9 +8,9 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 
 namespace prostm::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "felt/ways.hpp"
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/target/target_field.hpp"
 #include "report.hpp"
 

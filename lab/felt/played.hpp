@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/array/array.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/score/loop_drives.hpp"

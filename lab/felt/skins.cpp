@@ -5,8 +5,8 @@
 #include <complex>
 #include <memory>
 
-#include "prostm/acoustics/bounded_skin.hpp"
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/bounded_skin.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 
 namespace prostm::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/skin_motion.hpp"
+#include "prostm/acoustics/skin/skin_motion.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm::bench {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/target/target_field.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "prostm/acoustics/loop_field.hpp"
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/field/loop_field.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/emit/compensation.hpp"
 #include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "felt_time/time_skin.hpp"
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/plan/plan.hpp"

@@ -5,8 +5,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "prostm/acoustics/skin_percept.hpp"
-#include "prostm/acoustics/skin_stepper.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_stepper.hpp"
 #include "prostm/core/require.hpp"
 #include "prostm/core/units.hpp"
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/detail/fft2.hpp"
-#include "prostm/acoustics/skin_model.hpp"
-#include "prostm/acoustics/skin_motion.hpp"
+#include "prostm/acoustics/skin/detail/fft2.hpp"
+#include "prostm/acoustics/skin/skin_model.hpp"
+#include "prostm/acoustics/skin/skin_motion.hpp"
 
 namespace prostm::bench {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/acoustics/field/focus_width.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/emit/loop_samples.hpp"

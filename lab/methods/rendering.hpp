@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/score/felt.hpp"
 #include "prostm/score/score.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "planner/contenders.hpp"
-#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/emit/focus_sample.hpp"
 #include "report.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "fields/fields.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "prostm/io/recorder.hpp"
 
 namespace prostm::bench {

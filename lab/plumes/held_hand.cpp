@@ -6,7 +6,7 @@
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/units.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 
 namespace prostm::bench {
 namespace {

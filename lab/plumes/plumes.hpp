@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "prostm/pipeline/scene.hpp"
 #include "prostm/pipeline/settings.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "report.hpp"

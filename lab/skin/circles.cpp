@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/figure/figures.hpp"
 #include "skin/experiments.hpp"
 #include "skin/stimuli.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/skin_model.hpp"
+#include "prostm/acoustics/skin/skin_model.hpp"
 #include "report.hpp"
 
 namespace prostm::bench {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/figure/figures.hpp"
 #include "skin/experiments.hpp"

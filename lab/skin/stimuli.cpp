@@ -4,8 +4,8 @@
 #include <cmath>
 #include <complex>
 
-#include "prostm/acoustics/focus_solver.hpp"
-#include "prostm/acoustics/transducer.hpp"
+#include "prostm/acoustics/array/transducer.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm::bench {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/array/array.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/core/geometry.hpp"
 
 namespace prostm::bench {

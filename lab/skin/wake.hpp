@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 
 namespace prostm {
 

@@ -3,7 +3,7 @@
 
 #include "prostm/device/device.hpp"
 #include "prostm/device/device_kinds.hpp"
-#include "prostm/device/sample_chain.hpp"
+#include "prostm/device/safety/sample_chain.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/emit/loop_samples.hpp"
 #include "prostm/plan/lifted_plan.hpp"

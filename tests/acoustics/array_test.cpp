@@ -1,4 +1,4 @@
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/array_units.hpp"
+#include "prostm/acoustics/array/array_units.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/bounded_skin.hpp"
+#include "prostm/acoustics/skin/bounded_skin.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "acoustics/skin_loops.hpp"
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 
 namespace prostm {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "prostm/acoustics/loop_field.hpp"
+#include "prostm/acoustics/field/loop_field.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 

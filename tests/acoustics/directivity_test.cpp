@@ -1,4 +1,4 @@
-#include "prostm/acoustics/directivity.hpp"
+#include "prostm/acoustics/array/directivity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/detail/fft2.hpp"
+#include "prostm/acoustics/skin/detail/fft2.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/flat_field.hpp"
+#include "prostm/acoustics/field/flat_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numeric>
 
-#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/acoustics/field/focus_width.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/live_focus_solver.hpp"
+#include "prostm/acoustics/focus/live_focus_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fields/moving_foci.hpp"
-#include "prostm/acoustics/propagation.hpp"
+#include "prostm/acoustics/field/propagation.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 #include "support/heap_guard.hpp"

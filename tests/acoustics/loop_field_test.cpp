@@ -1,4 +1,4 @@
-#include "prostm/acoustics/loop_field.hpp"
+#include "prostm/acoustics/field/loop_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "prostm/acoustics/detail/complex_product.hpp"
+#include "prostm/acoustics/field/detail/complex_product.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 

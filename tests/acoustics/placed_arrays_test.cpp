@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/propagation_kernels.hpp"
+#include "prostm/acoustics/field/propagation_kernels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/core/geometry.hpp"
 #include "prostm/core/units.hpp"
 

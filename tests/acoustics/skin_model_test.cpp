@@ -1,4 +1,4 @@
-#include "prostm/acoustics/skin_model.hpp"
+#include "prostm/acoustics/skin/skin_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 
 #include <gtest/gtest.h>
 

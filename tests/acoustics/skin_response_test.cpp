@@ -1,4 +1,4 @@
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "acoustics/skin_loops.hpp"
-#include "prostm/acoustics/skin_stepper.hpp"
+#include "prostm/acoustics/skin/skin_stepper.hpp"
 #include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 

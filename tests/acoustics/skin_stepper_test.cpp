@@ -1,4 +1,4 @@
-#include "prostm/acoustics/skin_stepper.hpp"
+#include "prostm/acoustics/skin/skin_stepper.hpp"
 
 #include <gtest/gtest.h>
 

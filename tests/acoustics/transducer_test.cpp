@@ -1,11 +1,11 @@
-#include "prostm/acoustics/transducer.hpp"
+#include "prostm/acoustics/array/transducer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 #include "support/heap_guard.hpp"

@@ -8,8 +8,8 @@
 
 #include "fields/fields.hpp"
 #include "plan/random_fields.hpp"
-#include "prostm/acoustics/skin_percept.hpp"
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/score/physical.hpp"
 #include "support/heap_guard.hpp"
 

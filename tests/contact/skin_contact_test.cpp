@@ -8,7 +8,7 @@
 #include "prostm/core/units.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/acoustics/field/focus_width.hpp"
 #include "prostm/contact/skin_contact.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 #include "prostm/plan/lifted_plan.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/physical.hpp"

@@ -1,10 +1,10 @@
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 
 #include <sys/stat.h>
 
 #include <fstream>
 
-#include "prostm/core/file_kind.hpp"
+#include "prostm/core/file/file_kind.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"
 

@@ -1,5 +1,5 @@
 /// Locks on file systems with and without them, and lock files.
-#include "prostm/core/lock_file.hpp"
+#include "prostm/core/file/lock_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -11,8 +11,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/advisory_lock.hpp"
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/advisory_lock.hpp"
+#include "prostm/core/file/file.hpp"
 #include "support/input_errors.hpp"
 #include "support/no_locks.hpp"
 

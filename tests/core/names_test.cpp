@@ -1,12 +1,12 @@
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "prostm/core/lower_case.hpp"
-#include "prostm/core/nearest_name.hpp"
-#include "prostm/core/number_text.hpp"
+#include "prostm/core/text/lower_case.hpp"
+#include "prostm/core/text/nearest_name.hpp"
+#include "prostm/core/text/number_text.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "prostm/core/number_text.hpp"
+#include "prostm/core/text/number_text.hpp"
 
 #include <gtest/gtest.h>
 

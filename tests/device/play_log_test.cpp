@@ -1,4 +1,4 @@
-#include "prostm/device/detail/play_log.hpp"
+#include "prostm/device/ultraleap/detail/play_log.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "prostm/device/simulated_array.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 
 namespace prostm {
 namespace {

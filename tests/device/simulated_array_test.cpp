@@ -1,4 +1,4 @@
-#include "prostm/device/simulated_array.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "prostm/acoustics/transducer.hpp"
+#include "prostm/acoustics/array/transducer.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/emit/detail/envelope.hpp"

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "fields/moving_foci.hpp"
-#include "prostm/acoustics/array_output.hpp"
+#include "prostm/acoustics/focus/array_output.hpp"
 #include "prostm/core/random.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"

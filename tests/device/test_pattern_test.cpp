@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "prostm/core/random.hpp"
-#include "prostm/device/sample_chain.hpp"
-#include "prostm/device/simulated_array.hpp"
+#include "prostm/device/safety/sample_chain.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "support/heap_guard.hpp"
 

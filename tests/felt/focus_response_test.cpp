@@ -6,8 +6,8 @@
 #include <cmath>
 #include <complex>
 
-#include "prostm/acoustics/skin_percept.hpp"
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/figure/detail/colours.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"
 

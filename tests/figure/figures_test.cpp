@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "figure/example_figures.hpp"
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/figure/detail/panel.hpp"
 #include "support/input_errors.hpp"

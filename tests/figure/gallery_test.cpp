@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "figure/example_figures.hpp"
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/figure/figures.hpp"
 #include "support/input_errors.hpp"
 

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/figure/figures.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -11,7 +11,7 @@
 
 #include "analytic_raster.hpp"
 #include "prostm/fluid/detail/obstacle.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "support/heap_guard.hpp"
 #include "support/smoke_of.hpp"
 

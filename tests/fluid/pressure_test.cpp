@@ -9,10 +9,10 @@
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/fluid/detail/advection.hpp"
-#include "prostm/fluid/detail/conjugate_gradients.hpp"
 #include "prostm/fluid/detail/obstacle.hpp"
-#include "prostm/fluid/detail/pressure_solver.hpp"
-#include "prostm/fluid/detail/projection.hpp"
+#include "prostm/fluid/detail/pressure/conjugate_gradients.hpp"
+#include "prostm/fluid/detail/pressure/pressure_solver.hpp"
+#include "prostm/fluid/detail/pressure/projection.hpp"
 
 namespace prostm::fluid {
 namespace {

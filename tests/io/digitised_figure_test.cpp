@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "io/examples.hpp"
-#include "prostm/core/file.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "prostm/score/score.hpp"
 #include "support/shared.hpp"
 

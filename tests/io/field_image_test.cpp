@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "io/png_writer.hpp"
-#include "prostm/core/file.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -3,9 +3,9 @@
 
 #include "io/examples.hpp"
 #include "io/random_field.hpp"
-#include "prostm/core/file.hpp"
-#include "prostm/core/json.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/core/text/json.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "support/shared.hpp"
 
 namespace prostm {

@@ -6,7 +6,7 @@
 #include <complex>
 #include <nlohmann/json.hpp>
 
-#include "prostm/acoustics/propagation.hpp"
+#include "prostm/acoustics/field/propagation.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/units.hpp"
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "../track/leap_json.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"
 

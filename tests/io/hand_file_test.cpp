@@ -1,10 +1,10 @@
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"
 

@@ -1,8 +1,8 @@
-#include "prostm/io/pose_file.hpp"
+#include "prostm/io/hand/pose_file.hpp"
 
 #include <gtest/gtest.h>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/track/hand_frame.hpp"
 #include "support/input_errors.hpp"

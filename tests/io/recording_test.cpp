@@ -7,8 +7,8 @@
 
 #include "io/examples.hpp"
 #include "io/random_field.hpp"
-#include "prostm/core/file.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "prostm/io/recorder.hpp"
 #include "support/full_disk.hpp"
 #include "support/no_locks.hpp"

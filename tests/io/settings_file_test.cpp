@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -11,7 +11,7 @@
 #include "felt/kept.hpp"
 #include "felt/tables.hpp"
 #include "fields/felt_fields.hpp"
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
 #include "support/input_errors.hpp"

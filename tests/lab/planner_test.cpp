@@ -14,9 +14,9 @@
 #include "planner/simultaneous.hpp"
 #include "planner/steadiness.hpp"
 #include "planner/violations.hpp"
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/units.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm::bench {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/random.hpp"
 #include "report.hpp"
 #include "solvers/textbook_gs_pat.hpp"

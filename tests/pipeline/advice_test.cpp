@@ -1,13 +1,13 @@
 /// Advice where rates are missed.
 
-#include "prostm/pipeline/advice.hpp"
+#include "prostm/pipeline/realtime/advice.hpp"
 
 #include <gmock/gmock.h>
 
 #include <string>
 
-#include "prostm/pipeline/scene.hpp"
-#include "prostm/pipeline/scene_grids.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/pipeline/smoke/scene_grids.hpp"
 
 namespace prostm {
 namespace {

@@ -1,6 +1,6 @@
 /// The box that goes with the hand.
 
-#include "prostm/pipeline/box_follow.hpp"
+#include "prostm/pipeline/smoke/box_follow.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include "pipeline/simulated.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/pipeline/pipeline.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/pipeline/snapshot.hpp"
 #include "support/smoke_of.hpp"
 

@@ -1,4 +1,4 @@
-#include "prostm/pipeline/cores.hpp"
+#include "prostm/pipeline/realtime/cores.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,4 +1,4 @@
-#include "prostm/pipeline/jet_trim.hpp"
+#include "prostm/pipeline/smoke/jet_trim.hpp"
 
 #include <gtest/gtest.h>
 

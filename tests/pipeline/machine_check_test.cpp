@@ -1,14 +1,14 @@
 /// The answer about a machine, from trials that held their rates or did not.
 
-#include "prostm/pipeline/machine_check.hpp"
+#include "prostm/pipeline/realtime/machine_check.hpp"
 
 #include <gmock/gmock.h>
 
 #include <string>
 #include <vector>
 
-#include "prostm/pipeline/machine.hpp"
-#include "prostm/pipeline/scene_grids.hpp"
+#include "prostm/pipeline/realtime/machine.hpp"
+#include "prostm/pipeline/smoke/scene_grids.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "prostm/pipeline/rate_news.hpp"
+#include "prostm/pipeline/realtime/rate_news.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 /// The grids that keep the stimulus of a scene, against the worlds themselves.
 
-#include "prostm/pipeline/scene_grids.hpp"
+#include "prostm/pipeline/smoke/scene_grids.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "prostm/pipeline/pipeline.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 
 namespace prostm {
 namespace {

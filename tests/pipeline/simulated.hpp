@@ -1,7 +1,7 @@
 #pragma once
 /// The simulated array of a pipeline that uses it.
 
-#include "prostm/device/simulated_array.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm::test {

@@ -1,6 +1,6 @@
 // The dips of made-up long runs, and the causes that they are given.
 
-#include "prostm/pipeline/soak_log.hpp"
+#include "prostm/pipeline/realtime/soak_log.hpp"
 
 #include <gmock/gmock.h>
 

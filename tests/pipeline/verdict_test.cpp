@@ -1,6 +1,6 @@
 /// The verdicts on runs of every kind, from made-up summaries.
 
-#include "prostm/pipeline/verdict.hpp"
+#include "prostm/pipeline/realtime/verdict.hpp"
 
 #include <gmock/gmock.h>
 

@@ -11,8 +11,8 @@
 
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
-#include "prostm/plan/detail/fit/cell_tiles.hpp"
-#include "prostm/plan/detail/fit/distances.hpp"
+#include "prostm/plan/detail/fit/raster/cell_tiles.hpp"
+#include "prostm/plan/detail/fit/raster/distances.hpp"
 #include "prostm/plan/detail/fit/spacing.hpp"
 #include "prostm/plan/detail/pressure_raster.hpp"
 #include "prostm/plan/detail/validity.hpp"

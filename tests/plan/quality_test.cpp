@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "fields/fields.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/textbook/textbook.hpp"

@@ -10,7 +10,7 @@ import prostm
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tests"))  # what the tests of the program and of the module share
+sys.path.append(str(ROOT / "tests/support"))  # what the tests of the program and of the module share
 
 
 def blobs(rows=24, cols=30, cell=5.0):

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/report/detail/inline_svg.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "fields/fields.hpp"
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm {

@@ -1,4 +1,4 @@
-#include "prostm/study/adjusted.hpp"
+#include "prostm/study/analysis/adjusted.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "prostm/study/analysis.hpp"
+#include "prostm/study/analysis/analysis.hpp"
 
 #include <array>
 #include <cmath>

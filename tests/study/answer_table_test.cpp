@@ -2,8 +2,8 @@
 #include <array>
 #include <string>
 
-#include "prostm/study/scores.hpp"
-#include "prostm/study/spelling.hpp"
+#include "prostm/study/analysis/scores.hpp"
+#include "prostm/study/session/spelling.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

@@ -1,4 +1,4 @@
-#include "prostm/study/course.hpp"
+#include "prostm/study/task/course.hpp"
 
 #include <gtest/gtest.h>
 

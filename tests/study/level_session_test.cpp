@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <functional>
 
-#include "prostm/core/file.hpp"
-#include "prostm/study/rehearsal.hpp"
-#include "prostm/study/session.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/study/session/rehearsal.hpp"
+#include "prostm/study/session/session.hpp"
 #include "study/study_support.hpp"
 #include "support/input_errors.hpp"
 

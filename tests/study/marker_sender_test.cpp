@@ -6,8 +6,8 @@
 #include <atomic>
 #include <thread>
 
-#include "prostm/acoustics/array.hpp"
-#include "prostm/device/simulated_array.hpp"
+#include "prostm/acoustics/array/array.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "study/study_support.hpp"
 #include "support/eventually.hpp"
 

@@ -1,4 +1,4 @@
-#include "prostm/study/marker.hpp"
+#include "prostm/study/session/marker.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

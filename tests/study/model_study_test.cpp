@@ -1,4 +1,4 @@
-#include "prostm/study/model_study.hpp"
+#include "prostm/study/analysis/model_study.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/study/observer.hpp"
+#include "prostm/study/analysis/observer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/study/order.hpp"
+#include "prostm/study/protocol/order.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <map>

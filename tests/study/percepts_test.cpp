@@ -1,4 +1,4 @@
-#include "prostm/study/percepts.hpp"
+#include "prostm/study/analysis/percepts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "prostm/study/protocol.hpp"
+#include "prostm/study/protocol/protocol.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "study/study_support.hpp"
 #include "support/input_errors.hpp"
 #include "support/places.hpp"

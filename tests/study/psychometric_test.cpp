@@ -1,4 +1,4 @@
-#include "prostm/study/psychometric.hpp"
+#include "prostm/study/task/psychometric.hpp"
 
 #include <gtest/gtest.h>
 

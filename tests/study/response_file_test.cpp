@@ -1,4 +1,4 @@
-#include "prostm/study/response_file.hpp"
+#include "prostm/study/session/response_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/random.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"

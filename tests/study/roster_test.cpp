@@ -1,13 +1,13 @@
-#include "prostm/study/roster.hpp"
+#include "prostm/study/session/roster.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "prostm/core/file.hpp"
-#include "prostm/study/scores.hpp"
-#include "prostm/study/session.hpp"
-#include "prostm/study/spelling.hpp"
-#include "prostm/study/study_status.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/study/analysis/scores.hpp"
+#include "prostm/study/session/session.hpp"
+#include "prostm/study/session/spelling.hpp"
+#include "prostm/study/session/study_status.hpp"
 #include "study/study_support.hpp"
 #include "support/input_errors.hpp"
 

@@ -1,4 +1,4 @@
-#include "prostm/study/scores.hpp"
+#include "prostm/study/analysis/scores.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/random.hpp"
-#include "prostm/study/response_file.hpp"
+#include "prostm/study/session/response_file.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"
 

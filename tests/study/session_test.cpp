@@ -1,12 +1,12 @@
-#include "prostm/study/session.hpp"
+#include "prostm/study/session/session.hpp"
 
 #include <functional>
 #include <memory>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/random.hpp"
-#include "prostm/study/rehearsal.hpp"
-#include "prostm/study/scores.hpp"
+#include "prostm/study/analysis/scores.hpp"
+#include "prostm/study/session/rehearsal.hpp"
 #include "study/study_support.hpp"
 #include "support/full_disk.hpp"
 #include "support/input_errors.hpp"

@@ -1,4 +1,4 @@
-#include "prostm/study/staircase.hpp"
+#include "prostm/study/task/staircase.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prostm/study/statistics.hpp"
+#include "prostm/study/task/statistics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "prostm/study/session.hpp"
+#include "prostm/study/session/session.hpp"
 
 namespace prostm::test {
 

@@ -1,11 +1,11 @@
-#include "prostm/study/thresholds.hpp"
+#include "prostm/study/analysis/thresholds.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "prostm/core/random.hpp"
-#include "prostm/study/analysis.hpp"
+#include "prostm/study/analysis/analysis.hpp"
 #include "support/input_errors.hpp"
 
 namespace prostm {

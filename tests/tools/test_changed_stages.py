@@ -62,7 +62,7 @@ def test_what_no_sanitizer_looks_at_asks_for_the_few_that_always_run(checkout):
 
 
 @pytest.mark.parametrize("path", ["CMakeLists.txt", "tests/support/main.cpp", "tools/fuzz.sh", "run", "fuzz/a_fuzz.cpp",
-                                  "tests/fields/fields.cpp"])
+                                  "src/prostm/fields/fields.cpp"])
 def test_what_belongs_to_all_asks_for_all(checkout, path):
     checkout.write("src/prostm/plan/plan.cpp", path)
     checkout.commit()

@@ -4,8 +4,8 @@
 
 #include "leap_json.hpp"
 #include "leap_server.hpp"
-#include "prostm/core/file.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 #include "support/eventually.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "prostm/core/file.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 #include "support/eventually.hpp"
 #include "support/input_errors.hpp"
 #include "support/shared.hpp"

@@ -7,7 +7,7 @@
 
 #include "hands.hpp"
 #include "prostm/core/random.hpp"
-#include "prostm/io/hand_file.hpp"
+#include "prostm/io/hand/hand_file.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "support/heap_guard.hpp"
 #include "support/shared.hpp"

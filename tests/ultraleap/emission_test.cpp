@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "emit/paths.hpp"
-#include "prostm/device/sample_chain.hpp"
+#include "prostm/device/safety/sample_chain.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "support/eventually.hpp"
 #include "ultraleap/listening.hpp"

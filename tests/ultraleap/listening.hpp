@@ -6,7 +6,7 @@
 #include <ultraleap/haptics/stand_in.hpp>
 #include <vector>
 
-#include "prostm/device/ultraleap.hpp"
+#include "prostm/device/ultraleap/ultraleap.hpp"
 
 namespace prostm::test {
 

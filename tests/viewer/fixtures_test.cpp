@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/viewer/wire.hpp"
 #include "support/heap_guard.hpp"

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "prostm/io/pose_file.hpp"
+#include "prostm/io/hand/pose_file.hpp"
 #include "viewer/live_run.hpp"
 
 namespace prostm {

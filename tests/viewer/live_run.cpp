@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "pipeline/simulated.hpp"
-#include "prostm/io/pose_file.hpp"
+#include "prostm/io/hand/pose_file.hpp"
 
 namespace prostm::test {
 

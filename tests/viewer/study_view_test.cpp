@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "study/study_support.hpp"
 #include "support/input_errors.hpp"

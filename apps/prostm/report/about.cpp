@@ -1,5 +1,5 @@
 #include "prostm/commit.hpp"
-#include "report.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 

@@ -1,15 +1,15 @@
 /// The paper's Figs. 1 to 3.
 #include <fmt/format.h>
 
-#include "../instant.hpp"
-#include "../plan_pictures.hpp"
-#include "metrics_table.hpp"
+#include "plan/plan_pictures.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/io/field_file.hpp"
+#include "prostm/io/field/field_file.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/plan/quasi_static.hpp"
-#include "report.hpp"
+#include "report/metrics_table.hpp"
+#include "report/report.hpp"
+#include "run/instant.hpp"
 
 namespace prostm::app {
 namespace {

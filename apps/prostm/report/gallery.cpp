@@ -1,8 +1,8 @@
-#include "../plan_pictures.hpp"
 #include "fields/fields.hpp"
-#include "metrics_table.hpp"
+#include "plan/plan_pictures.hpp"
 #include "prostm/plan/quasi_static.hpp"
-#include "report.hpp"
+#include "report/metrics_table.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 

@@ -1,11 +1,11 @@
-#include "prostm/pipeline/machine.hpp"
+#include "prostm/pipeline/realtime/machine.hpp"
 
 #include <sys/utsname.h>
 
 #include <cstdlib>
 
 #include "prostm/commit.hpp"
-#include "report.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 namespace {

@@ -3,7 +3,7 @@
 #include "methods/comparison.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
-#include "report.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 namespace {

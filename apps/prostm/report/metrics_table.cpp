@@ -1,4 +1,4 @@
-#include "metrics_table.hpp"
+#include "report/metrics_table.hpp"
 
 namespace prostm::app {
 

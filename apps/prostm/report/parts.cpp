@@ -1,11 +1,11 @@
 #include <filesystem>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/io/digitised_figure.hpp"
-#include "prostm/io/field_file.hpp"
-#include "prostm/study/scores.hpp"
-#include "report.hpp"
+#include "prostm/io/field/field_file.hpp"
+#include "prostm/study/analysis/scores.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "print_page.hpp"
+#include "report/print_page.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "../captured_fields.hpp"
+#include "field/captured_fields.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/input_error.hpp"
-#include "report.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "report.hpp"
+#include "report/report.hpp"
 #include "skin/experiments.hpp"
 
 namespace prostm::app {

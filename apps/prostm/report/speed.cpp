@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../common.hpp"
-#include "prostm/acoustics/focus_solver.hpp"
+#include "common.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/hand/hand_raster.hpp"
 #include "prostm/pipeline/runner.hpp"
-#include "prostm/pipeline/scene.hpp"
-#include "report.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 namespace {

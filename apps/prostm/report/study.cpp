@@ -1,13 +1,13 @@
 /// The paper's Fig. 4, and models that do its study.
-#include "../study.hpp"
+#include "study/study.hpp"
 
 #include <fmt/format.h>
 
 #include <mutex>
 
-#include "../simulated_study.hpp"
 #include "prostm/core/worker_pool.hpp"
-#include "report.hpp"
+#include "report/report.hpp"
+#include "study/simulated_study.hpp"
 
 namespace prostm::app {
 namespace {

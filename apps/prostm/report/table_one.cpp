@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "../field_bench.hpp"
-#include "report.hpp"
+#include "bench/field_bench.hpp"
+#include "report/report.hpp"
 
 namespace prostm::app {
 namespace {

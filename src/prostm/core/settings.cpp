@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "prostm/core/number_text.hpp"
 #include "prostm/core/require.hpp"
+#include "prostm/core/text/number_text.hpp"
 
 namespace prostm {
 namespace {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 
 namespace prostm {
 

@@ -4,11 +4,11 @@
 #include <string_view>
 #include <vector>
 
-#include "prostm/core/nearest_name.hpp"
-#include "prostm/device/autd3_sdk_array.hpp"
+#include "prostm/core/text/nearest_name.hpp"
+#include "prostm/device/autd3_sdk/autd3_sdk_array.hpp"
 #include "prostm/device/segment_stream.hpp"
-#include "prostm/device/stream_device.hpp"
-#include "prostm/device/ultraleap.hpp"
+#include "prostm/device/stream/stream_device.hpp"
+#include "prostm/device/ultraleap/ultraleap.hpp"
 
 namespace prostm {
 namespace {

@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "prostm/device/autd3_array.hpp"
-#include "prostm/device/simulated_array.hpp"
-#include "prostm/device/stream_settings.hpp"
+#include "prostm/device/autd3/autd3_array.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
+#include "prostm/device/stream/stream_settings.hpp"
 
 namespace prostm {
 

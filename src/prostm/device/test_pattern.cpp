@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "prostm/acoustics/array_units.hpp"
+#include "prostm/acoustics/array/array_units.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/emit/emitter.hpp"
 

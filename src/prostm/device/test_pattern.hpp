@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/emit/focus_sample.hpp"
 
 namespace prostm {

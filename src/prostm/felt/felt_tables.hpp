@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "prostm/acoustics/skin_model.hpp"
+#include "prostm/acoustics/skin/skin_model.hpp"
 #include "prostm/felt/felt_loss.hpp"
 #include "prostm/felt/focus_response.hpp"
 

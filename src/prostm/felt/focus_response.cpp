@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm {

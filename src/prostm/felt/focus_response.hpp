@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/skin_model.hpp"
+#include "prostm/acoustics/skin/skin_model.hpp"
 
 namespace prostm {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "prostm/contact/pressure_source.hpp"
-#include "prostm/core/names.hpp"
 #include "prostm/core/settings.hpp"
+#include "prostm/core/text/names.hpp"
 
 namespace prostm {
 

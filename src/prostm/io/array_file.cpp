@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/json.hpp"
-#include "prostm/core/nearest_name.hpp"
+#include "prostm/core/text/json.hpp"
+#include "prostm/core/text/nearest_name.hpp"
 
 namespace prostm {
 namespace {

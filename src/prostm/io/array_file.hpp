@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 
 namespace prostm {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/io/detail/raster_json.hpp"
 
 namespace prostm {

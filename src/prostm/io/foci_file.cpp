@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/file.hpp"
-#include "prostm/core/json.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
-#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/array/array.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 
 namespace prostm {
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/io/detail/raster_json.hpp"
 #include "prostm/io/plan_file.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/core/settings.hpp"
 #include "prostm/score/felt.hpp"
 

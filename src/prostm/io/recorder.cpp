@@ -16,9 +16,9 @@
 #include <system_error>
 #include <vector>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/io/detail/hdf5.hpp"
 #include "prostm/io/detail/hdf5_disk.hpp"
 #include "prostm/io/detail/recording_layout.hpp"

@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "prostm/core/file.hpp"
-#include "prostm/core/file_kind.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/core/file/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/detail/hdf5.hpp"
 #include "prostm/io/detail/hdf5_filters.hpp"

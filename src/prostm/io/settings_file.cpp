@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "prostm/core/file.hpp"
-#include "prostm/core/file_kind.hpp"
+#include "prostm/core/file/file.hpp"
+#include "prostm/core/file/file_kind.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/nearest_name.hpp"
+#include "prostm/core/text/nearest_name.hpp"
 
 namespace prostm {
 namespace {

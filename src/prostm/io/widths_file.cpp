@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/core/units.hpp"
 
 namespace prostm {

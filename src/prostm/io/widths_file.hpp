@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/acoustics/field/focus_width.hpp"
 
 namespace prostm {
 

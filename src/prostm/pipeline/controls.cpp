@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 #include "prostm/core/units.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 
 namespace prostm {
 namespace {

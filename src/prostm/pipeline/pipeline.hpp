@@ -12,7 +12,7 @@
 #include "prostm/contact/skin_contact.hpp"
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/device/device.hpp"
-#include "prostm/device/sample_chain.hpp"
+#include "prostm/device/safety/sample_chain.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/emit/played_plan.hpp"
 #include "prostm/hand/hand_raster.hpp"

@@ -8,7 +8,7 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/pipeline/detail/run_sides.hpp"
 #include "prostm/pipeline/detail/steering.hpp"
-#include "prostm/pipeline/rate_news.hpp"
+#include "prostm/pipeline/realtime/rate_news.hpp"
 
 namespace prostm {
 namespace {

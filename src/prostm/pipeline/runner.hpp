@@ -8,11 +8,11 @@
 #include <string>
 
 #include "prostm/core/distribution.hpp"
-#include "prostm/core/names.hpp"
 #include "prostm/core/quantity.hpp"
-#include "prostm/pipeline/advice.hpp"
+#include "prostm/core/text/names.hpp"
 #include "prostm/pipeline/latency.hpp"
 #include "prostm/pipeline/pipeline.hpp"
+#include "prostm/pipeline/realtime/advice.hpp"
 
 namespace prostm {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/acoustics/field/focus_width.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/emit/drive.hpp"
 #include "prostm/emit/played.hpp"

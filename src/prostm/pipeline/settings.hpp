@@ -5,17 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/contact/skin_contact.hpp"
 #include "prostm/core/settings.hpp"
 #include "prostm/device/device_kinds.hpp"
-#include "prostm/device/safety_limiter.hpp"
+#include "prostm/device/safety/safety_limiter.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
-#include "prostm/pipeline/box_follow.hpp"
-#include "prostm/pipeline/jet_trim.hpp"
+#include "prostm/pipeline/smoke/box_follow.hpp"
+#include "prostm/pipeline/smoke/jet_trim.hpp"
 #include "prostm/plan/method.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/track/hand_source.hpp"

@@ -12,8 +12,8 @@
 
 #include "prostm/core/latest.hpp"
 #include "prostm/core/spsc_ring.hpp"
-#include "prostm/pipeline/advice.hpp"
 #include "prostm/pipeline/pipeline.hpp"
+#include "prostm/pipeline/realtime/advice.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/track/live/page_hand.hpp"
 

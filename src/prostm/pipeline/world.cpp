@@ -6,8 +6,8 @@
 
 #include "prostm/core/units.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
-#include "prostm/pipeline/box_follow.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/box_follow.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 
 namespace prostm {
 namespace {

@@ -7,8 +7,8 @@
 #include "prostm/contact/pressure_source.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
-#include "prostm/pipeline/scene.hpp"
 #include "prostm/pipeline/settings.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/target/target_field.hpp"
 #include "prostm/track/hand_frame.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/skin_model.hpp"
+#include "prostm/acoustics/skin/skin_model.hpp"
 #include "prostm/felt/felt_tables.hpp"
 #include "prostm/plan/plan.hpp"
 #include "prostm/target/target_field.hpp"

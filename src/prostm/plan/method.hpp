@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 
 namespace prostm {
 

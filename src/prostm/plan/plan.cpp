@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "prostm/core/number_text.hpp"
+#include "prostm/core/text/number_text.hpp"
 
 namespace prostm {
 

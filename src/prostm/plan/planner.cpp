@@ -6,8 +6,8 @@
 
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/clustering.hpp"
-#include "prostm/plan/detail/fit/cell_weights.hpp"
 #include "prostm/plan/detail/fit/fit_planner.hpp"
+#include "prostm/plan/detail/fit/raster/cell_weights.hpp"
 #include "prostm/plan/detail/paper/refine.hpp"
 #include "prostm/plan/detail/tours.hpp"
 #include "prostm/plan/detail/validity.hpp"

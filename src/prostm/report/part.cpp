@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 
 namespace prostm::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 
 namespace prostm {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/bounded_skin.hpp"
-#include "prostm/acoustics/skin_response.hpp"
+#include "prostm/acoustics/skin/bounded_skin.hpp"
+#include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/score/physical.hpp"
 
 namespace prostm {

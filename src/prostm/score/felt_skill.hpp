@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/emit/loop_samples.hpp"

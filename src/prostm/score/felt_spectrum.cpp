@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/acoustics/skin_percept.hpp"
+#include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/score/felt.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "prostm/acoustics/drive_basis.hpp"
-#include "prostm/acoustics/focus_solver.hpp"
-#include "prostm/acoustics/propagation_kernels.hpp"
-#include "prostm/acoustics/transducer.hpp"
+#include "prostm/acoustics/array/transducer.hpp"
+#include "prostm/acoustics/field/drive_basis.hpp"
+#include "prostm/acoustics/field/propagation_kernels.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/emit/loop_samples.hpp"
 
 namespace prostm {

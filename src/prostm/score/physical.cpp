@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "prostm/acoustics/flat_field.hpp"
-#include "prostm/acoustics/focus_width.hpp"
+#include "prostm/acoustics/field/flat_field.hpp"
+#include "prostm/acoustics/field/focus_width.hpp"
 #include "prostm/target/skin_normal.hpp"
 
 namespace prostm {

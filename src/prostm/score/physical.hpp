@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "prostm/acoustics/loop_field.hpp"
+#include "prostm/acoustics/field/loop_field.hpp"
 #include "prostm/score/loop_drives.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/target/target_field.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "prostm/acoustics/array.hpp"
+#include "prostm/acoustics/array/array.hpp"
 #include "prostm/score/detail/sample_solver.hpp"
 #include "prostm/score/loop_drives.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/core/number_text.hpp"
+#include "prostm/core/text/number_text.hpp"
 #include "prostm/track/palm.hpp"
 
 namespace prostm {

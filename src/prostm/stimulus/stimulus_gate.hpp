@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/stimulus/stimulus.hpp"
 #include "prostm/target/field_shape.hpp"

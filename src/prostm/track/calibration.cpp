@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "prostm/core/number_text.hpp"
+#include "prostm/core/text/number_text.hpp"
 
 namespace prostm {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 
 namespace prostm {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "prostm/core/geometry.hpp"
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 
 namespace prostm {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "prostm/core/number_text.hpp"
+#include "prostm/core/text/number_text.hpp"
 #include "prostm/track/detail/hand_convention.hpp"
 
 namespace prostm {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/track/hand_faults.hpp"
 #include "prostm/track/hand_frame.hpp"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "prostm/study/session.hpp"
+#include "prostm/study/session/session.hpp"
 
 namespace prostm {
 
@@ -50,7 +50,7 @@ struct RateMessage {
   double rate = kPageRate;  ///< [Hz], kMinPageRate to kMaxPageRate
 };
 
-/// PageReport is the participant's page's (study/participant_page.hpp).
+/// PageReport is the participant's page's (study/session/participant_page.hpp).
 using PageMessage = std::variant<SetMessage, TransportMessage, HandMessage, CalibrationMessage,
                                  MuteMessage, RateMessage, StudyAct, PageReport>;
 

@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "prostm/core/host_port.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/text/host_port.hpp"
 #include "prostm/viewer/detail/hub.hpp"
 #include "prostm/viewer/detail/session.hpp"
 

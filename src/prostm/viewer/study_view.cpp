@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/stage_timer.hpp"
-#include "prostm/pipeline/scene.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/viewer/detail/state_json.hpp"
 
 namespace prostm {

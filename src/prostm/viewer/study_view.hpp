@@ -11,8 +11,8 @@
 #include "prostm/core/spsc_ring.hpp"
 #include "prostm/pipeline/live.hpp"
 #include "prostm/study/live/marker_sender.hpp"
-#include "prostm/study/rehearsal.hpp"
-#include "prostm/study/session.hpp"
+#include "prostm/study/session/rehearsal.hpp"
+#include "prostm/study/session/session.hpp"
 #include "prostm/viewer/pipeline_view.hpp"
 #include "prostm/viewer/view_source.hpp"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "prostm/acoustics/transducer.hpp"
+#include "prostm/acoustics/array/transducer.hpp"
 
 namespace prostm {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/live_focus_solver.hpp"
+#include "prostm/acoustics/focus/live_focus_solver.hpp"
 #include "prostm/emit/focus_sample.hpp"
 
 namespace prostm {

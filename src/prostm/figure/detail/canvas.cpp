@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "prostm/core/file.hpp"
+#include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/figure/figures.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "prostm/fluid/detail/padded_grid.hpp"
-#include "prostm/fluid/detail/pressure_level.hpp"
+#include "prostm/fluid/detail/pressure/pressure_level.hpp"
 
 namespace prostm::fluid {
 

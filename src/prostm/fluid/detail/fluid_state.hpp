@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "prostm/fluid/detail/advection.hpp"
-#include "prostm/fluid/detail/conjugate_gradients.hpp"
 #include "prostm/fluid/detail/extrapolation.hpp"
 #include "prostm/fluid/detail/obstacle.hpp"
-#include "prostm/fluid/detail/pressure_solver.hpp"
-#include "prostm/fluid/detail/projection.hpp"
+#include "prostm/fluid/detail/pressure/conjugate_gradients.hpp"
+#include "prostm/fluid/detail/pressure/pressure_solver.hpp"
+#include "prostm/fluid/detail/pressure/projection.hpp"
 #include "prostm/fluid/detail/surroundings.hpp"
 #include "prostm/fluid/fluid.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "prostm/core/worker_pool.hpp"
 #include "prostm/fluid/detail/padded_grid.hpp"
-#include "prostm/fluid/detail/pressure_level.hpp"
+#include "prostm/fluid/detail/pressure/pressure_level.hpp"
 #include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
 

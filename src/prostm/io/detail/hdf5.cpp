@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "prostm/core/advisory_lock.hpp"
+#include "prostm/core/file/advisory_lock.hpp"
 
 namespace prostm::h5 {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/core/advisory_lock.hpp"
+#include "prostm/core/file/advisory_lock.hpp"
 
 namespace prostm::h5 {
 

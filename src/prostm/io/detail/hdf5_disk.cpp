@@ -13,7 +13,7 @@
 #include <memory>
 #include <string>
 
-#include "prostm/core/advisory_lock.hpp"
+#include "prostm/core/file/advisory_lock.hpp"
 
 namespace prostm::h5 {
 namespace {

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {

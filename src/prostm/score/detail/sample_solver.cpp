@@ -2,7 +2,7 @@
 
 #include <complex>
 
-#include "prostm/acoustics/propagation.hpp"
+#include "prostm/acoustics/field/propagation.hpp"
 
 namespace prostm {
 namespace {

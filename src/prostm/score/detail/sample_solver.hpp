@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "prostm/acoustics/focus_solver.hpp"
+#include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/emit/focus_sample.hpp"
 
 namespace prostm {

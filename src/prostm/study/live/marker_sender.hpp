@@ -11,9 +11,9 @@
 
 #include "prostm/core/spsc_ring.hpp"
 #include "prostm/device/device.hpp"
-#include "prostm/device/sound_watch.hpp"
+#include "prostm/device/safety/sound_watch.hpp"
 #include "prostm/study/live/marker_target.hpp"
-#include "prostm/study/marker.hpp"
+#include "prostm/study/session/marker.hpp"
 
 namespace prostm {
 

@@ -11,8 +11,8 @@
 #include <charconv>
 #include <cstring>
 
-#include "prostm/core/host_port.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/core/text/host_port.hpp"
 
 namespace prostm {
 namespace {

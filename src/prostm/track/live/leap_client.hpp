@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "prostm/core/host_port.hpp"
+#include "prostm/core/text/host_port.hpp"
 #include "prostm/track/live/live_tracker.hpp"
 
 namespace prostm {

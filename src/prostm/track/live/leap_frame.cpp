@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "prostm/core/input_error.hpp"
-#include "prostm/core/json.hpp"
+#include "prostm/core/text/json.hpp"
 #include "prostm/track/hand_json.hpp"
 
 namespace prostm {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "prostm/core/latest.hpp"
-#include "prostm/core/names.hpp"
+#include "prostm/core/text/names.hpp"
 #include "prostm/track/hand_source.hpp"
 
 namespace prostm {

@@ -4,7 +4,7 @@
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
 
-#include "prostm/core/lower_case.hpp"
+#include "prostm/core/text/lower_case.hpp"
 
 namespace prostm {
 namespace {

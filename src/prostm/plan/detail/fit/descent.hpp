@@ -7,7 +7,7 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/detail/fit/loop_shape.hpp"
 #include "prostm/plan/detail/fit/loops.hpp"
-#include "prostm/plan/detail/fit/reconstruction.hpp"
+#include "prostm/plan/detail/fit/raster/reconstruction.hpp"
 
 namespace prostm::planning {
 

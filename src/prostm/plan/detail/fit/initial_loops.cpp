@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/plan/detail/fit/distances.hpp"
-#include "prostm/plan/detail/fit/tile_kernels.hpp"
+#include "prostm/plan/detail/fit/raster/distances.hpp"
+#include "prostm/plan/detail/fit/raster/tile_kernels.hpp"
 
 namespace prostm::planning {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "prostm/core/random.hpp"
 #include "prostm/plan/clustering.hpp"
-#include "prostm/plan/detail/fit/cell_tiles.hpp"
 #include "prostm/plan/detail/fit/loops.hpp"
-#include "prostm/plan/detail/fit/reconstruction.hpp"
+#include "prostm/plan/detail/fit/raster/cell_tiles.hpp"
+#include "prostm/plan/detail/fit/raster/reconstruction.hpp"
 #include "prostm/plan/detail/tours.hpp"
 
 namespace prostm::planning {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "prostm/plan/detail/fit/distances.hpp"
 #include "prostm/plan/detail/fit/loops.hpp"
+#include "prostm/plan/detail/fit/raster/distances.hpp"
 
 namespace prostm::planning {
 

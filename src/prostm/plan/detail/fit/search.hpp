@@ -6,9 +6,9 @@
 
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
-#include "prostm/plan/detail/fit/cell_tiles.hpp"
 #include "prostm/plan/detail/fit/descent.hpp"
 #include "prostm/plan/detail/fit/initial_loops.hpp"
+#include "prostm/plan/detail/fit/raster/cell_tiles.hpp"
 
 namespace prostm::planning {
 

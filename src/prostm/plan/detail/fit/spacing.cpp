@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "prostm/core/units.hpp"
-#include "prostm/plan/detail/fit/distances.hpp"
+#include "prostm/plan/detail/fit/raster/distances.hpp"
 #include "prostm/plan/detail/validity.hpp"
 
 namespace prostm::planning {

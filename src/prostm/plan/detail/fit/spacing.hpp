@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prostm/core/geometry.hpp"
-#include "prostm/plan/detail/fit/distances.hpp"
+#include "prostm/plan/detail/fit/raster/distances.hpp"
 #include "prostm/plan/plan.hpp"
 
 namespace prostm::planning {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
-#include "prostm/plan/detail/fit/cell_tiles.hpp"
 #include "prostm/plan/detail/fit/felt/rise_cost.hpp"
+#include "prostm/plan/detail/fit/raster/cell_tiles.hpp"
 
 namespace prostm::planning {
 namespace {

@@ -1,0 +1,110 @@
+#pragma once
+/// AUTD3 arrays of software version 38, over its remote protocol.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "prostm/acoustics/array/array.hpp"
+#include "prostm/core/geometry.hpp"
+#include "prostm/core/medium.hpp"
+#include "prostm/core/settings.hpp"
+#include "prostm/core/text/host_port.hpp"
+#include "prostm/device/autd3/autd3_budget.hpp"
+#include "prostm/device/device.hpp"
+
+namespace prostm {
+
+struct Autd3Settings {
+  std::string
+      units;  ///< a file of poses (prostm-autd3/1); empty: one unit, its middle in D's origin
+  double block_time = 0.0;  ///< [s], 10 to 25 ms; 0: as short as the link allows, 10 or 20 ms
+  /// An intensity for each of up to four focal points, by two slots each; false: up to eight focal
+  /// points, which share the largest.
+  bool weights = true;
+
+  /// X_DU of the units' own frames; none where no file is named.
+  /// @throws InputError about the file.
+  std::vector<Pose> poses() const;
+
+  void visit(SettingsReader& v) const;
+  void visit(SettingsWriter& v);
+};
+
+struct DeviceSetup;
+
+struct Autd3Setup {
+  HostPort address{"127.0.0.1", 8080};
+  /// Poses X_DU of the units' own frames, up to 64; empty: one unit, its middle in D's origin.
+  std::vector<Pose> units = {};
+  Medium medium = {};
+  int foci = 4;  ///< focal points of a sample
+  bool own_intensities = true;
+  double block_time = 0.0;  ///< as in Autd3Settings
+};
+
+/// Streams to AUTD3 units, or lets them repeat loops.
+///
+/// The firmware plays two segments in turn; each block of the stream is written to the one that
+/// does not play, and then a modulation that makes it audible until its end. So output falls silent
+/// by itself within two blocks if nothing more comes. A loop is audible for 60 ms at a time. A
+/// process of its own holds the connection, and silences the units as soon as this one ends in any
+/// way. A connection that is lost is opened again, and output begins again; the status is Vanished
+/// meanwhile.
+class Autd3Array final : public Device {
+ public:
+  /// Connects, and measures the link.
+  /// @throws std::invalid_argument with a sentence if that fails or the focal points do not fit.
+  explicit Autd3Array(const Autd3Setup& setup);
+  ~Autd3Array() override;
+
+  /// Info of an array whose link takes one frame per ms, without looking for it.
+  /// @throws std::invalid_argument if the focal points do not fit.
+  static DeviceInfo info_of(const Autd3Setup& setup);
+
+  const DeviceInfo& info() const override;
+  DeviceStatus status() const override;
+  std::string problem() const override;
+  DeviceStatus start(SampleSource& source) override;
+  void stop() override;
+  /// Loads a closed loop for all focal points, as many samples as fit into 65 536 slots. It takes
+  /// over at once, from the same sample on if it is as long as the one that plays and no focal
+  /// point jumps, otherwise in a moment of silence. Refused while a stream plays.
+  DeviceStatus load_segment(std::span<const FocusSample> samples, int foci) override;
+  DeviceStats stats() const override;
+  std::int64_t samples() const override;
+  double play_time(std::int64_t sample) const override;
+  double ask_time(std::int64_t sample) const override;
+  bool is_hot() const override;
+  /// Versions of the firmware, the frames per ms that were measured, and what the session costs.
+  std::string description() const override;
+
+  const Autd3Budget& budget() const;
+  int link_process() const;  ///< its id; 0 without a link
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The transducers of all units. @throws InputError about their file.
+TransducerArray autd3_transducers(const DeviceSetup& setup);
+
+/// Its setup from what a registry is given. @throws InputError about the address or the file.
+Autd3Setup autd3_setup(const DeviceSetup& setup);
+
+/// Result of a look at an address.
+struct Autd3Finding {
+  bool found = false;
+  std::string words;  ///< the units and their firmware; or what is missing and what to do
+};
+/// Looks for units for about a second, without changing what they do.
+DeviceFinding look_for_autd3(const Autd3Setup& setup);
+
+/// Reads poses of units, {"format": "prostm-autd3/1", "units": [{"position_mm": [x, y, z],
+/// "quaternion": [x, y, z, w]}, …]}: where the middle of each unit is in D, and how it lies.
+/// @return X_DU of their own frames, whose origin is transducer 0.
+/// @throws InputError with a sentence.
+std::vector<Pose> autd3_units_from_json(std::string_view text, const std::string& file);
+
+}  // namespace prostm

@@ -1,0 +1,50 @@
+#pragma once
+/// The loudest that an array can be at a point: a table to look up in real time.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "prostm/acoustics/array/array.hpp"
+
+namespace prostm {
+
+/// Largest amplitude that the sources allow an array [Pa·m].
+double largest_amplitude(const TransducerArray& array);
+/// The smallest one.
+double smallest_amplitude(const TransducerArray& array);
+
+/// Acoustic pressure (rms) at p when every transducer is at full drive and all arrive in phase,
+/// Σ A·D(θ)/r [Pa], with A the largest amplitude and without absorption: no drives make it louder.
+/// Distances under 10 mm count as 10 mm.
+double full_pressure(const TransducerArray& array, const Vec3& p);
+
+/// full_pressure() on a grid around the array, from 20 mm above it to 520 mm and 120 mm to its
+/// sides. Between the nodes it is interpolated and rounded up, by as much as its curvature asks: it
+/// is never below the truth, and in the middle of the grid at most some percent above it.
+class FocusLevels {
+ public:
+  /// Takes some milliseconds. @throws std::invalid_argument as validate(array) does.
+  explicit FocusLevels(const TransducerArray& array);
+
+  /// Whether the table holds this place. @pre p is finite.
+  bool holds(const Eigen::Vector3f& p) const noexcept;
+  /// Acoustic pressure (rms) there at full drive, or more [Pa]. @pre holds(p)
+  float pressure(const Eigen::Vector3f& p) const noexcept;
+  const Eigen::AlignedBox3d& box() const { return box_; }
+
+ private:
+  float& node(int x, int y, int z) {
+    return node_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)];
+  }
+  void raise();
+
+  Eigen::AlignedBox3d box_;
+  double spacing_ = 0.0;  // [m]
+  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  Eigen::Vector3f corner_ = Eigen::Vector3f::Zero(), most_ = Eigen::Vector3f::Zero();
+  float per_metre_ = 0.0F;   // nodes
+  std::vector<float> node_;  // x fastest [Pa]
+};
+
+}  // namespace prostm

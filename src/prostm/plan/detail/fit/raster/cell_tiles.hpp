@@ -1,0 +1,66 @@
+#pragma once
+/// The skin of a target as weighted points in small tiles, to which plans are fitted.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "prostm/plan/detail/fit/raster/cell_weights.hpp"
+#include "prostm/target/target_field.hpp"
+
+namespace prostm::planning {
+
+/// Eight neighbouring cells, 4 × 2. Cells without skin that counts have weight 0. All lengths in mm
+/// from the centre of the target's cell (0, 0).
+struct alignas(32) CellTile {
+  float x[8], y[8];
+  float pressure[8];  ///< p* over the frame's maximum
+  float weight[8];    ///< skin area in the cell over kUnitArea, times its mean weight (P17)
+  float centre_x, centre_y, radius;
+};
+
+/// Mean weight (P17) of each cell of each tile; empty if the target has no weights (all 1).
+using MeanWeights = std::vector<std::array<float, 8>>;
+
+inline constexpr float kUnitArea = 4.0F;  ///< area counted as 1 in the reconstruction error [mm²]
+
+/// The target at its own or a coarser resolution: blocks of factor × factor cells are averaged over
+/// their skin, with the target's weights if it has any.
+class CellTiles {
+ public:
+  static constexpr std::size_t kMaxTiles = 8192;
+
+  /// @param max_cells the largest target that set() will be given.
+  explicit CellTiles(std::size_t max_cells);
+
+  /// Takes over the skin cells of `target`, averaged into blocks. These are no wider than `width`
+  /// [mm] unless the target's cells are, or there is no room for so many blocks. Allocates nothing.
+  /// @pre maximum > 0, sizes agree, the target has no more than max_cells cells and, if it has
+  /// weights, one > 0 on skin.
+  void set(const TargetField& target, double maximum, double width);
+
+  const std::vector<CellTile>& tiles() const { return tiles_; }
+  /// Mean weights (P17) of the skin in the cells of tile t, 0 where no skin counts; null if the
+  /// target has no weights.
+  const float* mean_weights(std::size_t t) const {
+    return mean_weight_.empty() ? nullptr : mean_weight_[t].data();
+  }
+  /// Mean weight of the skin in cell c of tile t.
+  float mean_weight(std::size_t t, std::size_t c) const {
+    return mean_weight_.empty() ? 1.0F : mean_weight_[t][c];
+  }
+  float peak() const { return peak_; }            ///< highest mean weight · pressure of a block
+  double square_norm() const { return square_; }  ///< Σ weight · pressure²
+
+ private:
+  void sum_rows(const TargetField& target, const CellWeights* weights, int begin, int end);
+
+  std::vector<CellTile> tiles_;
+  MeanWeights mean_weight_;
+  // sums over a row of blocks: pressure, weights, row indices and, if the target has weights, cells
+  std::array<std::vector<double>, 4> columns_;
+  float peak_ = 0.0F;
+  double square_ = 0.0;
+};
+
+}  // namespace prostm::planning

@@ -1,0 +1,97 @@
+#pragma once
+/// The columns of an answer table: which of them hold what.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "prostm/core/text/names.hpp"
+#include "prostm/study/analysis/detail/csv.hpp"
+
+namespace prostm::study {
+
+/// Meanings of a column (docs/study-files.md).
+enum class Column : std::uint8_t {
+  Participant,
+  Method,
+  Scene,
+  Correct,
+  Question,
+  Answer,
+  Trial,
+  Level,
+  Kind,
+  Response,
+  ResponseTime,
+  Stimulus,
+  Gate,
+  Protocol,
+  Version,
+  Device,
+  Array,
+  Hand
+};
+inline constexpr std::size_t kColumns = 18;
+
+}  // namespace prostm::study
+
+template <>
+inline constexpr std::array<std::string_view, prostm::study::kColumns>
+    prostm::kNames<prostm::study::Column> = {"participant", "method",
+                                             "scene",       "correct",
+                                             "question",    "answer",
+                                             "trial",       "level",
+                                             "kind",        "response",
+                                             "response_s",  "stimulus_checksum",
+                                             "gate",        "protocol_checksum",
+                                             "run_version", "run_device",
+                                             "run_array",   "run_hand"};
+
+namespace prostm::study {
+
+/// Names of a table's own columns, and values that hold for all its rows.
+struct ColumnMap {
+  std::map<Column, std::string> named, constant;
+};
+
+/// Reads "correct=key_resp.corr,method:=am": NAME=COLUMN, or NAME:=VALUE for all rows.
+/// @throws InputError: a name that is unknown or given twice, no "=".
+ColumnMap column_map(std::string_view text);
+
+/// The places of the columns in the rows of a table.
+class ColumnPlaces {
+ public:
+  /// Names match without regard to case, blanks, "-" and "_"; an exact match is preferred.
+  /// @throws InputError by csv.fail(): a column that map names is missing, or two columns match.
+  ColumnPlaces(const std::vector<std::string>& header, const ColumnMap& map, const CsvReader& csv);
+
+  /// Whether rows have a value of this kind, in a column or for all of them.
+  bool has(Column column) const { return place(column) || is_constant(column); }
+  bool is_constant(Column column) const { return map_.constant.contains(column); }
+  std::optional<std::size_t> place(Column column) const {
+    return places_[static_cast<std::size_t>(column)];
+  }
+  /// Returns the value of a row, trimmed. @pre has(column), place(column) lies in the row.
+  std::string value(Column column, const std::vector<std::string>& row) const;
+  /// @throws InputError by csv.fail(): a column that is needed is missing. The message lists the
+  /// table's columns, and an example of --columns with what they may be.
+  void require(const std::vector<Column>& needed, const CsvReader& csv) const;
+  std::size_t size() const { return header_.size(); }
+
+ private:
+  std::string example(const std::vector<Column>& missing) const;
+
+  std::vector<std::string> header_;
+  const ColumnMap& map_;
+  std::array<std::optional<std::size_t>, kColumns> places_;
+};
+
+/// Returns the separator with which the header has most of the columns that are looked for, and
+/// moves `text` past a first line "sep=;".
+char separator_of(std::string_view& text, const std::string& file, const ColumnMap& map);
+
+}  // namespace prostm::study

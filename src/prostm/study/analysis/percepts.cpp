@@ -1,0 +1,165 @@
+#include "prostm/study/analysis/percepts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "prostm/am/am_planner.hpp"
+#include "prostm/core/random.hpp"
+#include "prostm/core/units.hpp"
+#include "prostm/pipeline/pipeline.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/plan/planner.hpp"
+#include "prostm/plan/quasi_static.hpp"
+#include "prostm/score/felt.hpp"
+#include "prostm/score/felt_skill.hpp"
+
+namespace prostm {
+namespace {
+
+// places of the hand about its palm joint, in steps of kTouchResolution: 120 mm wide, 187 mm long
+constexpr int kSideways = 7, kTowardsWrist = 8, kTowardsTips = 14;
+constexpr double kFullScalePa = 450.0;  // acoustic pressure of a focal point at intensity 1 [rms]
+constexpr double kSettle = 4.0;         // [s]
+constexpr double kApart = 0.3;          // between moments [s]
+
+/// A study hand that trembles as a whole: along each axis, two sines of random frequency and phase.
+class TremblingHand final : public HandSource {
+ public:
+  TremblingHand(const StudyHandSettings& settings, const ModelHand& hand)
+      : held_(make_study_hand(settings)) {
+    Random random(hand.seed);
+    for (Sine& sine : sines_) {
+      const double omega = 2.0 * kPi * random.uniform(8.0, 12.0);
+      sine = {omega, random.uniform(0.0, 2.0 * kPi), hand.tremor / std::sqrt(kSines / 2.0)};
+    }
+  }
+
+  void sample(double time, HandFrame& out) override {
+    held_->sample(time, out);
+    Vec3 shift = Vec3::Zero(), velocity = Vec3::Zero();
+    for (std::size_t i = 0; i < sines_.size(); ++i) {
+      const auto& [omega, phase, speed] = sines_[i];
+      const auto axis = static_cast<Eigen::Index>(i % 3);
+      shift[axis] += speed / omega * std::sin(omega * time + phase);
+      velocity[axis] += speed * std::cos(omega * time + phase);
+    }
+    for (Hand& hand : out.hands) {
+      for (Vec3& position : hand.position) position += shift;
+      for (Vec3& v : hand.velocity) v += velocity;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kSines = 6;
+  struct Sine {
+    double omega, phase, speed;
+  };
+  std::unique_ptr<HandSource> held_;
+  std::array<Sine, kSines> sines_;
+};
+
+Pose palm_joint(const Hand& hand) {
+  Pose X_DH = Pose::Identity();
+  X_DH.linear() = hand.orientation[kPalm].toRotationMatrix();
+  X_DH.translation() = hand.position[kPalm];
+  return X_DH;
+}
+
+std::size_t places() {
+  return static_cast<std::size_t>((2 * kSideways + 1) * (kTowardsWrist + kTowardsTips + 1));
+}
+
+bool is_silent(const LoopSamples& loop) {
+  return std::ranges::all_of(loop.sample,
+                             [](const FocusSample& sample) { return sample.intensity == 0.0F; });
+}
+
+}  // namespace
+
+Percept at_places(const TargetField& raster, std::span<const double> map, const Pose& X_DH) {
+  const double s2 = kTouchResolution * kTouchResolution;
+  const double scale = raster.cell * raster.cell / (2.0 * kPi * s2);
+  const Pose X_PH = raster.X_DP.inverse() * X_DH;
+  Percept out;
+  for (int j = -kTowardsWrist; j <= kTowardsTips; ++j) {
+    for (int i = -kSideways; i <= kSideways; ++i) {
+      const Vec2 place = (X_PH * (kTouchResolution * Vec3(i, 0, -j))).head<2>();
+      double sum = 0.0;
+      for (std::size_t c = 0; c < map.size(); ++c) {
+        if (raster.skin[c] == 0) continue;
+        sum += map[c] * std::exp(-(raster.position(c) - place).squaredNorm() / (2.0 * s2));
+      }
+      out.push_back(scale * sum);
+    }
+  }
+  return out;
+}
+
+StimulusFeeler::StimulusFeeler(const PipelineSettings& settings, double full_scale)
+    : settings_(settings),
+      emit_(emit_settings(settings, full_scale)),
+      packed_(settings.transducers, air_),
+      pool_(settings.threads) {}
+
+StimulusPercept StimulusFeeler::feel(const Plan& plan, const TargetFrame& target,
+                                     const Pose& X_DH) {
+  StimulusPercept out{Percept(places()), Percept(places()), 0.0};
+  if (plan.empty()) return out;
+  const TargetField& raster = target.patches.front();
+  std::vector<double> field(raster.size());
+  quasi_static_field(plan, 0, raster, plan.foci.empty() ? settings_.plan.sigma : settings_.am.sigma,
+                     settings_.plan.gain_law(), field);
+  out.field = at_places(raster, field, X_DH);
+  const LoopSamples loop = plan_loop(plan, target, emit_, settings_.emission_rate());
+  if (is_silent(loop)) return out;
+  const LoopDriveSettings drive{.focus = {}, .transducer = {}, .full_scale_pa = kFullScalePa};
+  const auto go_on = [](int, int) { return true; };
+  LoopDriveResult drives;
+  loop_drives(settings_.transducers, air_, loop, drive, go_on, drives);
+  const FeltField felt = FeelingSkin(raster).feel(packed_, air_, raster, loop, drives, pool_);
+  out.skin = at_places(raster, felt.percept, X_DH);
+  out.strength = felt.intensity;
+  return out;
+}
+
+ModelHand random_hand(std::uint64_t seed) {
+  Random random(seed);
+  ModelHand hand;
+  hand.size = std::clamp(1.0 + 0.06 * random.normal(), 0.85, 1.15);
+  hand.tremor = random.uniform(0.015, 0.04);
+  hand.seed = random.bits();
+  return hand;
+}
+
+ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, const ModelHand& hand,
+                         int moments, const std::function<bool()>& progress) {
+  settings.scene = scene;
+  settings.study_hand.size = hand.size;
+  settings.jets.place = JetPlace::Hand;
+  const double full_scale = scene_from_name(scene).full_scale_pressure;
+  WorldStage world(settings, std::make_unique<TremblingHand>(settings.study_hand, hand));
+  StimulusFeeler feeler(settings, full_scale);
+  settings.emit.full_scale_pressure = emit_settings(settings, full_scale).full_scale_pressure;
+  Planner planner(plan_settings(settings, settings.emission_rate()), world.max_cells());
+  AmPlanner am(am_settings(settings, settings.emission_rate()), world.max_cells());
+  ScenePercepts out;
+  const double dt = 1.0 / settings.world_rate;
+  const auto apart = static_cast<std::int64_t>(std::lround(kApart * settings.world_rate));
+  WorldFrame frame;
+  Plan plan;
+  PlanStats stats;
+  for (std::int64_t step = 1; std::ssize(out.am) < moments; ++step) {
+    const double time = static_cast<double>(step) * dt;
+    world.run(step, time, dt, frame);
+    if (time < kSettle || step % apart != 0 || frame.hands.hands.empty()) continue;
+    const Pose X_DH = palm_joint(frame.hands.hands.front());
+    am.plan(frame.target, plan, stats);
+    out.am.push_back(feeler.feel(plan, frame.target, X_DH));
+    planner.plan(frame.target, plan, stats);
+    out.pro_stm.push_back(feeler.feel(plan, frame.target, X_DH));
+    if (!progress()) break;
+  }
+  return out;
+}
+
+}  // namespace prostm

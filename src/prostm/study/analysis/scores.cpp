@@ -1,0 +1,449 @@
+#include "prostm/study/analysis/scores.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/crc.hpp>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "prostm/core/file/file.hpp"
+#include "prostm/core/input_error.hpp"
+#include "prostm/core/text/json.hpp"
+#include "prostm/study/analysis/detail/answer_table.hpp"
+#include "prostm/study/analysis/detail/identities.hpp"
+#include "prostm/study/analysis/detail/same_stimuli.hpp"
+#include "prostm/study/analysis/detail/table_columns.hpp"
+#include "prostm/study/analysis/detail/text_encoding.hpp"
+#include "prostm/study/session/response_file.hpp"
+#include "prostm/study/session/roster.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
+
+/// One method of the paper's study.
+struct PaperMethod {
+  const char* key;
+  const char* method;
+};
+constexpr std::array kPaperMethods = {PaperMethod{"AM", "am"}, PaperMethod{"STM", "pro-stm"}};
+/// One of its scenes.
+struct PaperScene {
+  const char* key;
+  const char* scene;
+};
+constexpr std::array kPaperScenes = {PaperScene{"_1plume", "one-plume"},
+                                     PaperScene{"_4plume", "four-plumes"}};
+
+/// Adds the answers of all participants who had one method.
+void add_paper_method(const JsonNode& figure, const PaperMethod& of, int trials,
+                      std::vector<Answer>& out) {
+  const auto column = [&](const char* key) {
+    return figure.at((std::string(of.key) + key).c_str(), "an array, right answers of each person");
+  };
+  const JsonNode all = column("_correct");
+  for (std::size_t person = 0; person < all.array_size(); ++person) {
+    int right = 0;
+    for (const PaperScene& scene : kPaperScenes) {
+      const JsonNode counts = column(scene.key);
+      if (counts.array_size() != all.array_size())
+        counts.fail("must have one number for each participant");
+      const int correct = counts.at(person).integer(0, trials / 2);
+      for (int trial = 0; trial < trials / 2; ++trial) {
+        Answer answer;
+        answer.participant = std::string(of.method) + '-' + std::to_string(person + 1);
+        answer.method = of.method;
+        answer.scene = scene.scene;
+        answer.correct = trial < correct;
+        out.push_back(answer);
+      }
+      right += correct;
+    }
+    if (right != all.at(person).integer(0, trials))
+      all.at(person).fail("must be the sum of both scenes, " + std::to_string(right));
+  }
+}
+
+}  // namespace
+
+std::vector<Answer> answers_from_csv(std::string_view text, const std::string& file,
+                                     const std::string& columns, std::vector<std::string>* notes) {
+  const study::DecodedText decoded = study::decode_text(text, file);
+  std::vector<std::string> said;
+  if (!decoded.assumed.empty()) {
+    said.push_back(
+        fmt::format("{} is not UTF-8 and is read as {}; if letters are wrong, save it as "
+                    "CSV in UTF-8.",
+                    file, decoded.assumed));
+  }
+  std::vector<Answer> answers = study::read_answer_table(decoded.text, file, columns, said);
+  if (notes != nullptr) notes->insert(notes->end(), said.begin(), said.end());
+  return answers;
+}
+
+std::vector<Answer> answers_from_paper(std::string_view text, const std::string& file) {
+  const nlohmann::json document = parse_json(text, file);
+  const JsonNode root(document, file);
+  const JsonNode figure = root.at("fig4", "the scores of the paper's Fig. 4");
+  constexpr int kMost = 1000;
+  const JsonNode trials = figure.at("trials_per_participant", "an even number of trials");
+  const int count = trials.integer(2, kMost);
+  if (count % 2 != 0) trials.fail("must be even: half of the trials had each scene");
+  std::vector<Answer> out;
+  for (const PaperMethod& method : kPaperMethods) add_paper_method(figure, method, count, out);
+  if (out.empty()) figure.fail("must have participants");
+  return out;
+}
+
+namespace {
+
+/// A column of a tidy table: its name, and its cell of an answer; empty where that is not known.
+struct TidyColumn {
+  study::Column column;
+  std::function<std::string(const Answer&)> cell;
+  bool always = false;  ///< it stands there even if all its cells are empty
+};
+
+std::vector<TidyColumn> tidy_columns() {
+  using study::Column;
+  const auto bit = [](bool known, bool x) { return std::string(known ? (x ? "1" : "0") : ""); };
+  const auto number = [](const std::optional<double>& x) {
+    return x ? fmt::format("{}", *x) : std::string();
+  };
+  return {
+      {Column::Participant, [](const Answer& a) { return a.participant; }, true},
+      {Column::Method, [](const Answer& a) { return a.method; }, true},
+      {Column::Scene, [](const Answer& a) { return a.scene; }, true},
+      {Column::Trial, [](const Answer& a) { return a.trial; }},
+      {Column::Question, [](const Answer& a) { return a.question; }},
+      {Column::Answer,
+       [=](const Answer& a) { return bit(a.answered && !a.question.empty(), a.yes); }},
+      {Column::Correct, [=](const Answer& a) { return bit(a.answered, a.correct); }, true},
+      {Column::Level, [=](const Answer& a) { return number(a.level); }},
+      {Column::Kind,
+       [](const Answer& a) {
+         return std::string(a.kind == AnswerKind::Right ? "" : name_of(a.kind));
+       }},
+      {Column::ResponseTime, [=](const Answer& a) { return number(a.response_s); }},
+      {Column::Stimulus, [](const Answer& a) { return a.stimulus; }},
+      {Column::Gate, [](const Answer& a) { return a.gate; }},
+      {Column::Protocol, [](const Answer& a) { return a.run.protocol; }},
+      {Column::Version, [](const Answer& a) { return a.run.version; }},
+      {Column::Device, [](const Answer& a) { return a.run.device; }},
+      {Column::Array, [](const Answer& a) { return a.run.array; }},
+      {Column::Hand, [](const Answer& a) { return a.run.hand; }},
+  };
+}
+
+std::string csv_cell(const std::string& value) {
+  const auto needs_quotes = [](char c) {
+    return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20;
+  };
+  if (std::none_of(value.begin(), value.end(), needs_quotes)) return value;
+  std::string out = "\"";
+  for (const char c : value) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+}  // namespace
+
+std::string tidy_csv(std::span<const Answer> answers) {
+  std::vector<TidyColumn> columns = tidy_columns();
+  std::erase_if(columns, [&](const TidyColumn& of) {
+    const auto is_empty = [&](const Answer& a) { return of.cell(a).empty(); };
+    return !of.always && std::all_of(answers.begin(), answers.end(), is_empty);
+  });
+  std::string out;
+  const auto add_row = [&](const auto& value_of) {
+    for (const TidyColumn& column : columns) {
+      out += &column == &columns.front() ? "" : ",";
+      out += csv_cell(value_of(column));
+    }
+    out += "\r\n";
+  };
+  add_row([](const TidyColumn& column) { return std::string(name_of(column.column)); });
+  for (const Answer& a : answers) add_row([&](const TidyColumn& column) { return column.cell(a); });
+  return out;
+}
+
+namespace {
+
+/// The kind of the answers to a protocol, as the first line of a participant's file has it.
+AnswerKind kind_of(const ResponseLine& protocol) {
+  const auto trials = protocol.value("trials", ResponseLine::object());
+  const auto level = protocol.value("level", ResponseLine::object());
+  const std::string task = trials.value("task", "identification");
+  if (task == "adjustment") return AnswerKind::Adjusted;
+  const bool is_felt = task == "judgement" || !level.value("against", "").empty();
+  return is_felt ? AnswerKind::Felt : AnswerKind::Right;
+}
+
+Answer answer_of(const ResponseLine& line, const std::string& participant, AnswerKind kind) {
+  Answer answer;
+  answer.participant = participant;
+  answer.method = line.at("method");
+  answer.scene = line.at("scene");
+  answer.trial = std::to_string(line.at("trial").get<int>());
+  if (line.contains("level")) {
+    answer.level = line.at("level").get<double>();
+  } else {
+    answer.question = line.at("question");
+  }
+  answer.kind = kind;
+  if (line.contains("response_s")) answer.response_s = line["response_s"].get<double>();
+  answer.stimulus = line.value("stimulus", "");
+  if (const auto gate = line.find("gate"); gate != line.end() && gate->is_object())
+    answer.gate = gate->value("pass", false) ? "pass" : "fail";
+  if (line.value("anyway", false)) answer.gate = "anyway";
+  return answer;
+}
+
+std::string text_in(const ResponseLine& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// The run, from the first line of a participant's file.
+RunFacts facts_of(const ResponseLine& first) {
+  boost::crc_32_type sum;
+  const auto protocol = first.find("protocol");
+  const std::string text = protocol == first.end() ? std::string() : protocol->dump();
+  sum.process_bytes(text.data(), text.size());
+  const ResponseLine& run = first.at("run");
+  return {text.empty() ? std::string() : fmt::format("{:08x}", sum.checksum()),
+          text_in(run, "prostm"), text_in(run, "device"), text_in(run, "array"),
+          text_in(run, "hand")};
+}
+
+/// A participant's file: answers, and what they are compared by.
+struct Responses {
+  std::vector<Answer> answers;
+  study::StudyFile file;
+  int trials = 0;  ///< that the protocol has
+  bool ended = false;
+};
+
+/// Adds the trial of a line, or corrects the last one.
+void take_line(const ResponseLine& line, const std::string& where, AnswerKind of, Responses& out) {
+  const std::string kind = line.value("kind", "");
+  if (kind == "trial") {
+    out.answers.push_back(answer_of(line, out.file.participant, of));
+  } else if (out.answers.empty() ||
+             out.answers.back().trial != std::to_string(line.at("trial").get<int>())) {
+    throw InputError(where + " corrects another trial than the last");
+  }
+  if (of == AnswerKind::Adjusted) return;
+  Answer& answer = out.answers.back();
+  answer.correct = line.at(of == AnswerKind::Felt ? "felt" : "correct").get<int>() == 1;
+  if (!answer.question.empty()) answer.yes = line.at("answer").get<int>() == 1;
+}
+
+Responses read_responses(std::string_view text, const std::string& file,
+                         std::vector<std::string>& notes) {
+  Responses out;
+  const std::vector<ResponseLine> lines = responses_from_text(text, file);
+  std::string where = file + ", line 1";
+  try {
+    if (lines.empty() || lines.front().value("format", "") != kResponseFormat)
+      throw InputError(where + " does not begin a participant's file of prostm study run");
+    const ResponseLine& first = lines.front();
+    out.file = {first.at("participant"), first.value("protocol", ResponseLine::object()),
+                first.at("run").at("rehearsal")};
+    out.trials = first.at("trials");
+    const AnswerKind of = kind_of(out.file.protocol);
+    const RunFacts facts = facts_of(first);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::string kind = lines[i].value("kind", "");
+      where = fmt::format("{}, line {}", file, i + 1);
+      if (kind == "end") {
+        out.ended = true;
+        const std::string strengths = text_in(lines[i], "strengths");
+        if (!strengths.empty()) notes.push_back(file + ": " + strengths);
+      }
+      if (kind == "trial" || kind == "correction") take_line(lines[i], where, of, out);
+    }
+    for (Answer& answer : out.answers) answer.run = facts;
+  } catch (const ResponseLine::exception& error) {
+    throw InputError(fmt::format("{}: {}", where, error.what()));
+  }
+  if (out.file.rehearsal)
+    notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are made up.");
+  if (!out.ended && static_cast<int>(out.answers.size()) < out.trials) {
+    notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", out.file.participant,
+                                out.answers.size(), out.trials, file));
+  }
+  return out;
+}
+
+/// Whether a file is a participant's, by its name.
+bool is_responses(std::string_view path) {
+  return path.ends_with(".jsonl");
+}
+
+/// Reads several files into one list of answers.
+class Files {
+ public:
+  Files(const ReadingSettings& settings, std::vector<std::string>& notes)
+      : settings_(settings), notes_(notes) {}
+
+  void read(std::span<const std::string> paths);
+  std::vector<Answer> take();
+
+ private:
+  /// Whether another participant of the roster took the place of the file's, which is noted.
+  bool was_replaced(const std::string& path, std::span<const RosterEntry> roster);
+  void read_one(const std::string& path, const std::string& prefix);
+  void refuse_copies(const std::string& path, const std::string& text);
+  void add(std::vector<Answer> answers, const std::string& path);
+
+  const ReadingSettings& settings_;
+  std::vector<std::string>& notes_;
+  std::vector<Answer> all_;
+  std::vector<study::StudyFile> studies_;
+  std::map<std::size_t, std::string> file_with_;  // by the hash of its bytes
+  std::map<std::string, std::string> file_of_;    // by participant
+};
+
+void Files::read(std::span<const std::string> paths) {
+  std::vector<std::string> prefixes(paths.size());
+  if (settings_.prefix.value_or(IdPrefix::None) != IdPrefix::None)
+    prefixes = study::distinct_parts(paths, *settings_.prefix);
+  const bool by_folder = settings_.prefix == IdPrefix::Folder;
+  std::map<std::string, std::vector<RosterEntry>> rosters;  // of each folder that has its numbers
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (!is_responses(paths[i])) continue;
+    std::vector<std::string> faults;  // reading the answers reports them
+    std::vector<RosterEntry> entry = read_roster(paths.subspan(i, 1), &faults);
+    std::move(entry.begin(), entry.end(),
+              std::back_inserter(rosters[by_folder ? prefixes[i] : ""]));
+  }
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (was_replaced(paths[i], rosters[by_folder ? prefixes[i] : ""])) continue;
+    read_one(paths[i], prefixes[i].empty() ? prefixes[i] : prefixes[i] + '/');
+  }
+  if (all_.empty()) throw InputError(paths.front() + ": has no answer");
+}
+
+bool Files::was_replaced(const std::string& path, std::span<const RosterEntry> roster) {
+  const auto entry = std::find_if(roster.begin(), roster.end(),
+                                  [&](const RosterEntry& e) { return e.file == path; });
+  const RosterEntry* by = entry == roster.end() ? nullptr : replacement_of(roster, *entry);
+  if (by == nullptr) return false;
+  notes_.push_back(fmt::format("Participant {} was replaced by {} and is left out ({}).",
+                               entry->participant, by->participant, path));
+  return true;
+}
+
+void Files::refuse_copies(const std::string& path, const std::string& text) {
+  const auto [found, is_new] = file_with_.emplace(std::hash<std::string>()(text), path);
+  if (!is_new) {
+    throw InputError(
+        fmt::format("{} and {} have the same content; leave one of them out", found->second, path));
+  }
+}
+
+/// Refuses a table as jsPsych and pandas write it in JSON.
+void refuse_list(std::string_view text, const std::string& path) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || text[first] != '[') return;
+  throw InputError(
+      fmt::format("{0}: is a list, as jsPsych writes JSON; save the answers as CSV, or convert "
+                  "them: python3 -c "
+                  "'import pandas; pandas.read_json(\"{0}\").to_csv(\"{0}.csv\", index=False)'",
+                  path));
+}
+
+void Files::read_one(const std::string& path, const std::string& prefix) {
+  const auto is_table = [&](std::string_view ending) { return path.ends_with(ending); };
+  constexpr std::array<std::string_view, 3> kTables = {".csv", ".tsv", ".txt"};
+  if (is_table(".json")) refuse_list(read_file(path, kMaxBytes), path);
+  if (!is_responses(path) && std::none_of(kTables.begin(), kTables.end(), is_table)) {
+    throw InputError(
+        path +
+        ": the name must end in .jsonl, a participant's file, in .csv, .tsv or .txt, a "
+        "table (save spreadsheets as CSV in UTF-8), or in .json, the paper's Fig. 4, "
+        "alone");
+  }
+  const std::string text = read_file(path, kMaxBytes);
+  refuse_copies(path, text);
+  std::vector<Answer> answers;
+  if (is_responses(path)) {
+    Responses responses = read_responses(text, path, notes_);
+    responses.file.participant = prefix + responses.file.participant;
+    if (!responses.answers.empty()) studies_.push_back(std::move(responses.file));
+    answers = std::move(responses.answers);
+  } else {
+    answers = answers_from_csv(text, path, settings_.columns, &notes_);
+  }
+  for (Answer& answer : answers) answer.participant = prefix + answer.participant;
+  add(std::move(answers), path);
+}
+
+void Files::add(std::vector<Answer> answers, const std::string& path) {
+  for (const Answer& answer : answers) {
+    const auto [found, is_new] = file_of_.emplace(answer.participant, path);
+    if (is_new || found->second == path || settings_.prefix == IdPrefix::None) continue;
+    throw InputError(fmt::format(
+        "participant {} is in {} and in {}; if these are two people, add --prefix folder or "
+        "--prefix "
+        "file, which puts it before their names; if one, add --prefix none, or leave a file out",
+        found->first, found->second, path));
+  }
+  all_.insert(all_.end(), std::make_move_iterator(answers.begin()),
+              std::make_move_iterator(answers.end()));
+}
+
+/// Counts the trials that were presented although the gate did not pass.
+void note_anyway(std::span<const Answer> answers, std::vector<std::string>& notes) {
+  std::map<std::string, int> passed_over;
+  for (const Answer& a : answers) {
+    if (a.gate == "anyway") ++passed_over[a.method];
+  }
+  for (const auto& [method, count] : passed_over) {
+    notes.push_back(
+        fmt::format("{} trial{} with {} {} presented although the stimulus gate did not pass.",
+                    count, count == 1 ? "" : "s", method, count == 1 ? "was" : "were"));
+  }
+}
+
+std::vector<Answer> Files::take() {
+  for (const Answer& a : all_) {
+    if (a.kind == all_.front().kind) continue;
+    throw InputError(
+        fmt::format("participants {} and {} had other tasks; analyse those of each study alone",
+                    all_.front().participant, a.participant));
+  }
+  study::require_same_stimuli(all_, studies_, settings_.pool, notes_);
+  study::rename(all_, settings_.rename);
+  study::settle_spellings(all_, settings_.merge_spellings, notes_);
+  note_anyway(all_, notes_);
+  return std::move(all_);
+}
+
+}  // namespace
+
+std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
+                                           std::vector<std::string>& notes) {
+  return read_responses(text, file, notes).answers;
+}
+
+std::vector<Answer> read_answers(std::span<const std::string> paths,
+                                 std::vector<std::string>& notes, const ReadingSettings& settings) {
+  if (paths.size() == 1 && paths.front().ends_with(".json")) {
+    const std::string text = read_file(paths.front(), kMaxBytes);
+    refuse_list(text, paths.front());
+    return answers_from_paper(text, paths.front());
+  }
+  Files files(settings, notes);
+  files.read(paths);
+  return files.take();
+}
+
+}  // namespace prostm

@@ -1,0 +1,100 @@
+#include "prostm/study/analysis/thresholds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace prostm {
+namespace {
+
+using Levels = std::map<double, Proportion>;
+
+/// All participants of one method in one scene, by name; those of the empty name are all together.
+struct Task {
+  std::string method, scene;
+  std::map<std::string, Levels> participants;
+};
+
+/// Tasks by the places at which scenes, and then methods, come first.
+std::vector<Task> tasks_of(std::span<const Answer> answers) {
+  std::vector<std::string> methods, scenes;
+  const auto place = [](std::vector<std::string>& names, const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at != names.end()) return at - names.begin();
+    names.push_back(name);
+    return std::ssize(names) - 1;
+  };
+  std::map<std::pair<std::ptrdiff_t, std::ptrdiff_t>, Task> tasks;
+  for (const Answer& a : answers) {
+    Task& task = tasks[{place(scenes, a.scene), place(methods, a.method)}];
+    task.method = a.method;
+    task.scene = a.scene;
+    for (const std::string& of : {std::string(), a.participant}) {
+      Proportion& score = task.participants[of][*a.level];
+      ++score.trials;
+      score.successes += a.correct ? 1 : 0;
+    }
+  }
+  std::vector<Task> out;
+  for (auto& [where, task] : tasks) out.push_back(std::move(task));
+  return out;
+}
+
+}  // namespace
+
+std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers,
+                                            const PsychometricSettings& settings) {
+  std::vector<ThresholdResult> out;
+  for (const Task& task : tasks_of(answers)) {
+    for (const auto& [participant, levels] : task.participants) {
+      ThresholdResult& result = out.emplace_back();
+      result.method = task.method;
+      result.scene = task.scene;
+      result.participant = participant;
+      for (const auto& [x, score] : levels) result.scores.push_back({x, score});
+      PsychometricResult found = fit_psychometric(result.scores, settings);
+      result.fit = found.fit;
+      result.no_fit = found.no_fit;
+      result.bounds = found.bounds;
+    }
+  }
+  return out;
+}
+
+int level_digits(std::span<const LevelScore> scores) {
+  constexpr int kOfRange = 4, kMost = 15;
+  const double low = scores.front().level, high = scores.back().level;
+  if (!(high > low)) return kOfRange;
+  const double more = std::log10(std::max(std::abs(low), std::abs(high)) / (high - low));
+  return std::min(kMost, kOfRange + std::max(0, static_cast<int>(more)));
+}
+
+std::string in_words(NoFit reason, AnswerKind kind) {
+  const std::string answers = kind == AnswerKind::Right ? "right answers" : "answers for the level";
+  switch (reason) {
+    case NoFit::TooFewLevels:
+      return "all answers are at one level";
+    case NoFit::NotGrowing:
+      return answers + " do not grow with the level, or hardly";
+    case NoFit::Falling:
+      return answers + " fall with the level";
+    case NoFit::Step:
+      return "a step fits as well as any slope";
+    case NoFit::BelowLevels:
+      return answers + " are as many as can be at the lowest level already";
+    case NoFit::AboveLevels:
+      return answers + " are as few as can be at the highest level still";
+  }
+  return "";
+}
+
+std::string bounds_text(const Interval& of, int digits) {
+  if (std::isinf(of.low)) return fmt::format("below {:.{}g}", of.high, digits);
+  if (std::isinf(of.high)) return fmt::format("above {:.{}g}", of.low, digits);
+  return fmt::format("{:.{}g} to {:.{}g}", of.low, digits, of.high, digits);
+}
+
+}  // namespace prostm

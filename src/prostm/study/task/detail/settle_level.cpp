@@ -1,0 +1,205 @@
+#include "prostm/study/task/detail/settle_level.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "prostm/core/input_error.hpp"
+#include "prostm/io/settings_file.hpp"
+#include "prostm/pipeline/playable.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/study/task/track.hpp"
+
+namespace prostm::study {
+namespace {
+
+class LevelChecks {
+ public:
+  LevelChecks(const std::string& file, std::string_view text, const std::vector<std::string>& given,
+              Protocol& protocol)
+      : file_(file), text_(text), given_(given), protocol_(protocol), level_(protocol.level) {}
+
+  void check() {
+    const std::string_view task = name_of(protocol_.trials.task);
+    if (protocol_.trials.task == StudyTask::Identification) {
+      if (std::any_of(given_.begin(), given_.end(),
+                      [](const std::string& name) { return name.starts_with("level."); }))
+        fail("[level] is for another task than identification; give e.g. task = \"judgement\"");
+      return;
+    }
+    for (const char* key : {"setting", "low", "high"})
+      if (!gives(key)) fail(fmt::format("task {} needs {} in [level]", task, key));
+    if (!(level_.low < level_.high)) {
+      fail(
+          fmt::format("level.low = {:g} must be below level.high = {:g}", level_.low, level_.high));
+    }
+    if (level_.scale == LevelScale::Log && !(level_.low > 0.0))
+      fail(fmt::format("level.low = {:g} must be above 0, since scale is log", level_.low));
+    settle_start();
+    take_standard();
+    if (protocol_.trials.feedback && !has_right_answers(protocol_))
+      fail(
+          fmt::format("trials.feedback tells whether an answer was right, and task {} has no right "
+                      "answers here",
+                      task));
+    for (const StudyMethod& method : protocol_.methods) check_method(method);
+    try {
+      static_cast<void>(Track(protocol_, 0));
+    } catch (const std::invalid_argument& error) {
+      fail(fmt::format("[level]: {}", error.what()));
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw InputError(fmt::format("{}: {}", file_, sentence));
+  }
+  bool gives(const std::string& key) const {
+    return std::find(given_.begin(), given_.end(), "level." + key) != given_.end();
+  }
+  bool compares() const { return protocol_.trials.task != StudyTask::Judgement; }
+
+  void settle_start() {
+    const bool adjusts = protocol_.trials.task == StudyTask::Adjustment;
+    const bool steps = adjusts || level_.procedure == Staircase::UpDown;
+    if (steps && !(level_.step > 0.0)) {
+      fail(fmt::format("{} needs step in [level], above 0",
+                       adjusts ? "adjustment" : "procedure up-down"));
+    }
+    if (!gives("start")) {
+      const double middle = 0.5 * (level_.to_scale(level_.low) + level_.to_scale(level_.high));
+      level_.start = level_.procedure == Staircase::Bayes ? level_.from_scale(middle) : level_.high;
+    }
+    if (level_.start < level_.low || level_.start > level_.high) {
+      fail(fmt::format("level.start = {:g} must be between low and high, {:g} and {:g}",
+                       level_.start, level_.low, level_.high));
+    }
+  }
+
+  void take_standard() {
+    if (!compares()) {
+      if (gives("against") || gives("reference"))
+        fail("a judgement compares with nothing: leave level.against and level.reference out");
+      return;
+    }
+    if (level_.against.empty() == !gives("reference")) {
+      fail(fmt::format(
+          "task {} compares with a standard: give level.reference, a level, or level.against, a "
+          "method, and not both",
+          name_of(protocol_.trials.task)));
+    }
+    if (level_.against.empty()) return;
+    auto& methods = protocol_.methods;
+    const auto found = std::find_if(methods.begin(), methods.end(),
+                                    [&](const auto& m) { return m.name == level_.against; });
+    if (found == methods.end())
+      fail(fmt::format("level.against = \"{:.60}\", and there is no such [method.NAME]",
+                       level_.against));
+    protocol_.standard = *found;
+    methods.erase(found);
+    if (methods.empty())
+      fail("level.against is the only method: give another one, whose level is varied");
+  }
+
+  /// Checks that a level is played as it is written, in every scene.
+  void check_level(const StudyMethod& method, const char* key, double level) const {
+    try {
+      PipelineSettings settings = method.settings;
+      const double set = set_level(settings, level_.setting, level);
+      if (set != level) {
+        throw std::invalid_argument(
+            fmt::format("{} takes whole numbers, and would be {:g}", level_.setting, set));
+      }
+      require_playable(settings, settings.device_info());
+      if (level_.setting == "plan.gain" || level_.setting == "emit.full_scale_pressure")
+        check_scale(settings);
+    } catch (const std::invalid_argument& error) {
+      const int line = line_in_toml(text_, file_, {"level", key});
+      throw InputError(fmt::format("{}{}: level.{} = {:g} cannot be played with method {}: {}",
+                                   file_, line > 0 ? fmt::format(", line {}", line) : "", key,
+                                   level, method.name, error.what()));
+    }
+  }
+
+  /// Checks that full scale holds the largest pressure of each scene, and that it sounds.
+  void check_scale(const PipelineSettings& settings) const {
+    const double full = settings.emit.full_scale_pressure, gain = settings.plan.gain;
+    if (full == 0.0 || settings.method == Method::Am) return;
+    for (const StudyScene& scene : protocol_.scenes) {
+      const double pressure = gain * scene_from_name(scene.name).full_scale_pressure;
+      const double share = pressure / full;
+      if (share > 1.0 + kRounding) {
+        throw std::invalid_argument(fmt::format(
+            "scene {} renders up to {:.3g} Pa with gain {:g}, which full_scale_pressure = {:g} Pa "
+            "clips",
+            scene.name, pressure, gain, full));
+      }
+      if (share < settings.emit.silent_below) {
+        throw std::invalid_argument(fmt::format(
+            "scene {} renders up to {:.3g} Pa with gain {:g}, {:.2g} of full_scale_pressure, and "
+            "shares under silent_below = {:g} are silent",
+            scene.name, pressure, gain, share, settings.emit.silent_below));
+      }
+    }
+  }
+
+  void check_method(const StudyMethod& method) {
+    check_level(method, "low", level_.low);
+    check_level(method, "high", level_.high);
+    if (gives("start")) check_level(method, "start", level_.start);
+    if (gives("reference")) check_level(method, "reference", level_.reference);
+    if (protocol_.trials.task == StudyTask::ForcedChoice && gives("reference") &&
+        level_.reference > level_.low) {
+      fail(
+          fmt::format("level.reference = {:g} must not be above low, {:g}: the right answer is "
+                      "the interval of the higher level",
+                      level_.reference, level_.low));
+    }
+    if (level_.setting == "plan.gain" && method.settings.emit.full_scale_pressure == 0.0) {
+      fail(fmt::format(
+          "level.setting = \"plan.gain\" would change nothing with method {}, whose full scale "
+          "goes with the gain; give all methods the same [method.NAME.emit] full_scale_pressure",
+          method.name));
+    }
+    const bool is_am = method.settings.method == Method::Am;
+    if (level_.setting.starts_with(is_am ? "plan." : "am.")) {
+      fail(fmt::format("level.setting = \"{}\" changes nothing with method {}, which is {}",
+                       level_.setting, method.name, name_of(method.settings.method)));
+    }
+    const int foci = method.settings.emit.foci;
+    if ((level_.setting == "plan.paths" || level_.setting == "am.foci") && level_.high > foci) {
+      fail(fmt::format("level.high = {:g} must not be above [method.{}.emit] foci = {}",
+                       level_.high, method.name, foci));
+    }
+  }
+
+  static constexpr double kRounding = 1e-6;
+
+  const std::string& file_;
+  const std::string_view text_;
+  const std::vector<std::string>& given_;
+  Protocol& protocol_;
+  LevelSettings& level_;
+};
+
+}  // namespace
+
+void settle_level(const std::vector<std::string>& given, const std::string& file,
+                  std::string_view text, Protocol& protocol) {
+  LevelChecks(file, text, given, protocol).check();
+}
+
+void require_playable_method(const StudyMethod& method, const std::string& file,
+                             std::string_view text) {
+  try {
+    require_playable(method.settings, method.settings.device_info());
+  } catch (const std::invalid_argument& error) {
+    const int line = line_in_toml(text, file, {"method", method.name});
+    throw InputError(fmt::format("{}{}: method {}: {}", file,
+                                 line > 0 ? fmt::format(", line {}", line) : "", method.name,
+                                 error.what()));
+  }
+}
+
+}  // namespace prostm::study
