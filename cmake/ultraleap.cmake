@@ -11,10 +11,10 @@ mark_as_advanced(PROSTM_ULTRALEAP_INCLUDE PROSTM_ULTRALEAP_LIBRARY)
 # the sources whose code depends on the SDK
 set(prostm_ultraleap_sources
     ${PROJECT_SOURCE_DIR}/src/prostm/device/device_kinds.cpp
-    ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap.cpp
-    ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap_array.cpp
-    ${PROJECT_SOURCE_DIR}/src/prostm/device/detail/ultraleap_emission.cpp
-    ${PROJECT_SOURCE_DIR}/src/prostm/device/detail/ultraleap_session.cpp)
+    ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/ultraleap.cpp
+    ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/ultraleap_array.cpp
+    ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/detail/ultraleap_emission.cpp
+    ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/detail/ultraleap_session.cpp)
 
 if(PROSTM_ULTRALEAP_INCLUDE AND PROSTM_ULTRALEAP_LIBRARY)
   message(STATUS "Ultraleap Haptics SDK: ${PROSTM_ULTRALEAP_LIBRARY}")
