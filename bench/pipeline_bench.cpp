@@ -2,6 +2,7 @@
 /// time from a hand to the samples of the 40 ms that follow, without waiting for a clock.
 
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 #include "report.hpp"
 
@@ -13,7 +14,7 @@ constexpr int kWarmUp = 50, kUpdates = 400;  // a cycle of the scripted hand is 
 PipelineSettings settings_of(const std::string& scene, bool papers) {
   PipelineSettings s;
   s.scene = scene;
-  s.simulated_array.realtime = false;
+  s.devices.of<SimulatedArraySettings>().realtime = false;
   if (papers) {
     s.fluid.solver = PressureMethod::Jacobi;
     s.plan.preset = Preset::Paper;

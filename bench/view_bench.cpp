@@ -16,6 +16,7 @@
 
 #include "program.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/viewer/pipeline_view.hpp"
 #include "prostm/viewer/server.hpp"
@@ -162,7 +163,7 @@ void measure_hand_off(const Options& given, Distribution& step, Distribution& sm
                       Distribution& plan) {
   constexpr int kSteps = 400;
   PipelineSettings settings = settings_of(given);
-  settings.simulated_array.realtime = false;
+  settings.devices.of<SimulatedArraySettings>().realtime = false;
   Pipeline pipeline(settings, hands_of(settings));
   Snapshots snapshots;
   snapshots.watch(true);

@@ -10,7 +10,7 @@ mark_as_advanced(PROSTM_ULTRALEAP_INCLUDE PROSTM_ULTRALEAP_LIBRARY)
 
 # the sources whose code depends on the SDK
 set(prostm_ultraleap_sources
-    ${PROJECT_SOURCE_DIR}/src/prostm/device/device_kinds.cpp
+    ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/ultraleap_kind.cpp
     ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/ultraleap.cpp
     ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/ultraleap_array.cpp
     ${PROJECT_SOURCE_DIR}/src/prostm/device/ultraleap/detail/ultraleap_emission.cpp

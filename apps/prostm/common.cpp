@@ -20,7 +20,9 @@
 #include "prostm/core/text/json.hpp"
 #include "prostm/core/text/lower_case.hpp"
 #include "prostm/core/text/nearest_name.hpp"
+#include "prostm/device/device_kinds.hpp"
 #include "prostm/device/realtime_limits.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/io/array_file.hpp"
 #include "prostm/io/hand/hand_file.hpp"
 #include "prostm/io/hand/pose_file.hpp"
@@ -38,7 +40,10 @@ void check_files_of(const PipelineSettings& settings, const CommonOptions& optio
   const std::string where = " (in " + options.settings_file + ")";
   if (names_json(settings.array)) files.reads("--array" + where, settings.array);
   if (names_json(settings.tracker)) files.reads("--tracker" + where, settings.tracker);
-  if (!settings.autd3.units.empty()) files.reads("[autd3] units" + where, settings.autd3.units);
+  for (const SettingsGroup& group : settings_groups(settings)) {
+    for (const auto& [name, file] : files_of(group.read))
+      files.reads("[" + group.name + "] " + name + where, file);
+  }
   files.check();
 }
 
@@ -182,7 +187,7 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
   if (name == "scripted") return make_scripted_hand(settings.scripted_hand, settings.track);
   if (name == "study") return make_study_hand(settings.study_hand);
   if (!names_recording(name)) {
-    if (!settings.simulated_array.realtime) {
+    if (!settings.devices.of<SimulatedArraySettings>().realtime) {
       throw InputError("--hand " + name +
                        " is live, so it needs prostm run in real time, without "
                        "--as-fast-as-possible and --stepped");
@@ -193,7 +198,8 @@ std::unique_ptr<HandSource> make_hands(const std::string& name, const PipelineSe
         settings.track);
   }
   // with a clock a recording stands in for a tracker, of which only the past is known
-  const auto make = settings.simulated_array.realtime ? make_replayed_hand : make_recorded_hand;
+  const auto make = settings.devices.of<SimulatedArraySettings>().realtime ? make_replayed_hand
+                                                                           : make_recorded_hand;
   Progress progress("reading " + name);
   HandRecording recording = read_hand_recording(name, [&](std::size_t done, std::size_t all) {
     progress.show(1e-6 * static_cast<double>(done), 1e-6 * static_cast<double>(all), "MB");

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plumes/held_hand.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm::bench {
@@ -90,7 +91,7 @@ Measured measure_plumes(const HeldCase& held, const PipelineSettings& base, doub
   settings.world_rate = 1.0 / dt;
   settings.world_steps_per_plan = 1;
   settings.jets.place = held.place;
-  settings.simulated_array.realtime = false;
+  settings.devices.of<SimulatedArraySettings>().realtime = false;
   WorldStage stage(settings, held.make(settings));
   StimulusGate gate(static_cast<int>(std::lround(1.0 / dt)), stage.max_cells());
   WorldFrame frame;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "prostm/core/input_error.hpp"
+#include "prostm/device/autd3/autd3_array.hpp"
 
 namespace prostm {
 namespace {
@@ -14,7 +15,7 @@ TEST(DeviceNamed, TakesAnAddressOnlyWhereThereIsOne) {
 }
 
 TEST(DeviceKind, TellsOfAutd3WithoutLookingForIt) {
-  DeviceSetup setup{SimulatedArraySettings{}, autd3_array(), Medium{}};
+  DeviceSetup setup{.array = autd3_array()};
   const DeviceKind& kind = *device_named("autd3://127.0.0.1:9").kind;
   EXPECT_STREQ(kind.array, "autd3");
   EXPECT_EQ(kind.transducers(setup).position.size(), 249U);
@@ -22,7 +23,7 @@ TEST(DeviceKind, TellsOfAutd3WithoutLookingForIt) {
   EXPECT_EQ(info.max_foci, 4);
   EXPECT_DOUBLE_EQ(info.emission_rate(), 40e3);
   EXPECT_TRUE(info.comes_back);
-  setup.autd3.weights = false;
+  setup.settings.of<Autd3Settings>().weights = false;
   setup.foci = 8;
   EXPECT_EQ(kind.info(setup).max_foci, 8);
   setup.address = "127.0.0.1:99999";
@@ -75,7 +76,7 @@ TEST(DeviceNamed, SaysHowToGetAnUltraleapArrayWhereTheSdkIsMissing) {
     EXPECT_THAT(kind.tried, testing::HasSubstr("never"));
     if (kind.is_built()) GTEST_SKIP() << "this build has the SDK";
     EXPECT_EQ(kind.info, nullptr);
-    const DeviceFinding finding = kind.look({.simulated = {}, .array = usx_array(), .medium = {}});
+    const DeviceFinding finding = kind.look({.array = usx_array()});
     EXPECT_FALSE(finding.found);
     EXPECT_THAT(finding.words, testing::HasSubstr("-DPROSTM_ULTRALEAP_ROOT"));
     try {

@@ -12,6 +12,7 @@
 
 #include "pipeline/simulated.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/pipeline/snapshot.hpp"
@@ -23,8 +24,8 @@ namespace {
 LiveSettings small_settings() {
   LiveSettings s;
   s.pipeline.fluid.cells = 32;
-  s.pipeline.simulated_array.realtime = false;
-  s.pipeline.simulated_array.history = 0.1;
+  s.pipeline.devices.of<SimulatedArraySettings>().realtime = false;
+  s.pipeline.devices.of<SimulatedArraySettings>().history = 0.1;
   s.pipeline.scripted_hand.still = true;
   s.source = "scripted";
   s.sources = {"scripted", "page"};

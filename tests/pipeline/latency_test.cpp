@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/runner.hpp"
 
 namespace prostm {
@@ -61,8 +62,8 @@ TEST(LatencyLog, WithoutAClockIsWhatOneComputesByHand) {
 
 TEST(LatencyLog, PartsOfAClockedPlanAddUp) {
   PipelineSettings settings;
-  settings.simulated_array.queue_blocks = 3;
-  SimulatedArray device(settings.simulated_array, usx_array(), Medium{});
+  settings.devices.of<SimulatedArraySettings>().queue_blocks = 3;
+  SimulatedArray device(settings.devices.of<SimulatedArraySettings>(), usx_array(), Medium{});
   PlanStage plans(settings, 1, 1.0, device.info(), nullptr);  // a silent source for the device
   ASSERT_EQ(device.start(plans.emitter()), DeviceStatus::Running);
   device.stop();  // its schedule stays, and stops shifting
@@ -129,7 +130,7 @@ RunSummary run_with(RunMode mode, double age, SwitchAt switch_at) {
   PipelineSettings settings;
   settings.fluid.cells = 32;
   settings.fluid_pressure.offset = settings.fluid.width / 32;
-  settings.simulated_array.realtime = mode == RunMode::RealTime;
+  settings.devices.of<SimulatedArraySettings>().realtime = mode == RunMode::RealTime;
   settings.scripted_hand.period = 5.0;
   settings.emit.switch_at = switch_at;
   Pipeline pipeline(settings, std::make_unique<OldHand>(

@@ -1,6 +1,7 @@
 // A world other than smoke, through the whole pipeline: an example of how to write one.
 #include <gtest/gtest.h>
 
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm {
@@ -24,7 +25,7 @@ class Plate final : public World, public PressureSource {
 
 TEST(OtherWorld, IsFelt) {
   PipelineSettings settings;
-  settings.simulated_array.realtime = false;
+  settings.devices.of<SimulatedArraySettings>().realtime = false;
   Pipeline pipeline(settings, make_scripted_hand(settings.scripted_hand, settings.track),
                     std::make_shared<Mute>(), nullptr, std::make_unique<Plate>());
   double most = 0.0;

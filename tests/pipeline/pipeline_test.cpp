@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/simulated.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/runner.hpp"
 
 namespace prostm {
@@ -25,8 +26,8 @@ PipelineSettings small_settings(bool realtime, Method method = Method::ProStm) {
   s.method = method;
   s.fluid.cells = 32;
   s.scripted_hand.period = 6.0;
-  s.simulated_array.realtime = realtime;
-  s.simulated_array.history = 10.0;
+  s.devices.of<SimulatedArraySettings>().realtime = realtime;
+  s.devices.of<SimulatedArraySettings>().history = 10.0;
   return s;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pipeline/simulated.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/detail/recent_rate.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "support/eventually.hpp"
@@ -25,7 +26,7 @@ PipelineSettings settings_for(RunMode mode) {
   s.fluid.cells = 32;
   s.scripted_hand.still = true;
   s.plan.preset = Preset::Fast;
-  s.simulated_array.realtime = mode == RunMode::RealTime;
+  s.devices.of<SimulatedArraySettings>().realtime = mode == RunMode::RealTime;
   return s;
 }
 

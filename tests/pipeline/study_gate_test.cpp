@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm {
@@ -30,7 +31,7 @@ GateResult judged(std::unique_ptr<HandSource> hands) {
   PipelineSettings settings;
   settings.scene = "four-plumes";
   settings.fluid.cells = 48;
-  settings.simulated_array.realtime = false;
+  settings.devices.of<SimulatedArraySettings>().realtime = false;
   Pipeline pipeline(settings, std::move(hands));
   for (int step = 1; step <= 50; ++step) pipeline.step(0.02);
   return pipeline.plan().gate.value();
@@ -77,7 +78,7 @@ TEST(StudyGate, SaysNothingOfAirThatIsNoStimulus) {
   PipelineSettings settings;
   settings.scene = "still-air";
   settings.fluid.cells = 32;
-  settings.simulated_array.realtime = false;
+  settings.devices.of<SimulatedArraySettings>().realtime = false;
   Pipeline pipeline(settings, make_study_hand({}));
   for (int step = 1; step <= 4; ++step) pipeline.step(0.02);
   EXPECT_FALSE(pipeline.plan().gate);

@@ -12,6 +12,7 @@
 
 #include "pipeline/simulated.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/track/live/live_tracker.hpp"
 #include "support/eventually.hpp"
@@ -94,7 +95,7 @@ TEST_P(TrackerLoss, TheOutputFadesWithin50MillisecondsAndComesBackWithTheHand) {
   settings.plan.budget = kLiveBudget;
   settings.scripted_hand.still = true;
   settings.track.freeze_time = 0.1;
-  settings.simulated_array.history = 30.0;
+  settings.devices.of<SimulatedArraySettings>().history = 30.0;
   std::atomic<Mode> mode{Mode::Well};
   auto noted = std::make_unique<Noted>(
       make_live_hand(std::make_unique<StandIn>(mode, settings), settings.track));

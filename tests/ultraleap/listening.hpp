@@ -14,7 +14,7 @@ namespace stand_in = ultraleap_stand_in;
 namespace ulh = Ultraleap::Haptics;
 
 inline DeviceSetup setup_of(int foci, const std::string& address = "") {
-  return {.simulated = {}, .array = usx_array(), .medium = {}, .address = address, .foci = foci};
+  return {.array = usx_array(), .address = address, .foci = foci};
 }
 
 /// A source whose samples carry their own number; points lie 30 mm apart.

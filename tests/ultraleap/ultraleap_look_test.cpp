@@ -1,6 +1,7 @@
 // The adapter before it plays: addresses, kits, refusals, the registry.
 #include <gmock/gmock.h>
 
+#include "prostm/device/device_kinds.hpp"
 #include "ultraleap/listening.hpp"
 
 namespace prostm {

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/track/hand_source.hpp"
 #include "prostm/viewer/pipeline_view.hpp"

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "prostm/core/file/file.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "study/study_support.hpp"
 #include "support/input_errors.hpp"
@@ -97,7 +98,7 @@ class LiveStudy {
     for (StudyMethod& method : p.methods) {
       method.settings.fluid.cells = 32;
       method.settings.jets.place = JetPlace::Hand;
-      method.settings.simulated_array.realtime = true;
+      method.settings.devices.of<SimulatedArraySettings>().realtime = true;
       set_live_budget(method.settings);
     }
     return p;

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <future>
 #include <optional>
-#include <set>
 
 #include "common.hpp"
 #include "devices/frame_budget.hpp"
@@ -104,29 +102,6 @@ Looking known(Row row) {
   return promise.get_future();
 }
 
-/// Names of the interfaces that have an IPv6 address on their link.
-std::set<std::string> ipv6_interfaces() {
-  constexpr const char* kLink = "20";  // the scope
-  std::ifstream file("/proc/net/if_inet6");
-  std::set<std::string> names;
-  std::string address, index, prefix, scope, flags, name;
-  while (file >> address >> index >> prefix >> scope >> flags >> name) {
-    if (scope == kLink) names.insert(name);
-  }
-  return names;
-}
-
-Row ipv6_row() {
-  const std::set<std::string> names = ipv6_interfaces();
-  if (!names.empty()) {
-    return {"system", "ipv6", true,
-            fmt::format("addresses of the link on {}, as autd3-sdk needs", fmt::join(names, ", "))};
-  }
-  return {"system", "ipv6", false,
-          "no interface has an IPv6 address of its link, which autd3-sdk needs: switch IPv6 on "
-          "(sysctl net.ipv6.conf.all.disable_ipv6=0) and plug the cable in"};
-}
-
 /// The look at all that could be there, on this machine alone.
 std::vector<Looking> look_around() {
   std::vector<Looking> looks;
@@ -144,7 +119,11 @@ std::vector<Looking> look_around() {
   looks.push_back(
       known({"system", "priority", limits.priority, priority_sentence(limits.priority)}));
   looks.push_back(known({"system", "memory", limits.memory, memory_sentence(limits.memory)}));
-  looks.push_back(known(ipv6_row()));
+  for (const DeviceKind& kind : device_kinds()) {
+    if (kind.host == nullptr) continue;
+    const DeviceFinding host = kind.host->check();
+    looks.push_back(known({"system", kind.host->name, host.found, host.words}));
+  }
   return looks;
 }
 

@@ -4,6 +4,7 @@
 #include "field/captured_fields.hpp"
 #include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/runner.hpp"
 
@@ -28,7 +29,7 @@ int capture_command(const CaptureOptionsGiven& given) {
   check_hand(given);
   PipelineSettings settings = make_settings(given.common, given.scene);
   settle_hand(given.hand, given.hand_size, settings);
-  settings.simulated_array.realtime = false;
+  settings.devices.of<SimulatedArraySettings>().realtime = false;
   Pipeline pipeline(settings, make_hands(given.hand, settings));
   warn_of(pipeline.world_stage().hands());
   Recorder recorder(given.out, settings_groups(settings));

@@ -2,6 +2,7 @@
 
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/io/digitised_figure.hpp"
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/study/analysis/scores.hpp"
@@ -55,7 +56,7 @@ void check_paper_data(const ReportWork& work) {
 PipelineSettings ReportWork::settings(const std::string& scene) const {
   PipelineSettings settings;
   settings.scene = scene;
-  settings.simulated_array.realtime = false;
+  settings.devices.of<SimulatedArraySettings>().realtime = false;
   Random random(static_cast<std::uint64_t>(seed));
   settings.scripted_hand.seed = seed;
   settings.scripted_hand.jitter = 0.3e-3;

@@ -6,6 +6,7 @@
 #include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/hand/hand_raster.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
@@ -215,7 +216,7 @@ void make_solvers(const ReportWork& work, Json& document) {
 void make_latency(const ReportWork& work, Json& document) {
   const double seconds = work.full_or_quick(10.0, 3.0);
   PipelineSettings settings = work.settings("four-plumes");
-  settings.simulated_array.realtime = true;
+  settings.devices.of<SimulatedArraySettings>().realtime = true;
   settings.scripted_hand.still = true;  // always there
   set_live_budget(settings);
   Pipeline pipeline(settings, work.hand(settings));

@@ -13,6 +13,7 @@
 #include "prostm/commit.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/io/recorder.hpp"
 #include "prostm/pipeline/runner.hpp"
 #include "prostm/track/live/tracker_news.hpp"
@@ -147,7 +148,7 @@ RunOptions options_of(const RunOptionsGiven& given, PipelineSettings& settings) 
                  : given.as_fast_as_possible ? RunMode::AsFastAsPossible
                                              : RunMode::RealTime;
   const bool realtime = options.mode == RunMode::RealTime;
-  settings.simulated_array.realtime = realtime;
+  settings.devices.of<SimulatedArraySettings>().realtime = realtime;
   check_mode(settings, options.mode);
   if (given.switch_at) settings.emit.switch_at = from_name<SwitchAt>(*given.switch_at, "--switch");
   if (realtime && !given.common.budget_ms) set_live_budget(settings);

@@ -6,6 +6,7 @@
 
 #include "common.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/playable.hpp"
 
 namespace prostm::app {
@@ -24,7 +25,7 @@ void settle(StudyMethod& method, const std::string& path) {
 
 PipelineSettings study_settings(const CommonOptions& common) {
   PipelineSettings settings = make_settings(common, std::nullopt, true);
-  settings.simulated_array.realtime = true;
+  settings.devices.of<SimulatedArraySettings>().realtime = true;
   settings.jets.place = JetPlace::Hand;  // a stimulus is centred under the palm
   return settings;
 }

@@ -17,6 +17,18 @@ int to_int(double bound) {
       std::clamp<double>(bound, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
 }
 
+class FileCollector : public SettingsReader {
+ public:
+  void field(const Setting&, const double&) override {}
+  void field(const Setting&, const int&) override {}
+  void field(const Setting&, const bool&) override {}
+  void field(const Setting& s, const std::string& value) override {
+    if (s.names_file && !value.empty()) files.push_back({s.name, value});
+  }
+  void choice(const Setting&, std::span<const std::string_view>, int) override {}
+  std::vector<SettingFile> files;
+};
+
 class BoundsCheck : public SettingsReader {
  public:
   void field(const Setting& s, const double& value) override { require_bounds(s, value); }
@@ -79,6 +91,12 @@ std::vector<SettingRow> setting_rows(const ReadSettings& settings) {
   RowCollector collector;
   settings(collector);
   return collector.rows;
+}
+
+std::vector<SettingFile> files_of(const ReadSettings& settings) {
+  FileCollector collector;
+  settings(collector);
+  return collector.files;
 }
 
 void require_bounds(const Setting& s, double value) {

@@ -25,7 +25,8 @@ struct Setting {
   const char* unit = "";  ///< "m/s"; empty for a plain number or no number
   double least = -std::numeric_limits<double>::infinity();  ///< of a number, in its unit
   double most = std::numeric_limits<double>::infinity();
-  const char* help = "";  ///< one clause, without the unit and the bounds
+  const char* help = "";    ///< one clause, without the unit and the bounds
+  bool names_file = false;  ///< of a text: the name of a file that is read, unless it is empty
 };
 
 /// Sees every field and may change it.
@@ -103,6 +104,13 @@ struct SettingRow {
 };
 /// Every setting, in order.
 std::vector<SettingRow> setting_rows(const ReadSettings& settings);
+
+/// A setting that names a file which is read.
+struct SettingFile {
+  std::string setting, path;
+};
+/// Those that are not empty, in order.
+std::vector<SettingFile> files_of(const ReadSettings& settings);
 
 /// Checks a number against the setting's bounds. @throws std::invalid_argument with the sentence of
 /// require_between().

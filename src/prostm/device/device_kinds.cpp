@@ -5,56 +5,19 @@
 #include <vector>
 
 #include "prostm/core/text/nearest_name.hpp"
-#include "prostm/device/autd3_sdk/autd3_sdk_array.hpp"
+#include "prostm/device/autd3/autd3_kind.hpp"
+#include "prostm/device/autd3_sdk/autd3_sdk_kind.hpp"
 #include "prostm/device/segment_stream.hpp"
-#include "prostm/device/stream/stream_device.hpp"
-#include "prostm/device/ultraleap/ultraleap.hpp"
+#include "prostm/device/simulated/simulated_kind.hpp"
+#include "prostm/device/stream/stream_kind.hpp"
+#include "prostm/device/ultraleap/ultraleap_kind.hpp"
 
 namespace prostm {
 namespace {
 
-DeviceInfo simulated_info(const DeviceSetup& setup) {
-  return SimulatedArray::info_of(setup.simulated, setup.array);
-}
-
-std::unique_ptr<Device> make_simulated(const DeviceSetup& setup) {
-  return std::make_unique<SimulatedArray>(setup.simulated, setup.array, setup.medium);
-}
-
-DeviceInfo autd3_info(const DeviceSetup& setup) {
-  return Autd3Array::info_of(autd3_setup(setup));
-}
-
-std::unique_ptr<Device> make_autd3(const DeviceSetup& setup) {
-  return std::make_unique<Autd3Array>(autd3_setup(setup));
-}
-
-DeviceFinding look_for_autd3_units(const DeviceSetup& setup) {
-  return look_for_autd3(autd3_setup(setup));
-}
-
-constexpr DeviceKind kKinds[] = {
-    {"sim", nullptr, nullptr, "needs no hardware; nobody can feel it", simulated_info,
-     make_simulated, nullptr},
-    {"autd3", "HOST:PORT", "autd3", "tried with a stand-in for AUTD3 v38, never with real units",
-     autd3_info, make_autd3, look_for_autd3_units, autd3_transducers},
-    {"autd3-sdk", "%INTERFACE", "autd3", "tried with a stand-in, never on real hardware",
-     autd3_sdk_info, make_autd3_sdk, look_for_autd3_sdk, autd3_transducers},
-#if defined(PROSTM_ULTRALEAP)
-    {"ultraleap", "[DEVICE][@CONNECTION]", "usx",
-     "this build has the vendor's SDK; tried with a stand-in of its interface, never on real "
-     "hardware",
-     ultraleap_info, make_ultraleap, look_for_ultraleap},
-#else
-    {"ultraleap", "[DEVICE][@CONNECTION]", "usx",
-     "this build lacks the vendor's Haptics SDK 3: install that and configure prostm with "
-     "-DPROSTM_ULTRALEAP_ROOT=FOLDER (docs/ultraleap.md); never tried on real hardware",
-     nullptr, nullptr, look_for_ultraleap},
-#endif
-    {"stream", "ADDRESS:PORT", nullptr,
-     "for programs that subscribe; tried with receivers on this machine, never with an array",
-     stream_info, make_stream, look_for_stream},
-};
+// A kind's row stands in the folder of the kind.
+const DeviceKind kKinds[] = {simulated_kind(), autd3_kind(), autd3_sdk_kind(), ultraleap_kind(),
+                             stream_kind()};
 
 const DeviceKind& kind_named(const std::string& name) {
   std::string built;

@@ -5,41 +5,9 @@
 #include <span>
 #include <string>
 
-#include "prostm/device/autd3/autd3_array.hpp"
-#include "prostm/device/simulated/simulated_array.hpp"
-#include "prostm/device/stream/stream_settings.hpp"
+#include "prostm/device/device_kind.hpp"
 
 namespace prostm {
-
-/// Parts from which a device is made.
-struct DeviceSetup {
-  SimulatedArraySettings simulated;
-  TransducerArray array;
-  Medium medium;
-  std::string address = {};  ///< behind NAME:// in --device; empty: the kind's usual one
-  int foci = 4;              ///< focal points of a sample
-  Autd3Settings autd3 = {};
-  StreamSettings stream = {};
-};
-
-struct DeviceKind {
-  const char* name;     ///< in --device and settings, where an address may follow
-  const char* address;  ///< form of the address in NAME://ADDRESS; null: NAME alone
-  const char* array;    ///< name of the transducers that it has; null: any
-  const char* tried;    ///< its needs, and how it was tried
-  /// Returns the device's capabilities without touching it. Null if this version lacks the device.
-  DeviceInfo (*info)(const DeviceSetup& setup);
-  /// @throws std::invalid_argument with a sentence.
-  std::unique_ptr<Device> (*make)(const DeviceSetup& setup);
-  /// Looks for the device at its address, for a second at most, without making it sound. Null where
-  /// there is nothing to look for.
-  DeviceFinding (*look)(const DeviceSetup& setup);
-  /// Returns the transducers that it plays on, where settings of its own place them; null: those of
-  /// `array`. @throws as make() does.
-  TransducerArray (*transducers)(const DeviceSetup& setup) = nullptr;
-
-  bool is_built() const { return make != nullptr; }
-};
 
 std::span<const DeviceKind> device_kinds();
 

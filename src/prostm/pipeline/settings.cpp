@@ -4,6 +4,7 @@
 
 #include "prostm/acoustics/field/focus_width.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/device/device_kinds.hpp"
 #include "prostm/emit/drive.hpp"
 #include "prostm/emit/played.hpp"
 
@@ -114,21 +115,22 @@ namespace {
 
 template <class Settings>
 std::vector<SettingsGroup> groups_of(Settings& s) {
-  return {group_of("pipeline", s),
-          group_of("track", s.track),
-          group_of("scripted_hand", s.scripted_hand),
-          group_of("study_hand", s.study_hand),
-          group_of("fluid", s.fluid),
-          group_of("box", s.box),
-          group_of("jets", s.jets),
-          group_of("contact", s.fluid_pressure, s.contact),
-          group_of("plan", s.plan),
-          group_of("am", s.am),
-          group_of("emit", s.emit),
-          group_of("safety", s.safety),
-          group_of("simulated_array", s.simulated_array),
-          group_of("autd3", s.autd3),
-          group_of("stream", s.stream)};
+  std::vector<SettingsGroup> groups = {group_of("pipeline", s),
+                                       group_of("track", s.track),
+                                       group_of("scripted_hand", s.scripted_hand),
+                                       group_of("study_hand", s.study_hand),
+                                       group_of("fluid", s.fluid),
+                                       group_of("box", s.box),
+                                       group_of("jets", s.jets),
+                                       group_of("contact", s.fluid_pressure, s.contact),
+                                       group_of("plan", s.plan),
+                                       group_of("am", s.am),
+                                       group_of("emit", s.emit),
+                                       group_of("safety", s.safety)};
+  for (const DeviceKind& kind : device_kinds()) {
+    if (kind.settings != nullptr) groups.push_back(group_of(*kind.settings, s.devices));
+  }
+  return groups;
 }
 
 }  // namespace

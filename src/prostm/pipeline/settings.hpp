@@ -9,7 +9,7 @@
 #include "prostm/am/am_planner.hpp"
 #include "prostm/contact/skin_contact.hpp"
 #include "prostm/core/settings.hpp"
-#include "prostm/device/device_kinds.hpp"
+#include "prostm/device/device_kind.hpp"
 #include "prostm/device/safety/safety_limiter.hpp"
 #include "prostm/emit/emitter.hpp"
 #include "prostm/fluid/fluid.hpp"
@@ -53,9 +53,7 @@ struct PipelineSettings {
   AmSettings am;
   EmitSettings emit;
   SafetySettings safety;
-  SimulatedArraySettings simulated_array;
-  Autd3Settings autd3;
-  StreamSettings stream;                      ///< of device stream
+  DeviceSettings devices;                     ///< of all kinds, each under a name of its own
   TransducerArray transducers = usx_array();  ///< not a field in files: `array` names them
   Pose X_DT = default_tracker_pose();         ///< pose of the tracker; `tracker` names it
 
@@ -64,7 +62,7 @@ struct PipelineSettings {
 
   /// Returns the setup that `device` is made from.
   DeviceSetup device_setup() const {
-    return {simulated_array, transducers, Medium{}, {}, emit.foci, autd3, stream};
+    return {.array = transducers, .address = {}, .foci = emit.foci, .settings = devices};
   }
 
   /// The device that these settings name, before it is made.

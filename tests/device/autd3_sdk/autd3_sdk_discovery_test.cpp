@@ -7,8 +7,8 @@
 
 #include "device/autd3_sdk/autd3_sdk_units.hpp"
 #include "prostm/device/autd3_sdk/autd3_sdk_array.hpp"
+#include "prostm/device/autd3_sdk/autd3_sdk_kind.hpp"
 #include "prostm/device/autd3_sdk/detail/autd3_sdk_session.hpp"
-#include "prostm/device/device_kinds.hpp"
 #include "support/eventually.hpp"
 
 namespace prostm::sdk {
@@ -163,13 +163,13 @@ TEST(SdkLook, SaysWhoAnswersAndDisturbsNobody) {
   test::SdkUnits chain;
   DeviceSetup setup;
   setup.address = chain.address();
-  const DeviceFinding before = look_for_autd3_sdk(setup);
+  const DeviceFinding before = autd3_sdk_kind().look(setup);
   EXPECT_TRUE(before.found);
   EXPECT_THAT(before.words, HasSubstr("1 unit answers; firmware 0.10.0"));
   EXPECT_THAT(before.words, testing::Not(HasSubstr("numbered by")));
   Session session({.address = chain.address()});
   ASSERT_TRUE(test::eventually([&] { return session.open(); }));
-  const DeviceFinding after = look_for_autd3_sdk(setup);
+  const DeviceFinding after = autd3_sdk_kind().look(setup);
   EXPECT_TRUE(after.found);
   EXPECT_THAT(after.words, HasSubstr("numbered by a program that may still run"));
   EXPECT_TRUE(test::eventually([&] { return session.resume(); })) << session.problem();
@@ -178,11 +178,11 @@ TEST(SdkLook, SaysWhoAnswersAndDisturbsNobody) {
 
 TEST(SdkLook, SaysWhatIsMissing) {
   DeviceSetup setup;
-  EXPECT_THAT(look_for_autd3_sdk(setup).words, HasSubstr("name the network interface"));
+  EXPECT_THAT(autd3_sdk_kind().look(setup).words, HasSubstr("name the network interface"));
   setup.address = "%no-such-card";
-  EXPECT_THAT(look_for_autd3_sdk(setup).words, HasSubstr("there is no network interface"));
+  EXPECT_THAT(autd3_sdk_kind().look(setup).words, HasSubstr("there is no network interface"));
   { setup.address = test::SdkUnits().address(); }
-  const DeviceFinding nobody = look_for_autd3_sdk(setup);
+  const DeviceFinding nobody = autd3_sdk_kind().look(setup);
   EXPECT_FALSE(nobody.found);
   EXPECT_THAT(nobody.words, HasSubstr("nobody answers"));
   EXPECT_THAT(nobody_words(group_address("%lo")),

@@ -10,7 +10,7 @@
 #include "device/stream/stream_client.hpp"
 #include "device/stream/stream_sources.hpp"
 #include "prostm/core/random.hpp"
-#include "prostm/device/device_kinds.hpp"
+#include "prostm/device/stream/stream_kind.hpp"
 #include "support/eventually.hpp"
 
 namespace prostm {
@@ -271,9 +271,9 @@ TEST(StreamDevice, SaysWhyItCannotListen) {
   EXPECT_THAT(problem({"array.example", 0}), HasSubstr("must be a number"));
   EXPECT_THROW(StreamDevice({.block_samples = 401}, {"127.0.0.1", 0}), std::invalid_argument);
 
-  DeviceSetup setup{SimulatedArraySettings{}, TransducerArray{}, Medium{}};
+  DeviceSetup setup;
   setup.address = "127.0.0.1:" + std::to_string(first.port());
-  const DeviceFinding finding = look_for_stream(setup);
+  const DeviceFinding finding = stream_kind().look(setup);
   EXPECT_FALSE(finding.found);
   EXPECT_THAT(finding.words, HasSubstr("in use"));
 }

@@ -31,8 +31,6 @@ struct Autd3Settings {
   void visit(SettingsWriter& v);
 };
 
-struct DeviceSetup;
-
 struct Autd3Setup {
   HostPort address{"127.0.0.1", 8080};
   /// Poses X_DU of the units' own frames, up to 64; empty: one unit, its middle in D's origin.
@@ -87,17 +85,6 @@ class Autd3Array final : public Device {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The transducers of all units. @throws InputError about their file.
-TransducerArray autd3_transducers(const DeviceSetup& setup);
-
-/// Its setup from what a registry is given. @throws InputError about the address or the file.
-Autd3Setup autd3_setup(const DeviceSetup& setup);
-
-/// Result of a look at an address.
-struct Autd3Finding {
-  bool found = false;
-  std::string words;  ///< the units and their firmware; or what is missing and what to do
-};
 /// Looks for units for about a second, without changing what they do.
 DeviceFinding look_for_autd3(const Autd3Setup& setup);
 

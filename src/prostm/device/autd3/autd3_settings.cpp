@@ -9,20 +9,19 @@
 #include "prostm/core/text/json.hpp"
 #include "prostm/device/autd3/autd3_array.hpp"
 #include "prostm/device/autd3/detail/autd3_session.hpp"
-#include "prostm/device/device_kinds.hpp"
 
 namespace prostm {
 namespace {
 
 constexpr double kFarthest = 2e3;    // of a unit from the origin of D, along each axis [mm]
 constexpr double kTolerance = 1e-3;  // of a quaternion's length
-constexpr std::uint16_t kUsualPort = 8080;
 constexpr std::chrono::milliseconds kLook{400};
 
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   v.field({.name = "units",
-           .help = "file with the places of AUTD3 units; empty: one, its middle in the origin"},
+           .help = "file with the places of AUTD3 units; empty: one, its middle in the origin",
+           .names_file = true},
           s.units);
   v.field({"block_time", "s", 0, 0.025,
            "duration of a block of the stream to AUTD3; 0: as short as the link allows"},
@@ -72,11 +71,6 @@ std::vector<Pose> autd3_units_from_json(std::string_view text, const std::string
   return poses;
 }
 
-TransducerArray autd3_transducers(const DeviceSetup& setup) {
-  const std::vector<Pose> units = setup.autd3.poses();
-  return units.empty() ? autd3_array() : autd3_units(units);
-}
-
 DeviceFinding look_for_autd3(const Autd3Setup& setup) {
   const std::vector<Pose> units =
       setup.units.empty() ? std::vector<Pose>{autd3_middle()} : setup.units;
@@ -92,18 +86,6 @@ DeviceFinding look_for_autd3(const Autd3Setup& setup) {
 std::vector<Pose> Autd3Settings::poses() const {
   if (units.empty()) return {};
   return autd3_units_from_json(read_file(units, kMaxJsonBytes), units);
-}
-
-Autd3Setup autd3_setup(const DeviceSetup& setup) {
-  Autd3Setup made;
-  made.address = setup.address.empty() ? HostPort{"127.0.0.1", kUsualPort}
-                                       : host_port("autd3://" + setup.address, "autd3", kUsualPort);
-  made.units = setup.autd3.poses();
-  made.medium = setup.medium;
-  made.foci = setup.foci;
-  made.own_intensities = setup.autd3.weights;
-  made.block_time = setup.autd3.block_time;
-  return made;
 }
 
 }  // namespace prostm

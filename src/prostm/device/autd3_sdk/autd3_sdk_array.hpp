@@ -11,8 +11,6 @@
 
 namespace prostm {
 
-struct DeviceSetup;
-
 struct Autd3SdkSetup {
   std::string address;  ///< %INTERFACE or [IPv6], with :PORT if it is not 44336
   /// X_DU of the units' own frames, along their chain; empty: as many as there are, side by side
@@ -80,10 +78,5 @@ class Autd3SdkArray final : public Device {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// For the list of kinds of devices.
-DeviceInfo autd3_sdk_info(const DeviceSetup& setup);
-std::unique_ptr<Device> make_autd3_sdk(const DeviceSetup& setup);
-DeviceFinding look_for_autd3_sdk(const DeviceSetup& setup);
 
 }  // namespace prostm

@@ -1,31 +1,29 @@
-// The AUTD3 SDK's units among the kinds of devices, and how their link is shared out.
-#include <fmt/format.h>
+#include "prostm/device/autd3_sdk/autd3_sdk_kind.hpp"
 
-#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <set>
 #include <stdexcept>
 
+#include "prostm/device/autd3/autd3_array.hpp"
+#include "prostm/device/autd3/autd3_kind.hpp"
 #include "prostm/device/autd3_sdk/autd3_sdk_array.hpp"
 #include "prostm/device/autd3_sdk/detail/autd3_sdk_discovery.hpp"
-#include "prostm/device/device_kinds.hpp"
 
 namespace prostm {
 namespace {
 
-constexpr double kCarrier = 40e3;  // [Hz], from which all sampling rates are divided
-constexpr double kMostLoad = 0.5;
-constexpr double kLongBlock = 20e-3, kShortBlock = 10e-3;  // [s]
-constexpr int kLeastDivider = 4;                           // 10 kHz, above which nothing is gained
-constexpr int kMostDivider = 20;  // 2 kHz, below which fingers feel the steps
-constexpr int kTurnFrames = 2;    // that change over to a block and read the state
 constexpr std::chrono::milliseconds kLook{500};
 
 /// The setup without a look at the address; [autd3] is of units with either firmware.
 Autd3SdkSetup shared_setup_of(const DeviceSetup& setup) {
   return {.address = setup.address,
-          .units = setup.autd3.poses(),
+          .units = setup.settings.of<Autd3Settings>().poses(),
           .medium = setup.medium,
           .foci = setup.foci,
-          .own_intensities = setup.autd3.weights};
+          .own_intensities = setup.settings.of<Autd3Settings>().weights};
 }
 
 Autd3SdkSetup setup_of(const DeviceSetup& setup) {
@@ -43,43 +41,16 @@ std::string unit_words(const sdk::Unit& unit) {
       (unit.info.flags & sdk::kAssigned) != 0 ? ", numbered by a program that may still run" : "");
 }
 
-}  // namespace
-
-Autd3SdkBudget autd3_sdk_budget(int slots, int divider, double block_time, double frames_per_ms) {
-  Autd3SdkBudget budget;
-  budget.slots = slots;
-  budget.divider = divider;
-  budget.block_samples = static_cast<int>(std::lround(block_time * kCarrier / divider));
-  const int words = budget.block_samples * slots;
-  budget.block_frames = (words + sdk::kFociPerFrame - 1) / sdk::kFociPerFrame + kTurnFrames;
-  budget.block_time = budget.block_samples * divider / kCarrier;
-  budget.load = budget.block_frames / (1e3 * budget.block_time * frames_per_ms);
-  return budget;
-}
-
-Autd3SdkBudget best_autd3_sdk_budget(int slots, double frames_per_ms) {
-  for (int divider = kLeastDivider; divider <= kMostDivider; ++divider) {
-    for (const double block_time : {kShortBlock, kLongBlock}) {
-      const Autd3SdkBudget budget = autd3_sdk_budget(slots, divider, block_time, frames_per_ms);
-      if (budget.load <= kMostLoad) return budget;
-    }
-  }
-  throw std::invalid_argument(
-      fmt::format("the link takes {:.2f} frames per ms, too few for {} slots at 2 kHz; use fewer "
-                  "focal points or a faster network",
-                  frames_per_ms, slots));
-}
-
-DeviceInfo autd3_sdk_info(const DeviceSetup& setup) {
+DeviceInfo info(const DeviceSetup& setup) {
   return Autd3SdkArray::info_of(shared_setup_of(setup));
 }
 
-std::unique_ptr<Device> make_autd3_sdk(const DeviceSetup& setup) {
+std::unique_ptr<Device> make(const DeviceSetup& setup) {
   return std::make_unique<Autd3SdkArray>(setup_of(setup));
 }
 
 /// Asks without changing anything, so that a program that drives the units is not disturbed.
-DeviceFinding look_for_autd3_sdk(const DeviceSetup& setup) {
+DeviceFinding look(const DeviceSetup& setup) {
   if (setup.address.empty())
     return {false,
             "name the network interface of the units to look for them, as "
@@ -107,6 +78,45 @@ DeviceFinding look_for_autd3_sdk(const DeviceSetup& setup) {
   } catch (const std::invalid_argument& error) {
     return {false, error.what()};
   }
+}
+
+/// Names of the interfaces that have an IPv6 address on their link.
+std::set<std::string> ipv6_interfaces() {
+  constexpr const char* kLink = "20";  // the scope
+  std::ifstream file("/proc/net/if_inet6");
+  std::set<std::string> names;
+  std::string address, index, prefix, scope, flags, name;
+  while (file >> address >> index >> prefix >> scope >> flags >> name) {
+    if (scope == kLink) names.insert(name);
+  }
+  return names;
+}
+
+DeviceFinding check_ipv6() {
+  const std::set<std::string> names = ipv6_interfaces();
+  if (!names.empty()) {
+    return {true,
+            fmt::format("addresses of the link on {}, as autd3-sdk needs", fmt::join(names, ", "))};
+  }
+  return {false,
+          "no interface has an IPv6 address of its link, which autd3-sdk needs: switch IPv6 on "
+          "(sysctl net.ipv6.conf.all.disable_ipv6=0) and plug the cable in"};
+}
+
+constexpr HostCheck kIpv6{"ipv6", check_ipv6};
+
+}  // namespace
+
+DeviceKind autd3_sdk_kind() {
+  return {.name = "autd3-sdk",
+          .address = "%INTERFACE",
+          .array = "autd3",
+          .tried = "tried with a stand-in, never on real hardware",
+          .info = info,
+          .make = make,
+          .look = look,
+          .transducers = autd3_transducers,
+          .host = &kIpv6};
 }
 
 }  // namespace prostm

@@ -10,7 +10,6 @@
 #include "prostm/core/settings.hpp"
 #include "prostm/device/detail/block_clock.hpp"
 #include "prostm/device/detail/segment_player.hpp"
-#include "prostm/device/device_kinds.hpp"
 #include "prostm/device/stream/detail/stream_server.hpp"
 #include "prostm/device/thread_priority.hpp"
 
@@ -23,11 +22,6 @@ using Seconds = std::chrono::duration<double>;
 const StreamSettings& validated(const StreamSettings& s) {
   require_bounds(s);
   return s;
-}
-
-HostPort address_of(const std::string& text) {
-  return text.empty() ? HostPort{"127.0.0.1", StreamDevice::kUsualPort}
-                      : host_port("stream://" + text, "stream", StreamDevice::kUsualPort);
 }
 
 /// Data of the thread that pulls; no other thread looks at it while that thread runs.
@@ -301,28 +295,6 @@ std::uint16_t StreamDevice::port() const {
 
 StreamStats StreamDevice::stream_stats() const {
   return impl_->server.stats();
-}
-
-DeviceInfo stream_info(const DeviceSetup& setup) {
-  return StreamDevice::info_of(setup.stream);
-}
-
-std::unique_ptr<Device> make_stream(const DeviceSetup& setup) {
-  return std::make_unique<StreamDevice>(setup.stream, address_of(setup.address));
-}
-
-DeviceFinding look_for_stream(const DeviceSetup& setup) {
-  const HostPort address = address_of(setup.address);
-  try {
-    stream::open_sockets(address);
-  } catch (const std::invalid_argument& error) {
-    return {false, error.what()};
-  }
-  const bool is_loopback =
-      address.host.rfind("127.", 0) == 0 || address.host == "::1" || address.host == "localhost";
-  return {true, address.text() + " is free: during a run, programs " +
-                    (is_loopback ? "on this machine alone may subscribe"
-                                 : "of any machine that reaches this address may subscribe")};
 }
 
 }  // namespace prostm

@@ -8,18 +8,9 @@
 #include "prostm/core/text/host_port.hpp"
 #include "prostm/device/device.hpp"
 #include "prostm/device/stream/stream_settings.hpp"
+#include "prostm/device/stream/stream_stats.hpp"
 
 namespace prostm {
-
-struct DeviceSetup;
-
-/// Counters of the subscribers' side.
-struct StreamStats {
-  int subscribers = 0;
-  std::int64_t skipped_blocks = 0;     ///< blocks that a subscriber was too slow for, of all
-  std::int64_t refused_requests = 0;   ///< answered with an error message
-  std::int64_t ignored_datagrams = 0;  ///< that were not of the protocol
-};
 
 /// Keeps real time by itself (BlockClock), whether anybody listens or not: it pulls a block every
 /// block period and hands it to a thread that sends it to up to eight subscribers. Its own thread
@@ -56,13 +47,5 @@ class StreamDevice final : public Device {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-// For device_kinds().
-DeviceInfo stream_info(const DeviceSetup& setup);
-/// Listens on 127.0.0.1 and kUsualPort where no address is named.
-/// @throws std::invalid_argument with a sentence.
-std::unique_ptr<Device> make_stream(const DeviceSetup& setup);
-/// Says who may subscribe, or why nobody can.
-DeviceFinding look_for_stream(const DeviceSetup& setup);
 
 }  // namespace prostm

@@ -87,14 +87,4 @@ void remember_ultraleap(const DeviceSetup& setup, const DeviceInfo& info) {
   all.infos[{std::string(), setup.foci}] = info;  // for who asks without an address
 }
 
-#if !defined(PROSTM_ULTRALEAP)
-
-DeviceFinding look_for_ultraleap(const DeviceSetup& /*setup*/) {
-  return {false,
-          "This build cannot look for Ultraleap arrays: install the vendor's Haptics SDK 3, and "
-          "configure prostm with -DPROSTM_ULTRALEAP_ROOT=FOLDER."};
-}
-
-#endif
-
 }  // namespace prostm

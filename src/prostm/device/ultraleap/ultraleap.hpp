@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "prostm/device/device_kinds.hpp"
+#include "prostm/device/device_kind.hpp"
 
 namespace prostm {
 

@@ -11,7 +11,8 @@
 
 #include "prostm/core/spsc_ring.hpp"
 #include "prostm/device/stream/detail/stream_peer.hpp"
-#include "prostm/device/stream/stream_device.hpp"
+#include "prostm/device/stream/stream_settings.hpp"
+#include "prostm/device/stream/stream_stats.hpp"
 
 namespace prostm::stream {
 

@@ -1,0 +1,13 @@
+#pragma once
+/// AUTD3 arrays of software version 38 as a kind of device.
+
+#include "prostm/device/device_kind.hpp"
+
+namespace prostm {
+
+DeviceKind autd3_kind();
+
+/// The transducers of all units that the settings place. @throws InputError about their file.
+TransducerArray autd3_transducers(const DeviceSetup& setup);
+
+}  // namespace prostm

@@ -1,0 +1,10 @@
+#pragma once
+/// Arrays of Ultraleap as a kind of device.
+
+#include "prostm/device/device_kind.hpp"
+
+namespace prostm {
+
+DeviceKind ultraleap_kind();
+
+}  // namespace prostm
