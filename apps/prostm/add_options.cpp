@@ -4,6 +4,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/figure/figures.hpp"
+#include "prostm/plan/preset.hpp"
 
 namespace prostm::app {
 
@@ -17,7 +18,8 @@ void add_common(CLI::App& command, CommonOptions& o) {
             "settings of any stage, a TOML file (docs/files.md)");
   add_json(command, o.files, o.json);
   command.add_option("--seed", o.seed, "of everything that is drawn at random");
-  add_name(command, "--preset", o.preset, "best (default), fast, paper, or paper-valid");
+  add_name(command, "--preset", o.preset,
+           one_of(kNames<Preset>) + "; default: " + std::string(name_of(kDefaultPreset)));
   command.add_option("--paths", o.paths, "focal points, 1 to 8");
   command.add_option("--budget-ms", o.budget_ms,
                      "time for a plan of preset best; 0: a fixed amount of work");

@@ -274,8 +274,7 @@ void write_plan(const Result& r, const TargetField& target, const PipelineSettin
 /// presets keep [plan] sigma.
 bool counts_on_own_width(const PipelineSettings& settings) {
   if (is_am(settings)) return true;
-  const Preset preset = settings.plan.preset;
-  return preset == Preset::Best || preset == Preset::Fast;
+  return settings.plan.traits().is_fitted();
 }
 
 /// Returns the felt skill of the plan as the array of the settings plays it.

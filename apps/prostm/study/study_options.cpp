@@ -3,6 +3,7 @@
 #include "add_options.hpp"
 #include "common.hpp"
 #include "prostm/figure/figures.hpp"
+#include "prostm/plan/preset.hpp"
 
 namespace prostm::app {
 namespace {
@@ -165,7 +166,7 @@ void add_simulate(CLI::App& study, Work& work) {
       ->capture_default_str();
   command->add_option("--hands", o->hands, "of different size and tremor to draw participants from")
       ->capture_default_str();
-  add_name(*command, "--preset", o->preset, "of pro-stm: paper, paper-valid, best or fast")
+  add_name(*command, "--preset", o->preset, "of pro-stm: " + one_of(kNames<Preset>))
       ->capture_default_str();
   command->add_option("--noise", o->noise, "factor of the observers' own noise")
       ->capture_default_str();

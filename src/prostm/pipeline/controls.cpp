@@ -29,11 +29,17 @@ std::vector<ControlChoice> scene_choices() {
   return choices;
 }
 
+std::vector<ControlChoice> preset_choices() {
+  std::vector<ControlChoice> choices;
+  for (const PresetTraits& traits : kPresetTraits) choices.push_back({traits.name, traits.title});
+  return choices;
+}
+
 const std::vector<ControlChoice> kScenes = scene_choices();
 const auto kJetPlaces = choices_of<JetPlace, 2>({"Over the array", "Under the hand"});
 const auto kParts = choices_of<PressurePart, 3>({"All", "Smoke alone", "Movement alone"});
 const auto kMethods = choices_of<Method, 2>({"PRO-STM", "AM"});
-const auto kPresets = choices_of<Preset, 4>({"Paper", "Paper, made valid", "Best", "Fast"});
+const std::vector<ControlChoice> kPresets = preset_choices();
 const auto kSwitches = choices_of<SwitchAt, 2>({"At lap ends", "At once"});
 const auto kWaveforms = choices_of<Waveform, 2>({"Raised cosine", "|sin|"});
 constexpr ControlChoice kSources[] = {
@@ -63,8 +69,7 @@ bool is_pro_stm(const LiveSettings& s) {
   return !is_am(s);
 }
 bool is_fitted(const LiveSettings& s) {
-  return is_pro_stm(s) &&
-         (s.pipeline.plan.preset == Preset::Best || s.pipeline.plan.preset == Preset::Fast);
+  return is_pro_stm(s) && s.pipeline.plan.traits().is_fitted();
 }
 bool has_jets(const LiveSettings& s) {
   return s.pipeline.scene != "still-air";
@@ -75,13 +80,13 @@ bool has_source(const LiveSettings& s, std::size_t place) {
 
 // ---- what more than one line has to do ----
 
-/// A clock runs: preset best gets a share of an update, and no other preset takes a budget. The
-/// paper's presets do not take what is felt, either.
+/// A clock runs, so a preset that takes a budget gets a share of an update. Presets that fit
+/// nothing do not take what is felt, either.
 void set_preset(LiveSettings& s, double value) {
   PlanSettings& plan = s.pipeline.plan;
   plan.preset = static_cast<Preset>(value);
-  plan.budget = plan.preset == Preset::Best ? kLiveBudget : 0.0;
-  if (plan.preset != Preset::Best && plan.preset != Preset::Fast) plan.felt_weight = 0.0;
+  plan.budget = plan.traits().takes_budget ? kLiveBudget : 0.0;
+  if (!plan.traits().is_fitted()) plan.felt_weight = 0.0;
 }
 
 void set_paths(LiveSettings& s, double value) {

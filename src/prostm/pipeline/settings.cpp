@@ -58,8 +58,9 @@ double PipelineSettings::sigma() const {
 }
 
 void set_live_budget(PipelineSettings& settings) {
-  const bool is_best = settings.method == Method::ProStm && settings.plan.preset == Preset::Best;
-  if (is_best && settings.plan.budget == 0.0) settings.plan.budget = kLiveBudget;
+  const bool takes_budget =
+      settings.method == Method::ProStm && settings.plan.traits().takes_budget;
+  if (takes_budget && settings.plan.budget == 0.0) settings.plan.budget = kLiveBudget;
 }
 
 PlanSettings playable_plan_settings(const PipelineSettings& settings, double emission_rate) {

@@ -93,8 +93,7 @@ void PlanSettings::visit(SettingsWriter& v) {
 }
 
 double PlanSettings::sigma_on(const TargetField& target) const {
-  const bool by_place = (preset == Preset::Best || preset == Preset::Fast) && !widths.empty();
-  return by_place ? widths.on(target) : sigma;
+  return traits().is_fitted() && !widths.empty() ? widths.on(target) : sigma;
 }
 
 void validate(const PlanSettings& s) {
@@ -107,9 +106,11 @@ void validate(const PlanSettings& s) {
     throw std::invalid_argument(
         "gain_from_skin takes the place of gain_exponent: gain_exponent must be 0 with it");
   }
-  if (s.budget > 0.0 && s.preset != Preset::Best) {
-    throw std::invalid_argument("a budget is for preset best, not " +
-                                std::string(name_of(s.preset)));
+  const PresetTraits& traits = s.traits();
+  if (s.budget > 0.0 && !traits.takes_budget) {
+    throw std::invalid_argument("a budget is for " +
+                                presets_with([](const PresetTraits& t) { return t.takes_budget; }) +
+                                ", not " + std::string(traits.name));
   }
   if (s.budget > 0.0 && s.felt_points) {
     throw std::invalid_argument(
@@ -120,9 +121,10 @@ void validate(const PlanSettings& s) {
   // a loop may be half as long as a lap of the longest path, and must be one that is_loop() takes
   if (s.felt_weight > 0.0)
     require_between("draw_rate with felt_weight", s.draw_rate, 1.0, 500.0, "Hz");
-  if (s.felt_weight > 0.0 && s.preset != Preset::Best && s.preset != Preset::Fast) {
-    throw std::invalid_argument("felt_weight is for presets best and fast, not " +
-                                std::string(name_of(s.preset)));
+  if (s.felt_weight > 0.0 && !traits.is_fitted()) {
+    throw std::invalid_argument("felt_weight is for " +
+                                presets_with([](const PresetTraits& t) { return t.is_fitted(); }) +
+                                ", not " + std::string(traits.name));
   }
 }
 

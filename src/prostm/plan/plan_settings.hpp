@@ -2,31 +2,20 @@
 /// The planner's settings.
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
-#include <string_view>
 
 #include "prostm/core/settings.hpp"
 #include "prostm/plan/focus_speed.hpp"
 #include "prostm/plan/focus_widths.hpp"
 #include "prostm/plan/gain.hpp"
+#include "prostm/plan/preset.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {
 
-/// `paper`: exactly the paper's method; its violations of length and crossing are reported.
-/// `paper-valid`: the same, then made valid. `best`: the paths whose field is nearest to the
-/// target, always valid. `fast`: one short search of the same kind.
-enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast };
-
-template <>
-inline constexpr std::array<std::string_view, 4> kNames<Preset> = {"paper", "paper-valid", "best",
-                                                                   "fast"};
-
 /// Defaults are the paper's, or those of docs/design.md section "Planner" where the paper is
 /// silent.
 struct PlanSettings {
-  Preset preset = Preset::Best;
+  Preset preset = kDefaultPreset;
   int paths = 4;               ///< maximum number of paths, 1..8
   int clusters = 50;           ///< k of the weighted k-means, 1..50
   int samples = 20;            ///< N of a path, 8..64; preset best has fit_samples
@@ -72,6 +61,15 @@ struct PlanSettings {
   /// For presets best and fast: σ of each target by its position and tilt; if empty, `sigma`. Not a
   /// field in files.
   FocusWidths widths;
+  /// A preset that is not among those with names, in place of `preset`; it outlives the planner.
+  /// Not a field in files.
+  const PresetTraits* own_preset = nullptr;
+
+  const PresetTraits& traits() const {
+    return own_preset != nullptr ? *own_preset : traits_of(preset);
+  }
+  /// Points of a path that are moved: `samples` or fit_samples.
+  int moved_samples() const { return traits().moves_fit_samples ? fit_samples : samples; }
 
   /// Returns the σ that a target is planned with [m]. @pre the target is valid.
   double sigma_on(const TargetField& target) const;

@@ -33,14 +33,13 @@ bool has_counted_pressure(const TargetField& target, double maximum) {
 struct Planner::Scratch {
   Scratch(const PlanSettings& s, std::size_t cells)
       : settings(s),
-        preset(s.preset),
         max_cells(cells),
         raster(cells),
         kmeans(cells),
         refiner(CostSettings(s), s.paths, s.samples, s.refine_iterations) {
     x.reserve(static_cast<std::size_t>(s.paths) * static_cast<std::size_t>(s.samples));
-    if (preset == Preset::Best || preset == Preset::Fast) {
-      for (int patch = 0; patch < kMaxPatches; ++patch) fits.emplace_back(s, preset, cells);
+    if (s.traits().is_fitted()) {
+      for (int patch = 0; patch < kMaxPatches; ++patch) fits.emplace_back(s, cells);
     }
   }
 
@@ -65,14 +64,13 @@ struct Planner::Scratch {
               PlanStats& stats) const;
 
   PlanSettings settings;
-  Preset preset;
   std::size_t max_cells;
   PressureRaster raster;
   WeightedKMeans kmeans;
   Clusters clusters;
   DistanceTable distance;
   Refiner refiner;
-  std::vector<FitPlanner> fits;  // one for each patch, for the presets best and fast
+  std::vector<FitPlanner> fits;  // one for each patch, of a fitted preset
   // samples of the paths, one path after the other, heaviest first [mm from the origin]
   std::vector<Vec2> x;
 };
@@ -190,7 +188,7 @@ PlanStatus Planner::Scratch::plan_patch(const TargetField& target, double highes
   stats.cost += refined.cost;
   stats.refine_iterations += refined.iterations;
   stats.cost_evaluations += refined.evaluations;
-  if (preset == Preset::PaperValid) {
+  if (settings.traits().makes_valid) {
     const int kept = make_valid(x, settings.samples, kMmPerMetre * settings.max_length());
     x.resize(static_cast<std::size_t>(kept) * static_cast<std::size_t>(settings.samples));
   }

@@ -33,7 +33,7 @@ Advice coarser_grid(const WorkTime& work, const PipelineSettings& settings) {
 
 Advice less_to_plan(const PipelineSettings& settings) {
   const bool of_paths = settings.method == Method::ProStm;
-  if (of_paths && settings.plan.preset != Preset::Fast) return {AdviceKind::FastPreset};
+  if (of_paths && settings.plan.preset != kCheapestPreset) return {AdviceKind::FastPreset};
   const int paths = of_paths ? settings.plan.paths : settings.am.foci;
   return {paths > 1 ? AdviceKind::FewerPaths : AdviceKind::NoOption};
 }

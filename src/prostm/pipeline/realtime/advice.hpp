@@ -57,7 +57,7 @@ class Adviser {
     FluidSettings fluid;
     bool parts = false;
     Method method = Method::ProStm;
-    Preset preset = Preset::Best;
+    Preset preset = kDefaultPreset;
     int paths = 0;
     double world_rate = 0.0;
     bool operator==(const Key&) const = default;

@@ -84,9 +84,10 @@ std::vector<CheckedSetup> checked_setups(std::span<const std::string> scenes) {
   }
   std::ranges::sort(grids, std::greater{});
   grids.erase(std::unique(grids.begin(), grids.end()), grids.end());
-  std::vector<CheckedSetup> setups = {{kDefaultCells, Preset::Best}, {kDefaultCells, Preset::Fast}};
-  for (const int cells : grids) setups.push_back({cells, Preset::Best});
-  if (!grids.empty()) setups.push_back({grids.back(), Preset::Fast});
+  std::vector<CheckedSetup> setups = {{kDefaultCells, kDefaultPreset},
+                                      {kDefaultCells, kCheapestPreset}};
+  for (const int cells : grids) setups.push_back({cells, kDefaultPreset});
+  if (!grids.empty()) setups.push_back({grids.back(), kCheapestPreset});
   return setups;
 }
 

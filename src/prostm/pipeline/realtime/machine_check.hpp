@@ -14,7 +14,7 @@ namespace prostm {
 /// The options of `prostm run` that a trial changes.
 struct CheckedSetup {
   int cells = 0;  ///< --grid
-  Preset preset = Preset::Best;
+  Preset preset = kDefaultPreset;
 };
 /// "--grid 64 --preset best".
 std::string options_of(const CheckedSetup& setup);

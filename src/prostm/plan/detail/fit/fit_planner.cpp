@@ -30,13 +30,13 @@ constexpr int kMoveRounds = 4;         // rounds of points that are moved and th
 constexpr float kMovedBending = 0.1F;  // share of the weight of (P15) that they have
 constexpr int kPieces = 2;             // pieces of a segment once preset best has found its paths
 
-SearchSettings search_settings(const PlanSettings& s, Preset preset) {
+SearchSettings search_settings(const PlanSettings& s) {
   SearchSettings search;
-  search.samples = preset == Preset::Best ? s.fit_samples : s.samples;
+  search.samples = s.moved_samples();
   search.weak = s.weak_pressure;
   search.seed = static_cast<std::uint64_t>(s.seed);
   search.hysteresis = s.fit_hysteresis;
-  if (preset == Preset::Fast) {
+  if (s.traits().search == PathSearch::Short) {
     search.starts = 1;
     search.kicks = search.warm_starts = 0;
     search.fewer_evaluations = 0;
@@ -65,8 +65,8 @@ bool is_constant(const std::vector<double>& values) {
 
 /// Number of pieces of each segment of the search. The pressure is linear between samples, so it
 /// follows the field better the closer they lie.
-int pieces_of(Preset preset, int samples) {
-  return preset == Preset::Best && kPieces * samples <= kMaxPathPoints ? kPieces : 1;
+int pieces_of(const PlanSettings& s) {
+  return s.traits().halves_segments && kPieces * s.moved_samples() <= kMaxPathPoints ? kPieces : 1;
 }
 
 }  // namespace
@@ -85,11 +85,11 @@ FitSettings fit_settings(const PlanSettings& s) {
   return fit;
 }
 
-FitPlanner::FitPlanner(const PlanSettings& settings, Preset preset, std::size_t max_cells)
+FitPlanner::FitPlanner(const PlanSettings& settings, std::size_t max_cells)
     : settings_(settings),
-      search_(max_cells, fit_settings(settings), search_settings(settings, preset)),
+      search_(max_cells, fit_settings(settings), search_settings(settings)),
       felt_(settings.felt_weight > 0.0 ? std::make_unique<FeltStep>(settings) : nullptr),
-      pieces_(pieces_of(preset, search_settings(settings, preset).samples)) {}
+      pieces_(pieces_of(settings)) {}
 
 /// Bounds of (P18) for a path whose rendered pressure is `gain` times the effective one.
 /// @param speed of its focal point [m/s].

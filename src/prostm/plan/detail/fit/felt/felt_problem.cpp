@@ -22,7 +22,7 @@ std::size_t most_cells(const PlanSettings& settings) {
 }  // namespace
 
 std::size_t most_felt_points(const PlanSettings& settings) {
-  const int samples = settings.preset == Preset::Best ? settings.fit_samples : settings.samples;
+  const int samples = settings.moved_samples();
   const bool halved = settings.felt_points && 2 * samples <= kMaxPathPoints;
   return static_cast<std::size_t>(settings.paths) *
          static_cast<std::size_t>(halved ? 2 * samples : samples);

@@ -1,0 +1,70 @@
+#pragma once
+/// The presets of the planner: a row for each, which all code asks.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "prostm/core/text/names.hpp"
+
+namespace prostm {
+
+/// How the paths of a preset are found.
+enum class PathSearch : std::uint8_t {
+  Paper,  ///< the paper's method: tour, split, descent
+  Full,   ///< the nearest field, from several starts, with kicks
+  Short   ///< the same from one start, on coarser cells
+};
+
+struct PresetTraits {
+  std::string_view name;   ///< in files, on the command line and in Python
+  std::string_view title;  ///< on the page
+  PathSearch search = PathSearch::Paper;
+  bool makes_valid = false;        ///< of the paper's method: paths are cut and dropped until valid
+  bool takes_budget = false;       ///< PlanSettings::budget bounds its time
+  bool moves_fit_samples = false;  ///< moves fit_samples points of a path, not `samples`
+  bool halves_segments = false;    ///< plans have two pieces for each segment that is moved
+
+  /// Paths are fitted to the field: settings fit_… and felt_… apply, plans are always valid, and
+  /// PlanSettings::widths count, not sigma alone.
+  constexpr bool is_fitted() const { return search != PathSearch::Paper; }
+};
+
+/// `paper`: exactly the paper's method; its violations of length and crossing are reported.
+/// `paper-valid`: the same, then made valid. `best`: the paths whose field is nearest to the
+/// target, always valid. `fast`: one short search of the same kind.
+enum class Preset : std::uint8_t { Paper, PaperValid, Best, Fast };
+
+/// In the order of the enumerators.
+inline constexpr std::array<PresetTraits, 4> kPresetTraits = {{
+    {.name = "paper", .title = "Paper"},
+    {.name = "paper-valid", .title = "Paper, made valid", .makes_valid = true},
+    {.name = "best",
+     .title = "Best",
+     .search = PathSearch::Full,
+     .takes_budget = true,
+     .moves_fit_samples = true,
+     .halves_segments = true},
+    {.name = "fast", .title = "Fast", .search = PathSearch::Short},
+}};
+
+inline constexpr Preset kDefaultPreset = Preset::Best;
+inline constexpr Preset kCheapestPreset = Preset::Fast;
+
+constexpr const PresetTraits& traits_of(Preset preset) {
+  return kPresetTraits[static_cast<std::size_t>(preset)];
+}
+
+template <>
+inline constexpr auto kNames<Preset> = [] {
+  std::array<std::string_view, kPresetTraits.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kPresetTraits[i].name;
+  return names;
+}();
+
+/// Returns "preset best", "presets best and fast": those of which `has` holds.
+std::string presets_with(bool (*has)(const PresetTraits& traits));
+
+}  // namespace prostm

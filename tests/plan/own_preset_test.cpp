@@ -1,0 +1,75 @@
+/// A preset that prostm does not name: its traits alone decide how paths are planned.
+
+#include <gmock/gmock.h>
+
+#include "fields/fields.hpp"
+#include "plan_checks.hpp"
+#include "prostm/plan/planner.hpp"
+
+namespace prostm {
+namespace {
+
+using testing::HasSubstr;
+
+/// One start, but as many points as preset best, and a budget.
+constexpr PresetTraits kThrifty{.name = "thrifty",
+                                .title = "Thrifty",
+                                .search = PathSearch::Short,
+                                .takes_budget = true,
+                                .moves_fit_samples = true,
+                                .halves_segments = true};
+
+PlanSettings with(const PresetTraits& traits) {
+  PlanSettings settings;
+  settings.own_preset = &traits;
+  return settings;
+}
+
+TEST(OwnPreset, PlansByItsTraits) {
+  const PlanSettings settings = with(kThrifty);
+  for (const fields::Pattern pattern : fields::kPatterns) {
+    const Plan plan = test::plan_of(settings, fields::make(pattern, 0));
+    ASSERT_NO_FATAL_FAILURE(
+        test::expect_valid_plan(plan, 2 * settings.fit_samples, settings.max_length()));
+  }
+}
+
+TEST(OwnPreset, NothingButTheTraitsDistinguishesPresets) {
+  const TargetField field = fields::make(fields::kPatterns[1], 2);
+  for (std::size_t i = 0; i < kPresetTraits.size(); ++i) {
+    PlanSettings named;
+    named.preset = static_cast<Preset>(i);
+    const Plan expected = test::plan_of(named, field),
+               plan = test::plan_of(with(kPresetTraits[i]), field);
+    ASSERT_EQ(plan.paths.size(), expected.paths.size());
+    for (std::size_t k = 0; k < plan.paths.size(); ++k) {
+      EXPECT_EQ(plan.paths[k].points, expected.paths[k].points);
+      EXPECT_EQ(plan.paths[k].pressure, expected.paths[k].pressure);
+    }
+  }
+}
+
+TEST(OwnPreset, TakesTheSettingsOfItsTraits) {
+  PlanSettings settings = with(kThrifty);
+  settings.budget = 1e-3;
+  EXPECT_NO_THROW(validate(settings));
+  constexpr PresetTraits kPlain{.name = "plain", .title = "Plain"};
+  settings.own_preset = &kPlain;
+  try {
+    validate(settings);
+    ADD_FAILURE() << "a budget was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a budget is for preset best, not plain"));
+  }
+}
+
+TEST(Presets, AreListedByWhatTheyTake) {
+  EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.takes_budget; }), "preset best");
+  EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.is_fitted(); }),
+            "presets best and fast");
+  EXPECT_EQ(presets_with([](const PresetTraits&) { return true; }),
+            "presets paper, paper-valid, best and fast");
+}
+
+}  // namespace
+}  // namespace prostm
