@@ -7,7 +7,7 @@
 #include "prostm/core/require.hpp"
 #include "prostm/core/text/number_text.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 namespace prostm::python {
 namespace {

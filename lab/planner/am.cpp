@@ -8,7 +8,7 @@
 #include "planner/contenders.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/figure/figures.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/score.hpp"
 
 namespace prostm::bench {

@@ -6,7 +6,7 @@
 #include "fields/fields.hpp"
 #include "planner/as_played.hpp"
 #include "prostm/figure/figures.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 namespace prostm::bench {
 namespace {

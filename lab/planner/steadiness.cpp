@@ -10,8 +10,8 @@
 #include "fields/fields.hpp"
 #include "planner/as_played.hpp"
 #include "prostm/emit/detail/matching.hpp"
-#include "prostm/plan/closest_point.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/closest_point.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 namespace prostm::bench {
 namespace {

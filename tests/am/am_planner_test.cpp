@@ -10,7 +10,7 @@
 #include "plan/random_fields.hpp"
 #include "prostm/am/am_pressures.hpp"
 #include "prostm/core/random.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/target/pressure_share.hpp"
 #include "support/heap_guard.hpp"

@@ -10,7 +10,7 @@
 #include "fields/skin_shapes.hpp"
 #include "plan_checks.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/disturbance.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/textbook/textbook.hpp"

@@ -1,4 +1,4 @@
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "plan_checks.hpp"
 #include "prostm/core/random.hpp"
-#include "prostm/plan/closest_point.hpp"
+#include "prostm/plan/quasi_static/closest_point.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

@@ -12,7 +12,7 @@
 #include "prostm/plan/detail/fit/initial_loops.hpp"
 #include "prostm/plan/detail/fit/raster/cell_weights.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/target/pressure_share.hpp"
 #include "random_fields.hpp"
 #include "support/heap_guard.hpp"

@@ -9,7 +9,7 @@
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 namespace prostm {
 namespace {

@@ -21,7 +21,7 @@
 #include "prostm/io/plan_file.hpp"
 #include "prostm/pipeline/playable.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/felt_skill.hpp"
 #include "prostm/score/physical.hpp"
 #include "prostm/score/pooled.hpp"

@@ -1,6 +1,6 @@
 #include "plan/plan_pictures.hpp"
 
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 namespace prostm::app {
 

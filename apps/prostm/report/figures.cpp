@@ -6,7 +6,7 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/pipeline/runner.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "report/metrics_table.hpp"
 #include "report/report.hpp"
 #include "run/instant.hpp"

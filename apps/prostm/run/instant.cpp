@@ -6,7 +6,7 @@
 #include "prostm/emit/played.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/plan/lifted_plan.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 namespace prostm::app {
 

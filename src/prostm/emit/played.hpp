@@ -3,7 +3,7 @@
 
 #include "prostm/emit/emitter.hpp"
 #include "prostm/plan/plan.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {

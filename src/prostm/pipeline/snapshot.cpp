@@ -7,7 +7,7 @@
 #include <span>
 
 #include "prostm/emit/played.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 
 namespace prostm {
 namespace {

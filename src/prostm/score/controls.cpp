@@ -4,8 +4,8 @@
 
 #include "prostm/am/am_pressures.hpp"
 #include "prostm/core/random.hpp"
-#include "prostm/plan/closest_point.hpp"
 #include "prostm/plan/clustering.hpp"
+#include "prostm/plan/quasi_static/closest_point.hpp"
 #include "prostm/score/detail/bands.hpp"
 #include "prostm/score/detail/scorer.hpp"
 #include "prostm/score/pooled.hpp"

@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "prostm/plan/closest_point.hpp"
-#include "prostm/plan/quasi_static.hpp"
-#include "prostm/plan/quasi_static_pressure.hpp"
+#include "prostm/plan/quasi_static/closest_point.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static_pressure.hpp"
 #include "prostm/score/detail/bands.hpp"
 #include "prostm/score/detail/scorer.hpp"
 #include "prostm/score/pooled.hpp"

@@ -12,7 +12,7 @@
 #include "prostm/core/quantity.hpp"
 #include "prostm/plan/gain.hpp"
 #include "prostm/plan/plan.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {

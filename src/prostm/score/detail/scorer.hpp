@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "prostm/core/worker_pool.hpp"
-#include "prostm/plan/closest_point.hpp"
+#include "prostm/plan/quasi_static/closest_point.hpp"
 #include "prostm/score/detail/skin_blur.hpp"
 #include "prostm/score/score.hpp"
 

@@ -9,7 +9,7 @@
 #include "prostm/pipeline/pipeline.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/plan/planner.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/felt.hpp"
 #include "prostm/score/felt_skill.hpp"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "prostm/plan/detail/fit/raster/cell_tiles.hpp"
+#include "prostm/plan/detail/fit/raster/cell_tile.hpp"
 
 namespace prostm::planning {
 

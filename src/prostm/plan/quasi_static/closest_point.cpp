@@ -1,4 +1,4 @@
-#include "prostm/plan/closest_point.hpp"
+#include "prostm/plan/quasi_static/closest_point.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,24 +3,11 @@
 /// for foci.
 
 #include <span>
-#include <vector>
 
-#include "prostm/plan/gain.hpp"
-#include "prostm/plan/plan.hpp"
+#include "prostm/plan/quasi_static/quasi_static_pressure.hpp"
 #include "prostm/target/target_field.hpp"
 
 namespace prostm {
-
-/// Rendered pressures along a plan's segments that replace its own p_i, e.g. those that are played.
-/// Each segment of each path in turn, then each focus, has one or more values, evenly spaced from
-/// the segment's first point to its second.
-struct SegmentPressures {
-  std::vector<double> pressure;  ///< unit of the target
-  std::vector<std::size_t> end;  ///< end of each segment's values in `pressure`
-
-  /// Interpolates along a segment. @param along 0 at the segment's first point, 1 at its second.
-  double at(std::size_t segment, double along) const;
-};
 
 /// Computes p(x) = p_i/γ · exp(−‖x − x_i‖² / 2σ²), γ that of the path, with x_i the closest point
 /// to x over all segments of all paths of `patch`, and p_i linear between the samples of its

@@ -3,11 +3,23 @@
 
 #include <boost/container/static_vector.hpp>
 #include <cstddef>
+#include <vector>
 
-#include "prostm/plan/closest_point.hpp"
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/gain.hpp"
+#include "prostm/plan/quasi_static/closest_point.hpp"
 
 namespace prostm {
+
+/// Rendered pressures along a plan's segments that replace its own p_i, e.g. those that are played.
+/// Each segment of each path in turn, then each focus, has one or more values, evenly spaced from
+/// the segment's first point to its second.
+struct SegmentPressures {
+  std::vector<double> pressure;  ///< unit of the target
+  std::vector<std::size_t> end;  ///< end of each segment's values in `pressure`
+
+  /// Interpolates along a segment. @param along 0 at the segment's first point, 1 at its second.
+  double at(std::size_t segment, double along) const;
+};
 
 /// The pressures of quasi_static_field(), point by point. Refers to `instead`. Allocates nothing.
 class QuasiStaticPressure {

@@ -1,9 +1,7 @@
-#include "prostm/plan/quasi_static.hpp"
+#include "prostm/plan/quasi_static/quasi_static_pressure.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include "prostm/plan/quasi_static_pressure.hpp"
 
 namespace prostm {
 
@@ -36,20 +34,6 @@ double QuasiStaticPressure::at(const ClosestPoint& nearest) const {
   const double pressure =
       instead_ != nullptr ? instead_->at(origin.number, nearest.along) : nearest.pressure;
   return pressure / origin.gain * std::exp(exponent_ * nearest.distance2);
-}
-
-void quasi_static_field(const Plan& plan, int patch, const TargetField& raster, double sigma,
-                        const GainLaw& gain, std::span<double> out,
-                        const SegmentPressures* instead) {
-  PathSegments segments(plan, patch);
-  if (segments.empty()) {
-    std::fill(out.begin(), out.end(), 0.0);
-    return;
-  }
-  const QuasiStaticPressure pressure(plan, patch, sigma, gain, instead);
-  segments.for_closest(raster, 0, raster.rows, [&](std::size_t cell, const ClosestPoint& nearest) {
-    out[cell] = pressure.at(nearest);
-  });
 }
 
 }  // namespace prostm
