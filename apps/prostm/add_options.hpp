@@ -80,7 +80,13 @@ void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::s
 /// A command of the design that does not exist yet answers with a sentence, not with a usage error.
 void add_unbuilt(CLI::App& app, const std::string& name, const std::string& help);
 
-/// prostm study, with its own commands.
+// The commands of each group of the help page, with their options; a group has a folder of its own.
+void add_run_commands(CLI::App& app, Work& work);
+void add_plan_commands(CLI::App& app, Work& work);
+void add_field_commands(CLI::App& app, Work& work);
 void add_study(CLI::App& app, Work& work);
+void add_devices_commands(CLI::App& app, Work& work);
+void add_report_commands(CLI::App& app, Work& work);
+void add_bench_commands(CLI::App& app, Work& work);
 
 }  // namespace prostm::app

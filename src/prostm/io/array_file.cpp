@@ -119,20 +119,20 @@ TransducerArray array_from_json(std::string_view text, const std::string& file) 
   return array;
 }
 
-TransducerArray array_from_name(const std::string& name) {
+TransducerArray array_from_name(const std::string& name, std::span<const ArrayKind> kinds) {
   std::vector<std::string> names;
-  for (const ArrayKind& kind : array_kinds()) {
+  for (const ArrayKind& kind : kinds) {
     if (name == kind.name) return kind.make();
     names.emplace_back(kind.name);
   }
   if (name.ends_with(".json")) return read_array(name);
-  throw InputError(fmt::format("array {} is unknown; it must be {}{}", name, array_choices(),
-                               did_you_mean(name, names)));
+  throw InputError(fmt::format("array {} is unknown; it must be {}{}", name,
+                               array_choices({}, kinds), did_you_mean(name, names)));
 }
 
-std::string array_choices(const std::string& of_default) {
+std::string array_choices(const std::string& of_default, std::span<const ArrayKind> kinds) {
   std::string choices;
-  for (const ArrayKind& kind : array_kinds())
+  for (const ArrayKind& kind : kinds)
     choices += kind.name + (choices.empty() ? of_default : "") + ", ";
   return choices + "or an array file (.json)";
 }

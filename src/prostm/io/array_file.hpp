@@ -1,6 +1,7 @@
 #pragma once
 /// Transducer arrays in files: prostm-array/1.
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,10 +18,12 @@ std::string array_to_json(const TransducerArray& array);
 TransducerArray array_from_json(std::string_view text, const std::string& file);
 /// The same from a file. @throws InputError also when it cannot be read.
 TransducerArray read_array(const std::string& path);
-/// An array of array_kinds(), or a file (.json). @throws InputError also for another name.
-TransducerArray array_from_name(const std::string& name);
+/// An array of `kinds`, or a file (.json). @throws InputError also for another name.
+TransducerArray array_from_name(const std::string& name,
+                                std::span<const ArrayKind> kinds = array_kinds());
 /// Lists the values of array_from_name(): "usx (default), autd3, or an array file (.json)".
-/// @param of_default follows the default's name.
-std::string array_choices(const std::string& of_default = "");
+/// @param of_default follows the name of the first, the default.
+std::string array_choices(const std::string& of_default = "",
+                          std::span<const ArrayKind> kinds = array_kinds());
 
 }  // namespace prostm

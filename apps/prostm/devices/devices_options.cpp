@@ -1,0 +1,66 @@
+/// The options of prostm devices, levels and selftest.
+
+#include "add_options.hpp"
+#include "common.hpp"
+
+namespace prostm::app {
+namespace {
+
+void add_devices(CLI::App& app, Work& work) {
+  auto* command =
+      app.add_subcommand("devices", "what can be driven from here, what is found, what is missing");
+  auto o = std::make_shared<DevicesOptionsGiven>();
+  add_name(*command, "names", o->names,
+           "look at these alone, also on other machines: a device with its address, "
+           "leap://HOST:PORT, or openxr; default: all that this machine has");
+  add_json(*command, o->files, o->json);
+  command->add_flag("--budget", o->budget, "what a link to AUTD3 carries: a table, nothing else");
+  command->footer("Example:\n  prostm devices");
+  command->callback([o, &work] { work = {&o->files, [o] { return devices_command(*o); }}; });
+}
+
+void add_levels(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand(
+      "levels",
+      "how loud an array can be, at focal points and at the head, beside caps and limits");
+  auto o = std::make_shared<LevelsOptionsGiven>();
+  add_array(*command, o->common);
+  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+            "settings, of which [safety] has the caps (docs/safety.md)");
+  add_json(*command, o->common.files, o->common.json);
+  command->footer("Example:\n  prostm levels --array autd3");
+  command->callback([o, &work] { work = {&o->common.files, [o] { return levels_command(*o); }}; });
+}
+
+void add_selftest(CLI::App& app, Work& work) {
+  auto* command = app.add_subcommand(
+      "selftest", "what is connected, and whether a hand can feel it: asks before it plays");
+  auto o = std::make_shared<SelftestOptionsGiven>();
+  add_input(*command, o->common.files, "--settings", o->common.settings_file,
+            "settings of any stage, a TOML file (docs/files.md)");
+  add_json(*command, o->common.files, o->common.json);
+  add_device(*command, o->common);
+  add_array(*command, o->common,
+            array_choices() + "; default: the device's, or " + array_kinds().front().name);
+  add_figure(*command, o->common, "a picture of the array, seen from above (.png, .svg or .pdf)");
+  command->add_option("--seconds", o->seconds, "of each figure, 0.2 to 60")->capture_default_str();
+  command->add_option("--height-mm", o->height_mm, "of the figures over the array, 50 to 500")
+      ->capture_default_str();
+  command->add_option("--level", o->level, "largest intensity, 0.05 to 1")->capture_default_str();
+  auto* yes = command->add_flag("--yes", o->yes, "play without being asked");
+  command->add_flag("--silent", o->silent, "connect, and play nothing")->excludes(yes);
+  command->footer("Example:\n  prostm selftest --silent --figure array.png");
+  command->callback([o, &work] {
+    work = {&o->common.files, [o] { return selftest_command(*o); }};
+  });
+}
+
+}  // namespace
+
+void add_devices_commands(CLI::App& app, Work& work) {
+  add_devices(app, work);
+  add_levels(app, work);
+  add_selftest(app, work);
+}
+
+}  // namespace prostm::app
