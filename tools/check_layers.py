@@ -21,12 +21,20 @@ MAY_LOOK_INSIDE = ("tests", "bench", "lab")
 STAGES = "src/prostm/"
 OF_ALL = (STAGES + "prostm.hpp", STAGES + "version.hpp", STAGES + "commit.hpp")
 
-# Rooms inside a stage: a folder of it -> folders and headers of the stage that it must not include.
-ROOMS = {
-    "plan/detail/paper": ("plan/detail/fit", "plan/planner.hpp"),
-    "plan/detail/fit": ("plan/detail/paper", "plan/planner.hpp"),
-    "plan/detail": ("plan/detail/paper", "plan/detail/fit", "plan/planner.hpp"),
+# Rooms, the folders inside a stage, by rank: a room includes rooms of lower ranks, itself with its subfolders, and the
+# headers directly in the stage's folder. detail/ of a stage is for its rooms, too.
+RANKS = {
+    "acoustics": (("acoustics/array",), ("acoustics/field",), ("acoustics/focus", "acoustics/skin")),
+    "core": (("core/file",), ("core/text",)),
+    "device": (("device/detail",), ("device/safety",),
+               ("device/simulated", "device/stream", "device/autd3", "device/ultraleap"), ("device/autd3_sdk",)),
+    "io": (("io/detail",), ("io/field", "io/hand")),
+    "pipeline": (("pipeline/smoke",), ("pipeline/realtime",)),
+    "plan": (("plan/quasi_static", "plan/detail"), ("plan/detail/paper", "plan/detail/fit")),
 }
+RANK_OF = {room: rank for ranks in RANKS.values() for rank, rooms in enumerate(ranks) for room in rooms}
+# Headers of a stage that use its rooms, so no room includes them.
+ABOVE_ROOMS = ("plan/planner.hpp", "device/device_kinds.hpp")
 
 # Only these may use threads, mutexes and clocks.
 MAY_USE_THREADS = tuple(STAGES + place for place in
@@ -97,8 +105,18 @@ def without_text(source):
 
 
 def room_of(path):
-    """Returns the innermost folder of ROOMS that holds a file or header, or None; `path` begins with the stage."""
-    return max((room for room in ROOMS if path.startswith(room + "/")), key=len, default=None)
+    """Returns the innermost room that holds a file or header, or None; `path` begins with the stage."""
+    return max((room for room in RANK_OF if path.startswith(room + "/")), key=len, default=None)
+
+
+def closed_to(room, header):
+    """Returns the header or the room of it that files in `room` must not include, or None; `header` is of the same stage."""
+    if room is None:
+        return None
+    if header in ABOVE_ROOMS:
+        return header
+    other = room_of(header)
+    return other if other not in (None, room) and RANK_OF[other] >= RANK_OF[room] else None
 
 
 def check_stage_include(place, stage, header, layers):
@@ -109,10 +127,8 @@ def check_stage_include(place, stage, header, layers):
         return f"{stage} must not include {layer}: it may include {', '.join(sorted(set(allowed)))}"
     if layer != stage and "/detail/" in header:
         return f'"prostm/{header}" is private to {layer}'
-    for closed in ROOMS.get(room_of(place), ()):
-        if header == closed or header.startswith(closed + "/") and room_of(header) == closed:
-            return f"{room_of(place)} must not include {closed}"
-    return None
+    closed = closed_to(room_of(place), header) if layer == stage else None
+    return f"{room_of(place)} must not include {closed}" if closed else None
 
 
 def check_program_include(top, header, layers, programs):
