@@ -13,12 +13,23 @@ constexpr float kShorter = 0.4F;  // a step that does not lower the cost is cut 
 
 }  // namespace
 
-QuasiNewton::QuasiNewton(std::size_t most_variables) {
-  const auto most = static_cast<Eigen::Index>(most_variables);
-  for (auto* list : {&step_, &change_}) {
-    for (Vector& v : *list) v.setZero(most);
+struct QuasiNewton::Operations {
+  Eigen::Index variables;
+
+  float dot(const Vector& a, const Vector& b) const {
+    return a.head(variables).dot(b.head(variables));
   }
-  for (Vector* v : {&x_, &gradient_, &trial_, &trial_gradient_, &direction_}) v->setZero(most);
+  void add(Vector& v, float factor, const Vector& w) const {
+    v.head(variables) += factor * w.head(variables);
+  }
+  void scale(Vector& v, float factor) const { v.head(variables) *= factor; }
+  void precondition(Vector& /*v*/) const {}
+};
+
+QuasiNewton::QuasiNewton(std::size_t most_variables)
+    : memory_(Vector::Zero(static_cast<Eigen::Index>(most_variables))) {
+  for (Vector* v : {&x_, &gradient_, &trial_, &trial_gradient_, &direction_})
+    v->setZero(static_cast<Eigen::Index>(most_variables));
 }
 
 float QuasiNewton::evaluate(const Cost& cost, Vector& x, Vector& gradient) {
@@ -26,28 +37,9 @@ float QuasiNewton::evaluate(const Cost& cost, Vector& x, Vector& gradient) {
   return cost({x.data(), n}, {gradient.data(), n});
 }
 
-/// The two loops over the remembered steps, oldest last in the first one.
 void QuasiNewton::find_direction() {
-  std::array<float, kMemory> along{};
-  auto direction = head(direction_);
-  direction = -head(gradient_);
-  for (std::size_t i = 0; i < remembered_; ++i) {
-    along[i] = head(step_[i]).dot(direction) / curvature_[i];
-    direction -= along[i] * head(change_[i]);
-  }
-  if (remembered_ > 0) direction *= curvature_[0] / head(change_[0]).squaredNorm();
-  for (std::size_t i = remembered_; i-- > 0;) {
-    const float against = head(change_[i]).dot(direction) / curvature_[i];
-    direction += (along[i] - against) * head(step_[i]);
-  }
-}
-
-/// Puts the last step, which lies in the spare place, to the front.
-void QuasiNewton::remember() {
-  std::rotate(step_.begin(), step_.end() - 1, step_.end());
-  std::rotate(change_.begin(), change_.end() - 1, change_.end());
-  std::rotate(curvature_.begin(), curvature_.end() - 1, curvature_.end());
-  remembered_ = std::min(remembered_ + 1, kMemory);
+  head(direction_) = -head(gradient_);
+  memory_.find_direction(Operations{variables_}, direction_);
 }
 
 /// Goes along the direction, a shorter way each time until the cost falls enough. @param share of
@@ -60,11 +52,12 @@ bool QuasiNewton::advance(const Cost& cost, float share, int evaluations, int& u
     const float value = evaluate(cost, trial_, trial_gradient_);
     ++used;
     if (!(value <= value_ + kSufficient * share * slope)) continue;
-    auto step = head(step_.back()), change = head(change_.back());
+    auto step = head(memory_.step()), change = head(memory_.change());
     step = head(trial_) - head(x_);
     change = head(trial_gradient_) - head(gradient_);
-    curvature_.back() = step.dot(change);
-    if (curvature_.back() > kLeastCurvature * step.norm() * change.norm()) remember();
+    const float curvature = step.dot(change);
+    if (curvature > kLeastCurvature * step.norm() * change.norm())
+      memory_.keep(curvature, curvature / change.squaredNorm());
     x_.swap(trial_);
     gradient_.swap(trial_gradient_);
     value_ = value;
@@ -75,7 +68,7 @@ bool QuasiNewton::advance(const Cost& cost, float share, int evaluations, int& u
 
 float QuasiNewton::begin(const Cost& cost, std::span<const float> x) {
   variables_ = static_cast<Eigen::Index>(x.size());
-  remembered_ = 0;
+  memory_.forget();
   std::copy(x.begin(), x.end(), x_.begin());
   return value_ = evaluate(cost, x_, gradient_);
 }
@@ -85,7 +78,7 @@ int QuasiNewton::run(const Cost& cost, float first_step, int evaluations, std::s
   do {
     find_direction();
     const float share =
-        remembered_ > 0 ? 1.0F : first_step / std::max(head(direction_).norm(), kTiny);
+        memory_.is_empty() ? first_step / std::max(head(direction_).norm(), kTiny) : 1.0F;
     if (!advance(cost, share, evaluations, used)) break;
   } while (used < evaluations);
   std::copy_n(x_.begin(), x.size(), x.begin());

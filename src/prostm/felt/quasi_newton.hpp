@@ -2,9 +2,10 @@
 /// L-BFGS [P-5] for a few hundred variables.
 
 #include <Eigen/Core>
-#include <array>
 #include <functional>
 #include <span>
+
+#include "prostm/core/lbfgs_memory.hpp"
 
 namespace prostm {
 
@@ -28,17 +29,15 @@ class QuasiNewton {
  private:
   static constexpr std::size_t kMemory = 6;
   using Vector = Eigen::VectorXf;
+  struct Operations;
   void find_direction();
-  void remember();
   auto head(Vector& v) { return v.head(variables_); }
   float evaluate(const Cost& cost, Vector& x, Vector& gradient);
   bool advance(const Cost& cost, float share, int evaluations, int& used);
 
   // of the first variables_ entries
   Eigen::Index variables_ = 0;
-  std::array<Vector, kMemory + 1> step_, change_;  // the newest at the front, one spare
-  std::array<float, kMemory + 1> curvature_{};     // step · change
-  std::size_t remembered_ = 0;
+  LbfgsMemory<Vector, kMemory> memory_;
   Vector x_, gradient_, trial_, trial_gradient_, direction_;
   float value_ = 0.0F;
 };

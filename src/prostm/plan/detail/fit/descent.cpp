@@ -60,66 +60,62 @@ void Descent::solve(const CellTiles& cells, Fit& fit) {
                fit.reconstruction);
 }
 
-float Descent::dot(const Loops& loops, const Plane& a, const Plane& b) {
-  // four partial sums: a fixed order that vectorises
-  std::array<float, 4> sum{};
-  for (std::size_t i = 0; i < loops.nodes(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) sum[k] += a.x[i + k] * b.x[i + k] + a.y[i + k] * b.y[i + k];
-  }
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
+struct Descent::Operations {
+  const Loops& loops;
+  const decltype(Descent::taps_)& taps;
 
-void Descent::precondition(const Loops& loops, Plane& v) const {
-  const std::size_t n = loops.nodes(), lanes = static_cast<std::size_t>(loops.lanes);
-  const std::size_t half = static_cast<std::size_t>(loops.samples) / 2;
-  alignas(64) std::array<float, 3 * kMaxLoopNodes> around;
-  for (NodeArray* const values : {&v.x, &v.y}) {
-    for (std::size_t copy = 0; copy < 3; ++copy) {
-      std::copy_n(values->begin(), n, around.begin() + static_cast<std::ptrdiff_t>(copy * n));
+  float dot(const Plane& a, const Plane& b) const {
+    // four partial sums: a fixed order that vectorises
+    std::array<float, 4> sum{};
+    for (std::size_t i = 0; i < loops.nodes(); i += 4) {
+      for (std::size_t k = 0; k < 4; ++k)
+        sum[k] += a.x[i + k] * b.x[i + k] + a.y[i + k] * b.y[i + k];
     }
-    const float* const centre = around.data() + n;
-    for (std::size_t i = 0; i < n; ++i) (*values)[i] = taps_[0] * centre[i];
-    for (std::size_t d = 1; d <= half; ++d) {
-      const float* const left = centre - d * lanes;
-      const float* const right = centre + d * lanes;
-      for (std::size_t i = 0; i < n; ++i) (*values)[i] += taps_[d] * (left[i] + right[i]);
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  }
+  void add(Plane& v, float factor, const Plane& w) const {
+    for (std::size_t i = 0; i < loops.nodes(); ++i) {
+      v.x[i] += factor * w.x[i];
+      v.y[i] += factor * w.y[i];
     }
   }
-}
+  void scale(Plane& v, float factor) const {
+    for (std::size_t i = 0; i < loops.nodes(); ++i) {
+      v.x[i] *= factor;
+      v.y[i] *= factor;
+    }
+  }
+  /// A circulant along each path.
+  void precondition(Plane& v) const {
+    const std::size_t n = loops.nodes(), lanes = static_cast<std::size_t>(loops.lanes);
+    const std::size_t half = static_cast<std::size_t>(loops.samples) / 2;
+    alignas(64) std::array<float, 3 * kMaxLoopNodes> around;
+    for (NodeArray* const values : {&v.x, &v.y}) {
+      for (std::size_t copy = 0; copy < 3; ++copy) {
+        std::copy_n(values->begin(), n, around.begin() + static_cast<std::ptrdiff_t>(copy * n));
+      }
+      const float* const centre = around.data() + n;
+      for (std::size_t i = 0; i < n; ++i) (*values)[i] = taps[0] * centre[i];
+      for (std::size_t d = 1; d <= half; ++d) {
+        const float* const left = centre - d * lanes;
+        const float* const right = centre + d * lanes;
+        for (std::size_t i = 0; i < n; ++i) (*values)[i] += taps[d] * (left[i] + right[i]);
+      }
+    }
+  }
+};
 
 void Descent::find_direction(const Loops& loops, const Reconstruction& at) {
-  // the two-loop recursion [Nocedal 1980]
-  const std::size_t n = loops.nodes();
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < loops.nodes(); ++i) {
     direction_.x[i] = -at.gradient_x[i];
     direction_.y[i] = -at.gradient_y[i];
   }
-  std::array<float, kMemory + 1> alpha{};  // by slot
-  for (std::size_t m = remembered_; m-- > 0;) {
-    const std::size_t k = order_[m];
-    alpha[k] = inverse_curvature_[k] * dot(loops, step_[k], direction_);
-    for (std::size_t i = 0; i < n; ++i) {
-      direction_.x[i] -= alpha[k] * change_[k].x[i];
-      direction_.y[i] -= alpha[k] * change_[k].y[i];
-    }
-  }
-  precondition(loops, direction_);
-  for (std::size_t i = 0; i < n; ++i) {
-    direction_.x[i] *= scale_;
-    direction_.y[i] *= scale_;
-  }
-  for (std::size_t m = 0; m < remembered_; ++m) {
-    const std::size_t k = order_[m];
-    const float beta = alpha[k] - inverse_curvature_[k] * dot(loops, change_[k], direction_);
-    for (std::size_t i = 0; i < n; ++i) {
-      direction_.x[i] += beta * step_[k].x[i];
-      direction_.y[i] += beta * step_[k].y[i];
-    }
-  }
+  memory_.find_direction(Operations{loops, taps_}, direction_);
 }
 
 void Descent::remember(const Fit& from, const Fit& to) {
-  Plane &step = step_[spare_], &change = change_[spare_];
+  const Operations operations{from.loops, taps_};
+  Plane &step = memory_.step(), &change = memory_.change();
   for (std::size_t i = 0; i < from.loops.nodes(); ++i) {
     step.x[i] = to.loops.x[i] - from.loops.x[i];
     step.y[i] = to.loops.y[i] - from.loops.y[i];
@@ -127,29 +123,13 @@ void Descent::remember(const Fit& from, const Fit& to) {
     change.y[i] = to.reconstruction.gradient_y[i] - from.reconstruction.gradient_y[i];
   }
   // remembering a step of negative curvature would make the direction point uphill
-  const float curvature = dot(from.loops, step, change);
-  if (curvature <= kLeastCurvature * dot(from.loops, change, change)) return;
-  inverse_curvature_[spare_] = 1.0F / curvature;
+  const float curvature = operations.dot(step, change);
+  if (curvature <= kLeastCurvature * operations.dot(change, change)) return;
   Plane& scaled = direction_;
   std::copy_n(change.x.begin(), from.loops.nodes(), scaled.x.begin());
   std::copy_n(change.y.begin(), from.loops.nodes(), scaled.y.begin());
-  precondition(from.loops, scaled);
-  scale_ = curvature / dot(from.loops, change, scaled);
-
-  // the oldest entry makes room
-  const std::size_t taken = spare_;
-  if (remembered_ == kMemory) {
-    spare_ = order_[0];
-    std::rotate(order_.begin(), order_.begin() + 1, order_.end());
-  } else {
-    spare_ = ++remembered_;
-  }
-  order_[remembered_ - 1] = taken;
-}
-
-void Descent::forget() {
-  remembered_ = spare_ = 0;
-  scale_ = 1.0F;
+  operations.precondition(scaled);
+  memory_.keep(curvature, curvature / operations.dot(change, scaled));
 }
 
 namespace {
@@ -170,7 +150,7 @@ void copy(const Fit& from, Fit& to) {
 }  // namespace
 
 int Descent::run(const CellTiles& cells, Fit& fit, int evaluations, const Deadline& deadline) {
-  forget();
+  memory_.forget();
   evaluate(cells, fit);
   int used = 1;
   trial_.loops.samples = fit.loops.samples;
@@ -187,13 +167,13 @@ int Descent::run(const CellTiles& cells, Fit& fit, int evaluations, const Deadli
           std::max(longest2, direction_.x[i] * direction_.x[i] + direction_.y[i] * direction_.y[i]);
     }
     if (!(slope < -kLeastSlope)) {
-      if (remembered_ == 0) return used;
-      forget();
+      if (memory_.is_empty()) return used;
+      memory_.forget();
       continue;
     }
-    const float most = remembered_ == 0 ? kFirstStep : kLongestStep;
+    const float most = memory_.is_empty() ? kFirstStep : kLongestStep;
     float length = std::min(1.0F, most / std::sqrt(longest2));
-    if (remembered_ == 0) length = most / std::sqrt(longest2);
+    if (memory_.is_empty()) length = most / std::sqrt(longest2);
     bool lower = false;
     for (int halving = 0; halving <= kHalvings && may_go_on(); ++halving, length *= 0.4F) {
       for (std::size_t i = 0; i < fit.loops.nodes(); ++i) {
@@ -206,8 +186,8 @@ int Descent::run(const CellTiles& cells, Fit& fit, int evaluations, const Deadli
       if (lower) break;
     }
     if (!lower) {
-      if (remembered_ == 0) return used;
-      forget();
+      if (memory_.is_empty()) return used;
+      memory_.forget();
       continue;
     }
     remember(fit, trial_);

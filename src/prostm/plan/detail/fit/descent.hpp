@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "prostm/core/lbfgs_memory.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/plan/detail/fit/loop_shape.hpp"
 #include "prostm/plan/detail/fit/loops.hpp"
@@ -50,24 +51,18 @@ class Descent {
   struct Plane {
     alignas(64) NodeArray x, y;
   };
+  /// On the nodes in use.
+  struct Operations;
   void evaluate_near(const CellTiles& cells, Fit& fit);
   void find_direction(const Loops& loops, const Reconstruction& at);
-  void precondition(const Loops& loops, Plane& v) const;
   void remember(const Fit& from, const Fit& to);
-  void forget();
-  static float dot(const Loops& loops, const Plane& a, const Plane& b);
 
   FitSettings settings_;
   ReconstructFunction reconstruct_;
   ReconstructionScratch scratch_;
   SpacedPairs pairs_;
   std::array<float, kMaxPathPoints / 2 + 1> taps_{};  // taps of the circulant preconditioner
-  // the last steps, the changes of the gradient over them, and one spare slot of each
-  std::array<Plane, kMemory + 1> step_, change_;
-  std::array<float, kMemory + 1> inverse_curvature_{};
-  std::array<std::size_t, kMemory> order_{};
-  std::size_t remembered_ = 0, spare_ = 0;
-  float scale_ = 1.0F;
+  LbfgsMemory<Plane, kMemory> memory_;
   Plane direction_;
   Fit trial_;
 };

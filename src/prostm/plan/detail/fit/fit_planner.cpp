@@ -85,10 +85,11 @@ FitSettings fit_settings(const PlanSettings& s) {
   return fit;
 }
 
-FitPlanner::FitPlanner(const PlanSettings& settings, std::size_t max_cells)
+FitPlanner::FitPlanner(const PlanSettings& settings, std::size_t max_cells,
+                       const FeltTuning& tuning)
     : settings_(settings),
       search_(max_cells, fit_settings(settings), search_settings(settings)),
-      felt_(settings.felt_weight > 0.0 ? std::make_unique<FeltStep>(settings) : nullptr),
+      felt_(settings.felt_weight > 0.0 ? std::make_unique<FeltStep>(settings, tuning) : nullptr),
       pieces_(pieces_of(settings)) {}
 
 /// Bounds of (P18) for a path whose rendered pressure is `gain` times the effective one.

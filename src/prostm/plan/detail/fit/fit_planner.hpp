@@ -23,7 +23,7 @@ FitSettings fit_settings(const PlanSettings& settings);
 /// plan_patch() allocates and throws nothing.
 class FitPlanner {
  public:
-  FitPlanner(const PlanSettings& settings, std::size_t max_cells);
+  FitPlanner(const PlanSettings& settings, std::size_t max_cells, const FeltTuning& tuning = {});
 
   /// Forgets the last plan.
   void reset() {

@@ -1,0 +1,22 @@
+/// The numbers of the felt step without a derivation: each halved and doubled.
+
+#include "felt_step/tuning.hpp"
+#include "program.hpp"
+
+int main(int argc, char** argv) {
+  using namespace prostm;
+  CLI::App app("the numbers of the felt step, each halved and doubled");
+  int fields = 240, fields_with_points = 48;
+  app.add_option("--fields", fields, "fields whose pressures are chosen")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app.add_option("--point-fields", fields_with_points, "fields on which points move, too")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  return bench::run(app, argc, argv, [&] {
+    std::vector<bench::Row> rows;
+    bench::compare_tunings(fields, false, rows);
+    bench::compare_tunings(fields_with_points, true, rows);
+    return rows;
+  });
+}
