@@ -7,7 +7,7 @@ usage() {
 usage: tools/bare_library.sh [--folder DIR] [--keep]
 
 Builds the commit that is checked out here with PROSTM_PROGRAM=OFF in a minimal Debian 12, installs it, deletes sources
-and build, and builds and runs examples/01_plan.cpp in the CMake project of five lines that docs/cpp.md shows.
+and build, and builds and runs examples/01_plan.cpp in the CMake project of five lines that docs/guides/cpp.md shows.
 tools/bare_debian.sh sets the Debian up: it takes the options, and needs root, debootstrap and a Debian mirror.
 
 example: tools/bare_library.sh --folder /var/tmp/bare
@@ -28,5 +28,5 @@ exec "$(dirname "$0")/bare_debian.sh" "$@" \
   'cmake --build build' \
   'cmake --install build' \
   'mkdir -p /srv/own && cp examples/01_plan.cpp /srv/own' \
-  "sed -n '/^\`\`\`cmake/,/^\`\`\`/ { /^\`/!p }' docs/cpp.md >/srv/own/CMakeLists.txt && rm -r src build" \
+  "sed -n '/^\`\`\`cmake/,/^\`\`\`/ { /^\`/!p }' docs/guides/cpp.md >/srv/own/CMakeLists.txt && rm -r src build" \
   'cd /srv/own && cmake -G Ninja -B build && cmake --build build && ./build/own'

@@ -15,7 +15,7 @@ void add_json(CLI::App& command, Files& files, std::string& json) {
 
 void add_common(CLI::App& command, CommonOptions& o) {
   add_input(command, o.files, "--settings", o.settings_file,
-            "settings of any stage, a TOML file (docs/files.md)");
+            "settings of any stage, a TOML file (docs/reference/files.md)");
   add_json(command, o.files, o.json);
   command.add_option("--seed", o.seed, "of everything that is drawn at random");
   add_name(command, "--preset", o.preset,
@@ -24,7 +24,7 @@ void add_common(CLI::App& command, CommonOptions& o) {
   command.add_option("--budget-ms", o.budget_ms,
                      "time for a plan of preset best; 0: a fixed amount of work");
   add_name(command, "--method", o.method,
-           "pro-stm (default): paths, or am: foci that stand still, modulated (docs/am.md)");
+           "pro-stm (default): paths, or am: foci that stand still, modulated (docs/guides/am.md)");
 }
 
 void add_array(CLI::App& command, CommonOptions& o, const std::string& help) {
@@ -69,7 +69,7 @@ void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,
   add_input_or_name(
       command, common.files, "--hand", hand, names_recording,
       "a recording (.hands.jsonl, or Leap JSON), scripted, study, leap://HOST:PORT, openxr, or "
-      "page (docs/hands.md)",
+      "page (docs/guides/hands.md)",
       hint_for_hand)
       ->capture_default_str();
   command.add_option("--hand-size", hand_size,

@@ -1,5 +1,5 @@
-// Receives prostm-stream/1 (docs/stream.md), prints statistics and writes samples to files: C++17
-// without dependencies, on Linux and on Windows. prostm_receiver.hpp lies beside it.
+// Receives prostm-stream/1 (docs/devices/stream.md), prints statistics and writes samples to files:
+// C++17 without dependencies, on Linux and on Windows. prostm_receiver.hpp lies beside it.
 //
 //   c++ -std=c++17 -O2 -pthread prostm_receiver.cpp -o prostm_receiver
 //   x86_64-w64-mingw32-g++ -std=c++17 -O2 -static prostm_receiver.cpp -o prostm_receiver.exe

@@ -1,6 +1,6 @@
 #pragma once
-// A receiver of prostm-stream/1 (docs/stream.md) to be included, without dependencies: C++17, on
-// Linux and on Windows (link ws2_32, and call WSAStartup first).
+// A receiver of prostm-stream/1 (docs/devices/stream.md) to be included, without dependencies:
+// C++17, on Linux and on Windows (link ws2_32, and call WSAStartup first).
 //
 // The class Receiver keeps the connection on a thread of its own and answers one question: what do
 // the focal points do at this time? It falls silent by itself when the stream stops. Call

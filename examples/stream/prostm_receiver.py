@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A receiver of prostm-stream/1 (docs/stream.md) in one file, with Python's standard library alone.
+"""A receiver of prostm-stream/1 (docs/devices/stream.md) in one file, with Python's standard library alone.
 
     python3 prostm_receiver.py [ADDRESS:PORT] [--udp] [--seconds S] …
 
@@ -20,7 +20,7 @@ import sys
 import time
 from array import array
 
-# Tables of docs/stream.md. All numbers are little-endian.
+# Tables of docs/devices/stream.md. All numbers are little-endian.
 MAGIC, VERSION = b"PSTM", 1
 HEADER = struct.Struct("<4sBBHII")  # magic, version, kind, size of the body, session, sequence
 SUBSCRIBE, TIME_REQUEST, BYE, HELLO, BLOCK, STATE, HEARTBEAT, TIME, END, ERROR = 1, 2, 3, 16, 17, 18, 19, 20, 23, 24

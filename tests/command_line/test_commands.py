@@ -542,7 +542,7 @@ def test_a_raster_of_one_row_or_column_goes_through_every_command(prostm, tmp_pa
 
 
 def test_the_plan_of_the_documentation_has_a_field(prostm, tmp_path):
-    text = (ROOT / "docs" / "files.md").read_text()
+    text = (ROOT / "docs" / "reference" / "files.md").read_text()
     example = text[text.index('{"format": "prostm-plan/1"'):]
     (tmp_path / "plan.json").write_text(example[: example.index("```")])
     assert "radiation pressure on the skin" in prostm("field", "plan.json").stdout

@@ -123,7 +123,7 @@ def test_frames_without_their_own_patches_are_refused(refuses, recording, tmp_pa
         copy(recording, tmp_path / "a.h5")
         cut(tmp_path / "a.h5", FRAMES, slice(0, 12))
         take(tmp_path / "a.h5", names, rows)
-        refuses("plan", "a.h5", "--frame", "11", words=["not that frame's", "docs/recordings.md"])
+        refuses("plan", "a.h5", "--frame", "11", words=["not that frame's", "docs/guides/recordings.md"])
     copy(recording, tmp_path / "a.h5")
     cut(tmp_path / "a.h5", ["frame"], slice(10, 30))  # and their plans stay
     refuses("plan", "a.h5", words=["not that frame's"])

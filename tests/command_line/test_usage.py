@@ -31,8 +31,8 @@ from test_bad_input import changed, hand_lines
     (["levels", "or"], 'levels does not expect "or"; see prostm levels --help'),
     (["plan", "a.npy", "b.npy"], 'plan does not expect "b.npy"; see prostm plan --help'),
     (["plan"],
-     "plan needs a file: target field (.json, .npy, .npz, .png or .h5, or - for standard input; docs/files.md); see prostm "
-     "plan --help"),
+     "plan needs a file: target field (.json, .npy, .npz, .png or .h5, or - for standard input; docs/reference/files.md); "
+     "see prostm plan --help"),
     (["bench"],
      "bench needs a file: recordings (.h5) of prostm capture or prostm run --record; see prostm bench --help"),
     (["plan", ""], "field needs the name of a file, and the one given is empty"),
@@ -93,7 +93,7 @@ from test_bad_input import changed, hand_lines
      'foci.json: "format" is "prostm-foci/1" (focal points, for prostm solve); it must be "prostm-field/1"'),
     (["run", "--hand", "foci.json"],
      "foci.json is a prostm-foci/1 file (focal points, for prostm solve), not a hand recording; a hand recording is "
-     "hand-frames JSON Lines (.hands.jsonl) or a recording of a Leap (.json), see docs/hands.md"),
+     "hand-frames JSON Lines (.hands.jsonl) or a recording of a Leap (.json), see docs/guides/hands.md"),
 ])
 def test_the_sentence(refuses, tmp_path, arguments, sentence):
     foci = {"format": "prostm-foci/1", "foci": [{"position_mm": [0, 0, 200], "pressure_pa": 100}]}
@@ -139,7 +139,7 @@ def test_a_file_of_another_kind_is_named(refuses, prostm, tmp_path):
         (tmp_path / copy).write_bytes((tmp_path / original).read_bytes())
 
     told = refuses("run", "--hand", "run.h5", words=["a recording of prostm (HDF5), not a hand recording"])
-    assert "hand-frames JSON Lines (.hands.jsonl)" in told and "docs/hands.md" in told
+    assert "hand-frames JSON Lines (.hands.jsonl)" in told and "docs/guides/hands.md" in told
     refuses("run", "--hand", "text.txt", words=["is not a hand recording", ".hands.jsonl"])
     (tmp_path / "leap.json.lz").write_text("N4Ig")
     refuses("run", "--hand", "leap.json.lz", words=["compressed by lz-string", 'writeFileSync("leap.json"'])

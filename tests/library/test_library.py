@@ -140,7 +140,7 @@ int main() {
 
 
 def test_the_project_of_five_lines_that_the_documents_show(prefix, tmp_path):
-    [text] = re.findall(r"```cmake\n(.*?)```", (ROOT / "docs" / "cpp.md").read_text(), re.S)
+    [text] = re.findall(r"```cmake\n(.*?)```", (ROOT / "docs" / "guides" / "cpp.md").read_text(), re.S)
     assert text.count("\n") == 5
     (tmp_path / "CMakeLists.txt").write_text(text)
     shutil.copy(EXAMPLES / "01_plan.cpp", tmp_path)

@@ -276,7 +276,8 @@ TEST(Verdict, WhatIsUnusualIsToldWithItsRemedy) {
          s.safety.head_level = 1'920'000;
        },
        "20 % of the samples were weakened to keep the caps of [safety], most of them for "
-       "head_level: hold the hand farther from the array, or use fewer --paths (docs/safety.md)."},
+       "head_level: hold the hand farther from the array, or use fewer --paths "
+       "(docs/devices/safety.md)."},
   };
   for (const auto& [change, sentence] : cases) {
     const Verdict verdict = judged(change);

@@ -1,4 +1,4 @@
-/// The text messages of docs/wire.md, as types, and the check of those that come from the program.
+/// The text messages of docs/reference/wire.md, as types, and the check of those that come from the program.
 
 import { isStudy, type PageReport, type Study, type StudyAct } from "./study/messages";
 

@@ -1,4 +1,5 @@
-/// The decoder of the binary frames, docs/wire.md. It trusts nothing: every length is checked before it is read.
+/// The decoder of the binary frames, docs/reference/wire.md. It trusts nothing: every length is checked before it is
+/// read.
 
 export const kVersion = 2;
 export const kJoints = 26;

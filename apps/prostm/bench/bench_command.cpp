@@ -46,7 +46,7 @@ void print_am(std::FILE* out, const PlannerColumn& am) {
              "  am: {:.0f} updates a second at the median time, {:.0f} at the 99th percentile; the "
              "paper, on its own machine: about {:.0f}\n"
              "    mean RMSE {:.3f}, correlation {:.3f}, coverage {:.3f}, not to be compared with "
-             "those of paths: how the fields are felt differs (docs/am.md)\n",
+             "those of paths: how the fields are felt differs (docs/guides/am.md)\n",
              1.0 / t.p50, 1.0 / t.p99, kPaperAmRate, am.rmse.summary().mean,
              am.correlation.summary().mean, am.coverage.summary().mean);
 }

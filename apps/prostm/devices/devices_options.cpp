@@ -26,7 +26,7 @@ void add_levels(CLI::App& app, Work& work) {
   auto o = std::make_shared<LevelsOptionsGiven>();
   add_array(*command, o->common);
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
-            "settings, of which [safety] has the caps (docs/safety.md)");
+            "settings, of which [safety] has the caps (docs/devices/safety.md)");
   add_json(*command, o->common.files, o->common.json);
   command->footer("Example:\n  prostm levels --array autd3");
   command->callback([o, &work] { work = {&o->common.files, [o] { return levels_command(*o); }}; });
@@ -37,7 +37,7 @@ void add_selftest(CLI::App& app, Work& work) {
       "selftest", "what is connected, and whether a hand can feel it: asks before it plays");
   auto o = std::make_shared<SelftestOptionsGiven>();
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
-            "settings of any stage, a TOML file (docs/files.md)");
+            "settings of any stage, a TOML file (docs/reference/files.md)");
   add_json(*command, o->common.files, o->common.json);
   add_device(*command, o->common);
   add_array(*command, o->common,

@@ -67,7 +67,7 @@ void print_heads(std::FILE* out, const std::vector<HeadLevel>& heads) {
     fmt::print(out, "  {:>5.0f}   {} ({})\n", limit.level, limit.name, limit.source);
   fmt::print(out,
              "\nEvery array for touch exceeds the lower limits where a head can be. Levels and "
-             "their uncertainty: docs/safety.md\n");
+             "their uncertainty: docs/devices/safety.md\n");
 }
 
 nlohmann::ordered_json levels_json(const PipelineSettings& settings,

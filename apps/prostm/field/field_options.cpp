@@ -28,7 +28,7 @@ void add_field(CLI::App& app, Work& work) {
   command->add_flag("--felt-spectrum", o->felt_spectrum,
                     "also tell what is felt harmonic by harmonic of the loop");
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
-            "settings of any stage, a TOML file (docs/files.md)");
+            "settings of any stage, a TOML file (docs/reference/files.md)");
   add_figure(*command, o->common, "target, envelope, mean and difference (.png, .svg or .pdf)");
   add_json(*command, o->common.files, o->common.json);
   command->footer(

@@ -11,7 +11,8 @@ void add_plan(CLI::App& app, Work& work) {
   auto o = std::make_shared<PlanOptionsGiven>();
   add_common(*command, o->common);
   add_input(*command, o->common.files, "field", o->field,
-            "target field (.json, .npy, .npz, .png or .h5, or - for standard input; docs/files.md)")
+            "target field (.json, .npy, .npz, .png or .h5, or - for standard input; "
+            "docs/reference/files.md)")
       ->required();
   add_field_file(*command, o->file);
   auto* figure =
@@ -32,7 +33,8 @@ void add_plan(CLI::App& app, Work& work) {
 void add_solve(CLI::App& app, Work& work) {
   auto* command = app.add_subcommand("solve", "transducer drives for given focal points");
   auto o = std::make_shared<SolveOptionsGiven>();
-  add_input(*command, o->files, "foci", o->foci, "focal points and their pressures (docs/files.md)")
+  add_input(*command, o->files, "foci", o->foci,
+            "focal points and their pressures (docs/reference/files.md)")
       ->required();
   add_input_or_name(*command, o->files, "--array", o->array, names_json, array_choices())
       ->capture_default_str();

@@ -10,8 +10,8 @@ namespace {
 
 /// The page of a run.
 void add_view(CLI::App& command, RunOptionsGiven& o) {
-  auto* view = command.add_flag("--view", o.view,
-                                "serve the page that shows and steers the run (docs/viewing.md)");
+  auto* view = command.add_flag(
+      "--view", o.view, "serve the page that shows and steers the run (docs/guides/viewing.md)");
   auto* stay = command.add_flag("--stay", o.stay, "go on after --seconds, until Ctrl-C");
   const auto [port, address] = add_address(command, o);
   auto* tracker_file =
@@ -53,7 +53,7 @@ void add_run(CLI::App& app, Work& work) {
            "when a new plan takes over: lap (default), at the end of each path's lap, or "
            "now, at the next block");
   add_output(*command, o->common.files, "--record", o->record, check_recording,
-             "record targets, hands and plans (.h5, docs/recordings.md)");
+             "record targets, hands and plans (.h5, docs/guides/recordings.md)");
   add_lock_memory(*command, o->lock_memory);
   add_view(*command, *o);
   command->footer(

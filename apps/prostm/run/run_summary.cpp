@@ -50,7 +50,7 @@ void print_levels(std::FILE* out, const RunSummary& s) {
   print_row(out, "levels",
             fmt::format("at a focal point up to {:.0f} to {:.0f} Pa rms, {:.0f} to {:.0f} Pa of "
                         "radiation pressure; at the head {:.0f} to {:.0f} dB, taken as {:.0f} dB "
-                        "(docs/safety.md); {:.1f} % weakened by caps, {:.1f} % by ramps",
+                        "(docs/devices/safety.md); {:.1f} % weakened by caps, {:.1f} % by ramps",
                         levels.acoustic_low, levels.acoustic_high, levels.radiation_low,
                         levels.radiation_high, levels.head_low, levels.head_bound,
                         levels.head_estimate, percent(capped_samples(levels), s.emit.samples),
@@ -111,7 +111,7 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
                         percent(c.joints_outside, c.joints), 100.0 * steep_share(c)));
   if (s.judged_updates > 0)
     print_row(out, "stimulus",
-              fmt::format("as a study needs it in {:.0f} % of the updates (docs/hands.md)",
+              fmt::format("as a study needs it in {:.0f} % of the updates (docs/guides/hands.md)",
                           percent(s.passed_updates, s.judged_updates)));
   if (s.unobserved > 0) print_row(out, "record", fmt::format("{} updates missing", s.unobserved));
 }

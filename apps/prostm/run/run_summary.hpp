@@ -10,7 +10,7 @@
 
 namespace prostm::app {
 
-/// prostm-run/1, see docs/running.md.
+/// prostm-run/1, see docs/guides/running.md.
 nlohmann::ordered_json summary_json(const RunSummary& summary, const PipelineSettings& settings,
                                     const Verdict& verdict);
 

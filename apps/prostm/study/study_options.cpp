@@ -13,7 +13,7 @@ void add_study_run(CLI::App& study, Work& work) {
   auto o = std::make_shared<StudyRunOptionsGiven>();
   RunOptionsGiven& run = o->run;
   add_input(*command, run.common.files, "protocol", o->protocol,
-            "what is presented and asked (.toml, docs/study.md)")
+            "what is presented and asked (.toml, docs/study/study.md)")
       ->required();
   command->add_option("--participant", o->participant, "number of the participant, from 1")
       ->type_name("NUMBER")
@@ -35,7 +35,7 @@ void add_study_run(CLI::App& study, Work& work) {
   command
       ->add_option("--markers", o->markers,
                    "send a marker when each stimulus begins and ends: udp://HOST:PORT or "
-                   "serial:///dev/ttyUSB0:BAUD (docs/study.md); may be given 8 times")
+                   "serial:///dev/ttyUSB0:BAUD (docs/study/study.md); may be given 8 times")
       ->type_name("ADDRESS")
       ->expected(1)
       ->allow_extra_args(false)
@@ -43,7 +43,7 @@ void add_study_run(CLI::App& study, Work& work) {
   run.hand = "study";
   add_hand(*command, run.common, run.hand, run.hand_size);
   add_input(*command, run.common.files, "--settings", run.common.settings_file,
-            "settings that all methods begin with, a TOML file (docs/files.md)");
+            "settings that all methods begin with, a TOML file (docs/reference/files.md)");
   add_device(*command, run.common);
   add_array(*command, run.common);
   add_lock_memory(*command, run.lock_memory);
@@ -62,10 +62,10 @@ void add_study_check(CLI::App& study, Work& work) {
       "validate a protocol and print what is presented; every level must be played as written");
   auto o = std::make_shared<StudyCheckOptionsGiven>();
   add_input(*command, o->common.files, "protocol", o->protocol,
-            "what is presented and asked (.toml, docs/study.md)")
+            "what is presented and asked (.toml, docs/study/study.md)")
       ->required();
   add_input(*command, o->common.files, "--settings", o->common.settings_file,
-            "settings that all methods begin with, a TOML file (docs/files.md)");
+            "settings that all methods begin with, a TOML file (docs/reference/files.md)");
   add_device(*command, o->common);
   add_array(*command, o->common);
   add_json(*command, o->common.files, o->common.json);
@@ -124,7 +124,7 @@ void add_analyse(CLI::App& study, Work& work) {
   add_input(
       *command, o->files, "answers", o->answers,
       "participants' files of prostm study run (.jsonl), tables of answers (.csv, .tsv, .txt; "
-      "docs/study-files.md), or the scores of the paper's Fig. 4 (.json)")
+      "docs/study/study-files.md), or the scores of the paper's Fig. 4 (.json)")
       ->required();
   add_reading(*command, o->reading);
   command->add_option("--chance", o->settings.chance, "share of right answers that guessing makes")
@@ -147,7 +147,7 @@ void add_analyse(CLI::App& study, Work& work) {
              "shares as the paper's Fig. 4, or psychometric functions where answers have levels "
              "(.png, .svg or .pdf)");
   add_output(*command, o->files, "--tidy", o->tidy, check_csv_output,
-             "write the answers as a table (.csv) for other programs (docs/study.md)");
+             "write the answers as a table (.csv) for other programs (docs/study/study.md)");
   command->footer(
       "Example:\n  prostm study analyse data/made-up-answers.csv --figure answers.svg --tidy "
       "tidy.csv");

@@ -28,7 +28,7 @@ void check_recording(const std::string& path);
 
 /// Writes a recording frame by frame into `path` + ".part.h5" and renames it at close(); flushed
 /// every second of data, so that a killed run leaves a file that opens. Earliest HDF5 file format.
-/// The layout, units and attributes are in docs/recordings.md.
+/// The layout, units and attributes are in docs/guides/recordings.md.
 class Recorder {
  public:
   /// @param settings kept as an attribute. @throws InputError as check_recording.

@@ -1,4 +1,4 @@
-/// The layout is described in docs/recordings.md.
+/// The layout is described in docs/guides/recordings.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -194,7 +194,8 @@ void RecordingReader::Impl::check_references() const {
   throw InputError(
       path +
       ": what its tables hold for a frame is not that frame's, as after another program cut frames "
-      "out; cut /frame, /hand, /plan and /gate alike and keep /target whole (docs/recordings.md)");
+      "out; cut /frame, /hand, /plan and /gate alike and keep /target whole "
+      "(docs/guides/recordings.md)");
 }
 
 TargetField RecordingReader::Impl::read_patch(std::size_t i) const {

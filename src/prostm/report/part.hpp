@@ -1,6 +1,6 @@
 #pragma once
 /// The parts of a report: each is a JSON file with its numbers and with the blocks of the page that
-/// show them, prostm-report-part/1 of docs/report.md.
+/// show them, prostm-report-part/1 of docs/guides/report.md.
 
 #include <nlohmann/json.hpp>
 #include <optional>

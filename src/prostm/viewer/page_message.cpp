@@ -197,7 +197,7 @@ bool read_page_message(std::string_view message, PageMessage& out, std::string& 
   }
   const Json json = Json::parse(message, nullptr, false);
   if (!json.is_object()) {
-    problem = "a message must be a JSON object (docs/wire.md)";
+    problem = "a message must be a JSON object (docs/reference/wire.md)";
     return false;
   }
   try {

@@ -1,5 +1,5 @@
 #pragma once
-/// The messages of a page: the text messages of docs/wire.md.
+/// The messages of a page: the text messages of docs/reference/wire.md.
 
 #include <cstddef>
 #include <optional>

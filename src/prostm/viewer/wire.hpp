@@ -1,6 +1,6 @@
 #pragma once
-/// The binary frames that a page reads: docs/wire.md in C++. web/src/wire.ts is its counterpart;
-/// web/fixtures holds the two together.
+/// The binary frames that a page reads: docs/reference/wire.md in C++. web/src/wire.ts is its
+/// counterpart; web/fixtures holds the two together.
 
 #include <array>
 #include <cstdint>

@@ -28,7 +28,7 @@ def test_levels_are_intervals_beside_caps_and_limits(prostm, tmp_path, array):
 def test_the_table_names_what_it_shows(prostm):
     out = prostm("levels").stdout
     for words in ("Caps ([safety]; lower ones can be set)", "mean_radiation_pressure", "200 mm", "0.5 m", "ACGIH",
-                  "docs/safety.md"):
+                  "docs/devices/safety.md"):
         assert words in out
 
 

@@ -221,8 +221,8 @@ def python_receiver():
 
 
 def table_bytes(heading):
-    """The number of bytes that a table of docs/stream.md lists, from its last row's place and type."""
-    text = (ROOT / "docs" / "stream.md").read_text(encoding="utf-8")
+    """The number of bytes that a table of docs/devices/stream.md lists, from its last row's place and type."""
+    text = (ROOT / "docs" / "devices" / "stream.md").read_text(encoding="utf-8")
     table = text[text.index(heading):].split("\n\n")[0]
     last = [cell.strip() for cell in table.splitlines()[-1].strip("|").split("|")]
     sizes = {"u8": 1, "u16": 2, "u32": 4, "i64": 8, "f64": 8}

@@ -1,4 +1,5 @@
-"""The receivers of examples/stream/ against a sender that is written here from docs/stream.md, and told to fail."""
+"""The receivers of examples/stream/ against a sender that is written here from docs/devices/stream.md, and told to
+fail."""
 
 import math
 import random

@@ -1,6 +1,6 @@
 #pragma once
-/// A subscriber of prostm-stream/1 for tests. It decodes by the tables of docs/stream.md, without
-/// the device's own code.
+/// A subscriber of prostm-stream/1 for tests. It decodes by the tables of docs/devices/stream.md,
+/// without the device's own code.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -1,4 +1,4 @@
-/// The messages of a study, docs/wire.md, as types, and the check of those that come from the program.
+/// The messages of a study, docs/reference/wire.md, as types, and the check of those that come from the program.
 
 export const kPhases = [
   "consent", "about", "training", "ready", "settling", "presenting", "break", "paused", "done", "withdrawn",

@@ -229,7 +229,7 @@ describe("a page that is touched", () => {
   it("complained of nothing", () => expect(seen.complaints).toEqual([]));
 });
 
-/// Puts a number in a frame of the program (docs/wire.md).
+/// Puts a number in a frame of the program (docs/reference/wire.md).
 function withNumber(frame: Buffer, place: number, value: number): Buffer {
   const made = Buffer.from(frame);
   for (let at = 16; at + 8 <= made.length; at += 8 + 8 * Math.ceil(made.readUInt32LE(at + 4) / 8)) {

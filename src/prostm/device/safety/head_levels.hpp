@@ -11,7 +11,8 @@ namespace prostm {
 /// Distances of the head from the array at which levels are told [m].
 inline constexpr std::array<double, 3> kHeadDistances = {0.3, 0.5, 1.0};
 
-/// Sound levels at full drive, on the axis of the array [dB re 20 µPa rms]. docs/safety.md, (G5).
+/// Sound levels at full drive, on the axis of the array [dB re 20 µPa rms]. docs/devices/safety.md,
+/// (G5).
 
 struct HeadLevel {
   double distance = 0.0;  ///< of the head from the middle of the array [m]

@@ -1,6 +1,6 @@
 #pragma once
 /// Caps on what leaves for an array. They can be lowered, never raised or switched off: the bounds
-/// of the settings are the largest caps. docs/safety.md has their reasons.
+/// of the settings are the largest caps. docs/devices/safety.md has their reasons.
 
 #include "prostm/core/settings.hpp"
 
@@ -23,7 +23,7 @@ struct SafetySettings {
 };
 
 /// Smallest and largest rms acoustic pressure × distance, on axis at full drive, in the sources:
-/// 2.53 to 8.02 Pa·m (docs/safety.md).
+/// 2.53 to 8.02 Pa·m (docs/devices/safety.md).
 inline constexpr double kSmallestAmplitude = 2.53, kLargestAmplitude = 8.02;
 
 }  // namespace prostm

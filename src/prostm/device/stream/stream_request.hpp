@@ -1,5 +1,5 @@
 #pragma once
-/// The messages of receivers to prostm-stream/1, as docs/stream.md has them.
+/// The messages of receivers to prostm-stream/1, as docs/devices/stream.md has them.
 
 #include <cstddef>
 #include <cstdint>

@@ -20,8 +20,8 @@ DeviceKind ultraleap_kind() {
                   .array = "usx",
                   .tried =
                       "this build lacks the vendor's Haptics SDK 3: install that and configure "
-                      "prostm with -DPROSTM_ULTRALEAP_ROOT=FOLDER (docs/ultraleap.md); never tried "
-                      "on real hardware",
+                      "prostm with -DPROSTM_ULTRALEAP_ROOT=FOLDER (docs/devices/ultraleap.md); "
+                      "never tried on real hardware",
                   .info = nullptr,
                   .make = nullptr,
                   .look = look_for_ultraleap};

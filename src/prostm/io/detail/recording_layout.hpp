@@ -1,5 +1,5 @@
 #pragma once
-/// The datasets of a recording, as docs/recordings.md describes them. Private to io.
+/// The datasets of a recording, as docs/guides/recordings.md describes them. Private to io.
 
 #include <span>
 #include <vector>

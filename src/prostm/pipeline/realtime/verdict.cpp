@@ -153,7 +153,7 @@ void judge_stimulus(const RunSummary& s, const PipelineSettings& settings,
       coarse ? fmt::format("--grid {} is too coarse for this scene: use --grid {}.", cells,
                            finer_grid(settings.scene, cells))
              : "Put the jets under the hand (place = \"hand\" in [jets]), and hold it flat "
-               "(docs/hands.md)."));
+               "(docs/guides/hands.md)."));
 }
 
 void judge_pace(const RunSummary& s, Verdict& out) {
@@ -291,7 +291,7 @@ void judge_safety(const RunSummary& s, std::vector<std::string>& out) {
   if (capped <= kMostCapped) return;
   out.push_back(fmt::format(
       "{:.0f} % of the samples were weakened to keep the caps of [safety], most of them for {}: "
-      "hold the hand farther from the array, or use fewer --paths (docs/safety.md).",
+      "hold the hand farther from the array, or use fewer --paths (docs/devices/safety.md).",
       100.0 * capped, main_cap(s.safety)));
 }
 

@@ -74,7 +74,7 @@ struct ReadingSettings {
 /// (a scene) and answer are there too, they must agree with correct; where level is, each row has a
 /// number there. All rows of kind, where it is, name the same one of AnswerKind. A row whose
 /// correct, answer or response is missing is a trial without an answer; one without a method and a
-/// scene is not a trial. Other columns are not read (docs/study-files.md).
+/// scene is not a trial. Other columns are not read (docs/study/study-files.md).
 /// @param columns "correct=key_resp.corr,method:=am": names of the table's own columns, and values
 /// for all rows. @param notes if given, gets sentences about what was left out or merged.
 /// @throws InputError with line and column: a column or value that is missing or wrong, a row cut
@@ -103,8 +103,8 @@ std::vector<Answer> read_answers(std::span<const std::string> paths,
                                  const ReadingSettings& settings = {});
 
 /// Returns answers as CSV (RFC 4180, UTF-8) for other programs, a row for each trial: the columns
-/// of docs/study-files.md, those that are known of any answer. A trial without an answer has empty
-/// cells there. answers_from_csv() reads the same answers from it.
+/// of docs/study/study-files.md, those that are known of any answer. A trial without an answer has
+/// empty cells there. answers_from_csv() reads the same answers from it.
 std::string tidy_csv(std::span<const Answer> answers);
 
 }  // namespace prostm

@@ -89,7 +89,7 @@ struct TrialSettings {
   void visit(SettingsWriter& v);
 };
 
-/// [markers], docs/study-files.md
+/// [markers], docs/study/study-files.md
 struct MarkerSettings {
   bool conditions = false;  ///< markers tell method and scene, also in a blind study
 
@@ -125,7 +125,7 @@ struct Protocol {
   std::optional<StudyMethod> standard;  ///< that a level is compared with, where level.against is
 };
 
-/// Reads a protocol (docs/study.md). @param base the settings that methods begin with.
+/// Reads a protocol (docs/study/study.md). @param base the settings that methods begin with.
 /// @throws InputError with file and line: no TOML, a table or key that is unknown, a value that is
 /// out of bounds; no method, too few scenes, a scene that does not exist, no question; levels that
 /// are missing, are not for this task, or do not suit their setting.

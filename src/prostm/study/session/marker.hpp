@@ -28,7 +28,7 @@ struct Presentation {
 /// The presentation that a session wants now. The condition is told only if the protocol lets it.
 Presentation presentation_of(const StudySession& session, std::uint32_t number);
 
-/// The bytes that trigger boxes get, docs/study-files.md.
+/// The bytes that trigger boxes get, docs/study/study-files.md.
 enum class MarkerCode : std::uint8_t {
   On = 1,
   Off = 2,

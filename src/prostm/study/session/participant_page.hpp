@@ -22,7 +22,7 @@ enum class PageNoise : std::uint8_t {
 template <>
 inline constexpr std::array<std::string_view, 3> kNames<PageNoise> = {"off", "silent", "playing"};
 
-/// A report of a page about itself (docs/wire.md).
+/// A report of a page about itself (docs/reference/wire.md).
 struct PageReport {
   bool visible = false;  ///< its tab is in front, its window not minimised
   PageNoise noise = PageNoise::Off;

@@ -78,7 +78,7 @@ HttpAnswer answer(const HttpRequest& request, std::span<const PageFile> files, H
   const std::string_view path = request.target.substr(0, request.target.find('?'));
   if (path == "/live" || (scope.guests && path == "/guest/live")) {
     if (!request.upgrade || request.method != "GET")
-      return refuse(426, "This is a WebSocket (docs/wire.md).\n");
+      return refuse(426, "This is a WebSocket (docs/reference/wire.md).\n");
     HttpAnswer a;
     a.live = path == "/live" ? Room::Main : Room::Guest;
     return a;

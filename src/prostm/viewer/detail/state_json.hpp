@@ -1,5 +1,5 @@
 #pragma once
-/// The parts of the state message, docs/wire.md. Private to viewer.
+/// The parts of the state message, docs/reference/wire.md. Private to viewer.
 
 #include <nlohmann/json.hpp>
 #include <optional>

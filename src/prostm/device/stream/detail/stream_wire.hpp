@@ -1,5 +1,6 @@
 #pragma once
-/// The messages of prostm-stream/1 to receivers, as docs/stream.md has them. Private to device.
+/// The messages of prostm-stream/1 to receivers, as docs/devices/stream.md has them. Private to
+/// device.
 
 #include <cstddef>
 #include <cstdint>

@@ -37,7 +37,7 @@ bool has_value_a_line(std::string_view text) {
 void refuse_as_hands(const std::string& name, const std::string& what) {
   throw InputError(name + " " + what +
                    "; a hand recording is hand-frames JSON Lines (.hands.jsonl) or a recording of "
-                   "a Leap (.json), see docs/hands.md");
+                   "a Leap (.json), see docs/guides/hands.md");
 }
 
 }  // namespace prostm

@@ -14,7 +14,7 @@
 
 namespace prostm::study {
 
-/// Meanings of a column (docs/study-files.md).
+/// Meanings of a column (docs/study/study-files.md).
 enum class Column : std::uint8_t {
   Participant,
   Method,

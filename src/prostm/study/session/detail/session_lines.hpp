@@ -1,5 +1,5 @@
 #pragma once
-/// The parts of the lines that a session writes (docs/study-files.md).
+/// The parts of the lines that a session writes (docs/study/study-files.md).
 
 #include <nlohmann/json.hpp>
 #include <optional>
