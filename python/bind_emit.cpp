@@ -282,12 +282,11 @@ void bind_emitter(py::module_& m) {
           "The EmitStats after the last fill().");
   bind_emitter_of<Method::ProStm>(m, "PathEmitter",
                                   "Plans of paths as samples: speed, transitions, drive law, "
-                                  "fade-out; docs/design.md, section\n"
-                                  "7.");
+                                  "fade-out; docs/design/emission.md");
   bind_emitter_of<Method::Am>(
       m, "FocusEmitter",
       "Plans of foci as samples: amplitude modulation of focal points that stand still and move\n"
-      "between two silent samples; docs/design.md, AM baseline (B).");
+      "between two silent samples; docs/design/am.md.");
 }
 
 /// The drive law over an array of any shape.

@@ -29,7 +29,7 @@ void bind_skin(py::module_& m) {
   const SkinSettings usual;
   py::class_<SkinSettings>(
       m, "SkinSettings",
-      "Properties of the skin in its model (docs/design.md, section 10), a soft half-space.\n"
+      "Properties of the skin in its model (docs/design/skin.md), a soft half-space.\n"
       "They do not change once they are made.")
       .def(py::init(&make_skin),
            "slow_speed: of surface waves towards 0 Hz [m/s], 0.5 to 50. fast_speed: their plateau\n"

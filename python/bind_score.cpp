@@ -48,7 +48,7 @@ void bind_score(py::module_& m) {
   const PlanSettings defaults;
   Record<Metrics>(m, "Metrics",
                   "How well a field renders its target, over the skin, both divided by max p*\n"
-                  "(docs/design.md, Quality).")
+                  "(docs/design/quality.md).")
       .quantities()
       .done();
   Record<Control>(m, "Control", "The metrics of a field or plan that a good plan must beat.")

@@ -57,7 +57,7 @@ void bind_shape(py::module_& m) {
 
   py::class_<GateResult>(m, "GateResult",
                          "What the gate of a study said of a frame: whether a held hand got the\n"
-                         "pressure that its scene is meant to make (docs/design.md, 3.6).")
+                         "pressure that its scene is meant to make (docs/design/scenes.md).")
       .def_readonly("passed", &GateResult::pass,
                     "Whether the hand is held well, and 0.8 of the last second's frames are good.")
       .def_readonly("share", &GateResult::share,

@@ -1,5 +1,5 @@
 #pragma once
-/// The AM baseline as measured in [B-1] of docs/design.md, compared with PRO-STM.
+/// The AM baseline as measured in [B-1] of docs/design/references.md, compared with PRO-STM.
 
 #include <string>
 #include <vector>

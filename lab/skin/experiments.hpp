@@ -1,7 +1,7 @@
 #pragma once
-/// Published experiments with focal points on skin, computed with the skin model of docs/design.md,
-/// section 10. Each prints its tables, appends its figures to `rows`, and draws a picture on
-/// request. docs/experiments has a page on each.
+/// Published experiments with focal points on skin, computed with the skin model of
+/// docs/design/skin.md. Each prints its tables, appends its figures to `rows`, and draws a picture
+/// on request. docs/experiments has a page on each.
 
 #include <array>
 #include <functional>

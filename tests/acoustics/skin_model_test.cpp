@@ -28,7 +28,7 @@ TEST(SkinModel, HasTheSpeedsAndTheLossThatItWasGiven) {
   }
 }
 
-// values of the nominal skin stated in docs/design.md
+// values of the nominal skin stated in docs/design/skin.md
 TEST(SkinModel, SpeedRisesToItsPlateau) {
   const SkinModel skin{SkinSettings{}};
   const double frequency[] = {10, 25, 50, 100, 200}, speed[] = {4.43, 5.92, 6.62, 6.89, 6.97};

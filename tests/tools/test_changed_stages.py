@@ -15,7 +15,7 @@ class Checkout:
         self.folder = folder
         self.git("init", "-q")
         self.write("src/prostm/plan/plan.cpp", "src/prostm/device/device.cpp", "src/prostm/core/core.cpp", "tests/plan/plan_test.cpp",
-                   "docs/design.md", "CMakeLists.txt", "tests/support/main.cpp")
+                   "docs/design/index.md", "CMakeLists.txt", "tests/support/main.cpp")
         (folder / "tools").mkdir()
         shutil.copy(TOOL, folder / "tools")
         self.first = self.commit()
@@ -56,7 +56,7 @@ def test_a_change_asks_for_its_stage(checkout):
 
 
 def test_what_no_sanitizer_looks_at_asks_for_the_few_that_always_run(checkout):
-    checkout.write("docs/design.md", "web/src/main.ts", "tests/python/test_am.py", "tests/library/test_library.py")
+    checkout.write("docs/design/index.md", "web/src/main.ts", "tests/python/test_am.py", "tests/library/test_library.py")
     checkout.commit()
     assert checkout.stages(checkout.first) == ALWAYS
 

@@ -7,18 +7,18 @@ struct Deviation {
   const char *what, *paper, *here, *why, *where;
 };
 
-/// As docs/design.md has them, in the order of the pipeline.
+/// As docs/design has them, in the order of the pipeline.
 constexpr Deviation kDeviations[] = {
     {"the smoke's pressure", "a pressure solve of unknown effort, 40 Jacobi sweeps as we take it",
      "two V-cycles of a multigrid method that start from the last step's pressure",
      "far less divergence is left in the same time (The smoke); the sweeps are a setting",
-     "design.md, 3.4"},
+     "fluid.md, Pressure"},
     {"the hand in the smoke", "whole cells", "open fractions of faces",
-     "a finger is as wide as a cell or two; whole cells are a setting", "design.md, 3.3"},
+     "a finger is as wide as a cell or two; whole cells are a setting", "fluid.md, Hands"},
     {"visible skin and its plane", "a plane fitted to the visible cells",
      "rays that end on the hand's surface, and a plane that is weighted by how far skin faces the "
      "array and is held by the palm where little is in sight",
-     "rasters and heights neither flip nor jump while a hand turns", "design.md, section 4"},
+     "rasters and heights neither flip nor jump while a hand turns", "contact.md"},
     {"units of the costs", "not given, nor the weights",
      "pressures over the field's highest, mm, rad; weights 3, 3, 1 and 0.3",
      "a plan does not depend on the unit of pressure", "(P6)"},
@@ -28,16 +28,17 @@ constexpr Deviation kDeviations[] = {
      "the same in presets paper and paper-valid; best bounds the length",
      "paths about small contacts grow far around them", "(P3)"},
     {"clusters without extent", "not mentioned", "start as thin ellipses",
-     "a doubled line starts with samples that coincide", "section 5, Tours"},
+     "a doubled line starts with samples that coincide", "planner.md, Tours"},
     {"limits after refinement", "soft costs; a path of its Fig. 2 is longer than L",
      "paper: the same, counted and reported; paper-valid and best: always kept",
-     "a path that is too long is drawn less than 50 times a second", "section 5, Presets"},
+     "a path that is too long is drawn less than 50 times a second", "planner.md, Presets"},
     {"the default planner", "initialisation and refinement",
      "preset best, which lowers the error of the field of Eq. (1) itself",
      "a lower cost is not a better field (Quality)", "(P11)"},
     {"one plan and the next", "each field from the beginning",
      "best goes on from the plan before, and compares with one from the beginning",
-     "paths move less from update to update, and what is new is still found", "section 5, best"},
+     "paths move less from update to update, and what is new is still found",
+     "planner-fit.md, From plan to plan"},
     {"length on uneven skin", "measured in the plane",
      "speed on the skin; best and fast bound the length there, too",
      "a lap on curved skin takes longer than its plane says", "(E1)"},
@@ -51,7 +52,7 @@ constexpr Deviation kDeviations[] = {
      "foci in the fitted plane, lifted to the skin; a focus without skin within 5 σ is left out",
      "as paths are; such a focus would ask for an enormous pressure", "(B1) to (B3)"},
     {"the study's test", "a z over all answers", "that, and tests over participants",
-     "answers of one participant are alike (Fig. 4)", "section 13"},
+     "answers of one participant are alike (Fig. 4)", "study.md, Thresholds"},
 };
 
 }  // namespace
@@ -67,7 +68,7 @@ void make_deviations(const ReportWork&, nlohmann::ordered_json& document) {
   }
   document["blocks"].push_back(report::text_block(
       "Where the paper is silent, unclear or improved on. The last column is the place in "
-      "docs/design.md."));
+      "docs/design."));
   document["blocks"].push_back(report::table_block("From the smoke to the study",
                                                    {{"what", "what"},
                                                     {"paper", "the paper"},

@@ -96,7 +96,7 @@ void make_methods(const ReportWork& work, Json& document) {
   blocks.push_back(report::text_block(
       "The array of 16 × 16 transducers plays what each way plans for {/values/tried} fields of "
       "each scene, spread over its time; transducers follow their drives with their lag, and the "
-      "skin is the model of docs/design.md, section 10. Levels depend on what is held equal, so "
+      "skin is the model of docs/design/skin.md. Levels depend on what is held equal, so "
       "there are three tables of them. Fields are left out where the loop of a way takes too long "
       "for its percept to be computed. \"Flat\" is no array's: the same pressure on all skin. "
       "Ghosts are maxima of the percept, above half of its highest, where nothing is to be felt."));

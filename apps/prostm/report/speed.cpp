@@ -209,7 +209,7 @@ void make_solvers(const ReportWork& work, Json& document) {
       with_quantiles({{"solver", "solver"}, {"power", "power, mean", "", 3}}, "%", 2), quality));
   document["timing"].push_back(report::table_block(
       "Time of a set by the solvers of files and pictures, one thread (the live "
-      "solver of the emission is another, docs/design.md)",
+      "solver of the emission is another, docs/design/acoustics.md)",
       with_quantiles({{"solver", "solver"}}, "µs", 0), times));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Amplitude modulation, the baseline of [B-1]: from a target pressure field to a few focal points
-/// that stand still (docs/design.md, AM baseline (B)).
+/// that stand still (docs/design/am.md).
 
 #include <memory>
 

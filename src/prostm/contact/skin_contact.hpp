@@ -1,6 +1,6 @@
 #pragma once
-/// From the pressure on the hands to target fields (the paper's section IV-A, docs/design.md
-/// section C).
+/// From the pressure on the hands to target fields (the paper's section IV-A,
+/// docs/design/contact.md).
 
 #include <array>
 #include <boost/container/static_vector.hpp>

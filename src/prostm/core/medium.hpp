@@ -5,7 +5,8 @@
 
 namespace prostm {
 
-/// An ideal gas; humidity changes only its absorption. Equations (M1) to (M5) of docs/design.md.
+/// An ideal gas; humidity changes only its absorption. Equations (M1) to (M5) of
+/// docs/design/index.md.
 struct Medium {
   double temperature = 293.15;  ///< [K]
   double pressure = 101325.0;   ///< static pressure [Pa]

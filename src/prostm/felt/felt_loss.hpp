@@ -1,6 +1,6 @@
 #pragma once
 /// How badly the percept of a loop renders its target, on several skins at once, and the gradient
-/// of that: equations (W2) to (W4) of docs/design.md.
+/// of that: equations (W2) to (W4) of docs/design/planner-felt.md.
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 /// The vibration that a focus of unit pressure makes in its surroundings, harmonic by harmonic:
 /// (S9) and (S11) for a source that is Gaussian, weighted by the sensitivity (S6). Equation (W1) of
-/// docs/design.md.
+/// docs/design/planner-felt.md.
 
 #include <Eigen/Core>
 #include <array>

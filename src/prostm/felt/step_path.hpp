@@ -1,6 +1,6 @@
 #pragma once
 /// A closed path that its focal point goes round once or a few times in a loop, as places where
-/// pressure acts: equation (W1) of docs/design.md.
+/// pressure acts: equation (W1) of docs/design/planner-felt.md.
 
 #include <array>
 #include <cstddef>

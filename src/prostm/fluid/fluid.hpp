@@ -118,7 +118,7 @@ class Fluid {
   /// before are taken away; or before the first step.
   void move_box(const CellShift& by) noexcept;
 
-  /// Advances by dt [s] with the hands of `raster` (made for grid()): section 3 of docs/design.md.
+  /// Advances by dt [s] with the hands of `raster` (made for grid()): docs/design/fluid.md.
   /// Allocates nothing, throws nothing. A dt that is not a positive number, or a raster that is not
   /// finite, resets like a non-finite state.
   FluidStats step(double dt, const HandRaster& raster) noexcept;

@@ -25,7 +25,7 @@ class HandShape {
   explicit HandShape(const Hand& hand) { set(hand); }
   /// Builds the surface. Trackers report the flesh of the fingers well, but metacarpals as thin as
   /// fingers; so each radius in the palm is at least a share of the palm's own, (H12) of
-  /// docs/design.md.
+  /// docs/design/hands.md.
   void set(const Hand& hand) noexcept;
 
   SurfacePoint query(const Vec3& p) const noexcept;

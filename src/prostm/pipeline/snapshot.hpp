@@ -1,6 +1,6 @@
 #pragma once
 /// The state of a run for those who watch it: copies, handed over by threads that wait for
-/// nobody (docs/design.md, section "Viewer").
+/// nobody (docs/design/viewer.md).
 
 #include <array>
 #include <atomic>

@@ -1,7 +1,7 @@
 #pragma once
 /// The percept of a plan in step by the planner's own model, in double precision: the reference of
 /// the felt step, and a tool for those who choose pressures themselves. Equations (W1) to (W3) of
-/// docs/design.md.
+/// docs/design/planner-felt.md.
 
 #include <span>
 #include <vector>

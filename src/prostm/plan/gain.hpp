@@ -1,6 +1,6 @@
 #pragma once
 /// γ, the rendered pressure of a path over its effective pressure, (P9b) and (P9c) of
-/// docs/design.md.
+/// docs/design/planner.md.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 namespace prostm {
 
 /// γ over that of a loop of 20 ms, for loops of 5, 7.5, … 20 ms that a focal point at 7 m/s draws:
-/// what makes them felt alike along the loop by the nominal skin of docs/design.md, section 10. The
+/// what makes them felt alike along the loop by the nominal skin of docs/design/skin.md. The
 /// lab computes it, and a test does so anew.
 inline constexpr std::array<double, 7> kSkinGains = {0.713, 0.744, 0.825, 0.869, 0.930, 0.975, 1.0};
 /// Returns kSkinGains at a period ≥ 0 [s], linear in between; beyond its ends, that of the end.

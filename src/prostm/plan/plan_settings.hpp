@@ -12,7 +12,7 @@
 
 namespace prostm {
 
-/// Defaults are the paper's, or those of docs/design.md section "Planner" where the paper is
+/// Defaults are the paper's, or those of docs/design/planner.md where the paper is
 /// silent.
 struct PlanSettings {
   Preset preset = kDefaultPreset;

@@ -1,6 +1,6 @@
 #pragma once
 /// PRO-STM: from a target pressure field to a few closed focal-point paths (the paper's section IV;
-/// docs/design.md section 5).
+/// docs/design/planner.md).
 
 #include <cstddef>
 #include <memory>

@@ -1,6 +1,6 @@
 #pragma once
 /// Scores of a plan when the world differs from the model that it was optimised for, (Q8)–(Q9) of
-/// docs/design.md.
+/// docs/design/quality.md.
 
 #include <string>
 #include <vector>

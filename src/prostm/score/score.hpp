@@ -17,8 +17,8 @@
 
 namespace prostm {
 
-/// Eqs. (Q1)–(Q7) of docs/design.md. All compare p̂ with p* over the skin cells, both divided by max
-/// p*.
+/// Eqs. (Q1)–(Q7) of docs/design/quality.md. All compare p̂ with p* over the skin cells, both
+/// divided by max p*.
 struct Metrics {
   double rmse = 0;
   double correlation = 0;  ///< Pearson's correlation; 0 if either field is constant

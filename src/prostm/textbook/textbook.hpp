@@ -2,7 +2,7 @@
 /// The baseline of every planner benchmark: PRO-STM as a careful reader of the paper would program
 /// it, in double precision, with plain Lloyd from random points, plain 2-opt from a random tour,
 /// midpoint splits, and steepest descent with backtracking. The costs, weights and decisions are
-/// those of docs/design.md section "Planner", preset paper.
+/// those of docs/design/planner.md, preset paper.
 
 #include "prostm/plan/planner.hpp"
 #include "prostm/textbook/kernel.hpp"

@@ -19,7 +19,7 @@ struct Calibration {
 };
 
 /// Returns the rotation and translation, without scale, that minimise Σ|p_D − X_DT p_T|²: (H20) of
-/// docs/design.md.
+/// docs/design/hands.md.
 /// @throws std::invalid_argument with a sentence: fewer than 3 points, numbers that are not finite,
 /// points within 10 mm of one line, or points that fit a mirror image but no rotation.
 Calibration calibrate(std::span<const PointPair> points);

@@ -157,8 +157,8 @@ std::unique_ptr<HandSource> make_study_hand(const StudyHandSettings& settings);
 /// Removes the tracker's noise before the fluid meets the hands: each joint is predicted with its
 /// filtered velocity and corrected by a share of the innovation; its velocity and orientation are
 /// low-passed. The shares grow with the innovation, so noise is damped and real motion passes: (H5)
-/// to (H7) of docs/design.md. Without the filter, a still hand tracked with 0.3 mm of noise makes
-/// more pressure than the smoke.
+/// to (H7) of docs/design/hands.md. Without the filter, a still hand tracked with 0.3 mm of noise
+/// makes more pressure than the smoke.
 class HandFilter {
  public:
   /// @throws std::invalid_argument for a setting outside its bounds.

@@ -1,6 +1,5 @@
 #pragma once
-/// The page's server: HTTP and one WebSocket, on a thread of its own (docs/design.md, section
-/// "Viewer").
+/// The page's server: HTTP and one WebSocket, on a thread of its own (docs/design/viewer.md).
 
 #include <cstdint>
 #include <memory>

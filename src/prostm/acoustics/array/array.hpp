@@ -31,7 +31,7 @@ struct TransducerArray {
 };
 
 /// The Ultraleap STRATOS Explore's layout: 16×16 at 10.5 mm pitch, 40 kHz, x fastest, facing +z.
-/// Amplitude 3.4 Pa·m rms, 2.5 to 8.0 (docs/design.md, section 8).
+/// Amplitude 3.4 Pa·m rms, 2.5 to 8.0 (docs/design/acoustics.md).
 TransducerArray usx_array();
 
 /// One AUTD3: 249 transducers on a grid of 18×14 at 10.16 mm pitch without (x, y) = (1, 1), (2, 1)

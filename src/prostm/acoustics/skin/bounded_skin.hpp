@@ -1,6 +1,6 @@
 #pragma once
 /// Skin that ends, and whose edges send waves back: the second model of the skin. (S14) to (S17) of
-/// docs/design.md.
+/// docs/design/skin.md.
 
 #include <Eigen/Core>
 #include <cstdint>

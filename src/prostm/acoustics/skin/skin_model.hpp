@@ -1,6 +1,6 @@
 #pragma once
 /// Response of the skin's surface to pressure: waves on a soft, lossy half-space. Equations (S1) to
-/// (S5) of docs/design.md.
+/// (S5) of docs/design/skin.md.
 
 #include <array>
 #include <complex>

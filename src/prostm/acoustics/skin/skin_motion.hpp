@@ -1,6 +1,6 @@
 #pragma once
 /// The steady vibration of a patch of skin under a periodic pressure, harmonic by harmonic: the
-/// part that every model of the skin has in common. (S9) and (S10) of docs/design.md.
+/// part that every model of the skin has in common. (S9) and (S10) of docs/design/skin.md.
 
 #include <complex>
 #include <span>

@@ -1,6 +1,6 @@
 #pragma once
 /// Perceived intensity of a vibration of the skin: the Pacinian channel's sensitivity over
-/// frequency and area, (S6) to (S8) of docs/design.md. Intensities are in metres: the rms
+/// frequency and area, (S6) to (S8) of docs/design/skin.md. Intensities are in metres: the rms
 /// displacement at 250 to 300 Hz that would feel the same. They hold for vibrations above
 /// threshold, 40 to 800 Hz.
 

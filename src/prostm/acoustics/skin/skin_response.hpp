@@ -1,6 +1,6 @@
 #pragma once
 /// The steady vibration of skin without bounds under a periodic pressure: a sum over the harmonics
-/// of the draw rate, (S9) to (S11) of docs/design.md.
+/// of the draw rate, (S9) to (S11) of docs/design/skin.md.
 
 #include <array>
 #include <complex>

@@ -11,7 +11,7 @@ namespace prostm {
 /// Distances of the head from the array at which levels are told [m].
 inline constexpr std::array<double, 3> kHeadDistances = {0.3, 0.5, 1.0};
 
-/// Sound levels at full drive, on the axis of the array [dB re 20 µPa rms]. docs/devices/safety.md,
+/// Sound levels at full drive, on the axis of the array [dB re 20 µPa rms]. docs/design/safety.md,
 /// (G5).
 
 struct HeadLevel {

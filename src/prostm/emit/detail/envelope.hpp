@@ -1,5 +1,5 @@
 #pragma once
-/// The shape of amplitude modulation, AM baseline (B) in docs/design.md.
+/// The shape of amplitude modulation, (B4) of docs/design/am.md.
 
 #include "prostm/emit/emitter.hpp"
 

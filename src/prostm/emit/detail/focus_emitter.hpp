@@ -17,8 +17,8 @@ namespace prostm {
 /// zero at which a plan takes over lasts one sample longer, for all, which keeps their phases.
 ///
 /// The guarantees are those of PathEmitter; some are trivial here. After lose(), or when plans stop
-/// coming, the output is silent from the next zero on: at most one period, 40 ms. docs/design.md,
-/// AM baseline (B).
+/// coming, the output is silent from the next zero on: at most one period, 40 ms.
+/// docs/design/am.md.
 class FocusEmitter final : public Emitter {
  public:
   /// @param sample_rate of the device [Hz], at least 3150.

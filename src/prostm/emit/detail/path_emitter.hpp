@@ -23,7 +23,7 @@ namespace prostm {
 ///
 /// Plans in step share the clock of one loop, (E10): a new plan takes over for all focal points at
 /// the end of the loop (at the next block with switch_at = "now"), and each is at the place where
-/// the clock says, (E11), wherever it comes from. docs/design.md, section 7.
+/// the clock says, (E11), wherever it comes from. docs/design/emission.md.
 class PathEmitter final : public Emitter {
  public:
   /// @param sample_rate of the device [Hz].  @param max_speed above 0, at most kMaxFocusSpeed

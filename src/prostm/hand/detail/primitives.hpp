@@ -1,7 +1,7 @@
 #pragma once
 /// The two bodies that a hand is made of. Each is the convex hull of its corner spheres: seen from
 /// a point, its skin is that of one sphere whose centre, radius and velocity are blended from the
-/// corners. (H8) to (H11) of docs/design.md.
+/// corners. (H8) to (H11) of docs/design/hands.md.
 
 #include <array>
 

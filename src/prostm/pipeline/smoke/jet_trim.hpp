@@ -26,9 +26,9 @@ struct JetSettings {
   bool operator==(const JetSettings&) const = default;
 };
 
-/// Makes the jets of a scene press alike, (F15) of docs/design.md. Where a jet meets the hand near
-/// its edge air escapes and it presses less; four equal plumes would be felt as three. So a
-/// generator of stimuli trims itself, which no smoke does: each jet's speed has a gain that grows
+/// Makes the jets of a scene press alike, (F15) of docs/design/scenes.md. Where a jet meets the
+/// hand near its edge air escapes and it presses less; four equal plumes would be felt as three. So
+/// a generator of stimuli trims itself, which no smoke does: each jet's speed has a gain that grows
 /// while the hand gets less from it than the jets' mean, and falls while it gets more:
 ///
 ///   g_q ← g_q exp(K Δt (m − p_q)/m), held to 1 ± limit, then scaled so that Σ g_q² is constant;

@@ -50,7 +50,7 @@ SmokeInflow wind() {
 }
 
 /// Tuned on a flat closed hand whose skin is 0.2 m above the array, so that all press with the same
-/// force (docs/design.md, section 3.6).
+/// force (docs/design/scenes.md).
 std::vector<Scene> make_scenes() {
   constexpr double kAside = 24.2_mm, kAround = 30.6_mm;
   // a hand is wider at its knuckles than at its heel, and turns jets outwards there

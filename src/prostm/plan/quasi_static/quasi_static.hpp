@@ -1,6 +1,6 @@
 #pragma once
-/// The paper's Eq. (1), (P10) of docs/design.md: the quasi-static pressure field of a plan; (B2)
-/// for foci.
+/// The paper's Eq. (1), (P10) of docs/design/planner.md: the quasi-static pressure field of a plan;
+/// (B2) for foci.
 
 #include <span>
 

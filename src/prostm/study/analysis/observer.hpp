@@ -1,6 +1,6 @@
 #pragma once
 /// A model observer that knows two stimuli by templates and tells them apart by the likelihood
-/// ratio, (Y2) to (Y4) of docs/design.md. It is arithmetic on percepts, whatever they are of.
+/// ratio, (Y2) to (Y4) of docs/design/study.md. It is arithmetic on percepts, whatever they are of.
 
 #include <vector>
 

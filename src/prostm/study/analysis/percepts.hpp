@@ -1,6 +1,6 @@
 #pragma once
 /// The percepts that a method makes from a scene on the hand of a participant: what the model
-/// observers of docs/design.md (Y2) to (Y6) feel.
+/// observers of docs/design/study.md (Y2) to (Y6) feel.
 
 #include <cstdint>
 #include <functional>

@@ -81,7 +81,7 @@ struct TrialSettings {
   double settle = 2.0;      ///< silence after it, in which the smoke develops [s]
   double time_limit = 0.0;  ///< of the stimulus, which then ends; 0: until the answer [s]
   /// Difference in rendered force between the scenes of a method that is let pass: the Weber
-  /// fraction of touch (docs/design.md, section 13).
+  /// fraction of touch (docs/design/study.md).
   double strength = 0.2;
   GateUse gate = GateUse::Required;
 

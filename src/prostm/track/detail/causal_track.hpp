@@ -10,8 +10,8 @@ namespace prostm {
 
 /// Up to two hands from tracker frames that come in at irregular times. A joint's velocity is the
 /// slope of the least-squares line through the frames of the last `smoothing_time`, (H17) of
-/// docs/design.md. With `prediction`, its position is extrapolated from the newest frame with that
-/// velocity over the frame's age plus `prediction`, (H18), by at most `prediction_limit`.
+/// docs/design/hands.md. With `prediction`, its position is extrapolated from the newest frame with
+/// that velocity over the frame's age plus `prediction`, (H18), by at most `prediction_limit`.
 /// Orientations and radii are the newest ones. Has no clock and no thread: times come from the
 /// caller.
 class CausalTrack {

@@ -5,8 +5,8 @@
 
 namespace prostm {
 
-/// Poses the joints of a hand, (H2) and (H3) of docs/design.md; the left hand is the right one
-/// mirrored at x = 0 of H.
+/// Poses the joints of a hand, (H2) and (H3) of docs/design/hands.md; the left hand is the right
+/// one mirrored at x = 0 of H.
 /// @param X_TH pose of the palm: origin at the palm joint, x towards the right (of a right hand:
 /// towards the little finger), y dorsal, z towards the wrist.
 /// @param closure of the fingers: 0 open, 1 a loose fist. Beyond these it extrapolates.

@@ -15,8 +15,8 @@ struct HandTrack {
 };
 
 /// Computes the hand at time t: positions and radii linear between frames i and i + 1, orientations
-/// by slerp, and velocities by (H1) of docs/design.md. The hand's last frame is held, with its
-/// velocity, when i is the last one.
+/// by slerp, and velocities by (H1) of docs/design/hands.md. The hand's last frame is held, with
+/// its velocity, when i is the last one.
 /// @pre times[i] <= t, and t <= times[i + 1] if that exists. Allocates nothing.
 void sample_track(const HandTrack& track, std::size_t i, double t, const TrackSettings& settings,
                   Hand& out) noexcept;

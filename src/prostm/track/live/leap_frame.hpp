@@ -1,6 +1,6 @@
 #pragma once
 /// One frame of the Leap Motion's JSON, protocol version 6, as services send it live and recordings
-/// keep it, completed where old services lack bones: (H13) to (H16) of docs/design.md.
+/// keep it, completed where old services lack bones: (H13) to (H16) of docs/design/hands.md.
 
 #include <cstdint>
 #include <string_view>

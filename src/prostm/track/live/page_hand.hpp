@@ -43,8 +43,8 @@ struct PageHandReport {
 };
 
 /// The page's hand. It follows the placed poses like a critically damped spring, (H19) of
-/// docs/design.md, so that 60 unevenly timed messages a second make a smooth motion with a true
-/// velocity.
+/// docs/design/hands.md, so that 60 unevenly timed messages a second make a smooth motion with a
+/// true velocity.
 ///
 /// A hand that is not placed for 0.5 s of run time lapses. Browsers run the timers of a page that
 /// nobody sees once a second or less, so a lapsed hand comes back only after it has been placed at

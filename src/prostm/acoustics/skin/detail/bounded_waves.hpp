@@ -1,6 +1,6 @@
 #pragma once
 /// Waves of one frequency on a plate that ends at the outline of a mask, (S15) and (S16) of
-/// docs/design.md.
+/// docs/design/skin.md.
 
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>

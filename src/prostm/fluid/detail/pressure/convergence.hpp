@@ -9,7 +9,7 @@ namespace prostm::fluid {
 
 /// Follows the pressure in the cells of the rows that hands cut, from iterate to iterate. If each
 /// iteration leaves the share ρ of the error, the last one, which changed the pressure by d, leaves
-/// d ρ/(1 − ρ), (F16) of docs/design.md; ρ is the ratio of the last two changes.
+/// d ρ/(1 − ρ), (F16) of docs/design/fluid.md; ρ is the ratio of the last two changes.
 class Convergence {
  public:
   explicit Convergence(const PaddedGrid& grid);

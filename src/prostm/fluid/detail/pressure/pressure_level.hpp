@@ -26,12 +26,12 @@ inline RowSpan join(RowSpan a, RowSpan b) {
   return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
-/// Σ_f a_f (p − p_f) = b over the six faces of a cell, (F5) and (F6) of docs/design.md: a_f is the
-/// open fraction, over the distance in cells from the centre to the box's open side where the face
-/// belongs to one, where p_f = 0, and 0 on the floor. The neighbour sum needs no special case there
-/// because halos of p stay 0; only the diagonal Σ a_f differs. Far from hands the diagonal takes
-/// few values, kept in tables. Face fractions and stored diagonals are read only in the rows'
-/// spans, which saves most of the memory traffic.
+/// Σ_f a_f (p − p_f) = b over the six faces of a cell, (F5) and (F6) of docs/design/fluid.md: a_f
+/// is the open fraction, over the distance in cells from the centre to the box's open side where
+/// the face belongs to one, where p_f = 0, and 0 on the floor. The neighbour sum needs no special
+/// case there because halos of p stay 0; only the diagonal Σ a_f differs. Far from hands the
+/// diagonal takes few values, kept in tables. Face fractions and stored diagonals are read only in
+/// the rows' spans, which saves most of the memory traffic.
 struct PressureLevel {
   /// @param last_to_side distance from the last cell's centre to the box's side [cells]: more than
   /// half where the cells along an edge of the finest level are no multiple of a cell here.

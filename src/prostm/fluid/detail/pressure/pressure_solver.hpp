@@ -12,7 +12,7 @@
 namespace prostm::fluid {
 
 /// The hierarchy n, n/2, … down to at most 5 cells, each rounded down, and the solvers on it.
-/// Section 3.4 of docs/design.md. Every result is independent of the number of threads, to the bit.
+/// See docs/design/fluid.md. Every result is independent of the number of threads, to the bit.
 class PressureSolver {
  public:
   PressureSolver(int n, WorkerPool& pool, const PressureKernels& kernels);
