@@ -1,6 +1,5 @@
-"""The documents as a reader sees them: blocks of code, links and headings."""
+"""The documents as a reader sees them: their blocks of code."""
 
-import re
 from itertools import zip_longest
 from pathlib import Path
 from typing import NamedTuple
@@ -42,24 +41,3 @@ def python_of(page):
     blocks = blocks_of(page)
     return [(block.text, after.text if after and after.language == "text" else "")
             for block, after in zip_longest(blocks, blocks[1:]) if block.language == "python"]
-
-
-def text_of(page):
-    """The page without its blocks of code."""
-    kept, code = [], False
-    for line in page.read_text(encoding="utf-8").splitlines():
-        if line.lstrip().startswith("```"):
-            code = not code
-        elif not code:
-            kept.append(line)
-    return "\n".join(kept)
-
-
-def links_of(page):
-    return re.findall(r"\]\(([^)\s]+)\)", text_of(page))
-
-
-def anchors_of(page):
-    """The headings' anchors, as GitHub makes them."""
-    headings = re.findall(r"^#+ (.*)$", text_of(page), flags=re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}

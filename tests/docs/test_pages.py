@@ -1,5 +1,5 @@
-"""Types every command of the documents and runs their Python, compares what the documents say these print, reads the
-documents' files, and follows their links."""
+"""Types every command of the documents and runs their Python, compares what the documents say these print, and reads the
+documents' files. tools/check_links.py follows their links."""
 
 import json
 import os
@@ -8,7 +8,7 @@ import sys
 
 import pytest
 import shell
-from pages import PAGES, ROOT, anchors_of, blocks_of, links_of, name_of, python_of
+from pages import PAGES, ROOT, blocks_of, name_of, python_of
 
 LANGUAGES = {"sh", "console", "python", "json", "toml", "cmake", "text"}
 # the command that reads a file of each format
@@ -47,17 +47,6 @@ def typed(page, folder):
 def test_blocks_name_their_language(page):
     wrong = [f"line {b.line}: {b.language!r}" for b in blocks_of(page) if b.language not in LANGUAGES]
     assert not wrong, f"a block is one of {sorted(LANGUAGES)}, not {wrong}"
-
-
-def test_links_lead_somewhere(page):
-    for link in links_of(page):
-        if link.startswith(("http://", "https://", "mailto:")):
-            continue
-        path, _, anchor = link.partition("#")
-        target = (page.parent / path).resolve() if path else page
-        assert target.exists(), f"{link}: no such file"
-        if anchor:
-            assert anchor in anchors_of(target), f"{link}: no such heading"
 
 
 def test_commands_print_what_the_page_says(typed):

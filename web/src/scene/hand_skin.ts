@@ -1,5 +1,5 @@
 /// The signed distance to the skin of a hand at rest: round cones along the fingers and flesh across the palm, as the program
-/// models it (docs/design/hands.md, H12), joined smoothly.
+/// models it, (H12) of docs/design/hands.md, joined smoothly.
 
 import { Vector3 } from "three";
 import { kFingers, kPalm, kThumb, kWrist, type RestHand } from "./hand_bones";

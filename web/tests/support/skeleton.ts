@@ -1,4 +1,4 @@
-/// A hand of average size in any pose, as the program's scripted hand has it (docs/design/hands.md, H2 and H3).
+/// A hand of average size in any pose, as the program's scripted hand has it: (H2) and (H3) of docs/design/hands.md.
 
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Hand } from "../../src/wire";
