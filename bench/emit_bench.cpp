@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "fields/moving_foci.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
@@ -21,6 +20,7 @@
 #include "prostm/device/safety/sample_chain.hpp"
 #include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/emit/detail/path_emitter.hpp"
+#include "prostm/fields/moving_foci.hpp"
 #include "report.hpp"
 
 namespace prostm {

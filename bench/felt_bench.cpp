@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "program.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/felt/felt_loss.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 
 namespace prostm::bench {

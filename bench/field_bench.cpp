@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "prostm/acoustics/field/loop_field.hpp"
 #include "prostm/acoustics/field/propagation_kernels.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/loop_drives.hpp"
 #include "report.hpp"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "prostm/core/distribution.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "report.hpp"
 

@@ -1,6 +1,6 @@
 /// Ways to render a target, played by the array and felt by the skin, under three controls.
 
-#include "methods/comparison.hpp"
+#include "methods/tables.hpp"
 #include "program.hpp"
 #include "prostm/figure/figures.hpp"
 
@@ -18,10 +18,10 @@ int main(int argc, char** argv) {
   return bench::run(app, argc, argv, [&] {
     if (!figure.empty()) check_figure(figure);
     std::vector<bench::Row> rows;
-    bench::compare_ways(recording.empty() ? bench::generated_targets(frames)
-                                          : bench::recorded_targets(recording, frames),
+    bench::compare_ways(recording.empty() ? methods::generated_targets(frames)
+                                          : methods::recorded_targets(recording, frames),
                         rows);
-    if (!figure.empty()) bench::draw_ways(figure);
+    if (!figure.empty()) methods::draw_ways(figure);
     return rows;
   });
 }

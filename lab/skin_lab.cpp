@@ -3,7 +3,7 @@
 
 #include "program.hpp"
 #include "prostm/figure/figures.hpp"
-#include "skin/experiments.hpp"
+#include "skin/tables.hpp"
 
 int main(int argc, char** argv) {
   using namespace prostm;

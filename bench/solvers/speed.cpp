@@ -1,9 +1,9 @@
 #include <fmt/core.h>
 
-#include "fields/moving_foci.hpp"
 #include "prostm/acoustics/focus/live_focus_solver.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/fields/moving_foci.hpp"
 #include "solvers/solver_tables.hpp"
 #include "solvers/textbook_gs_pat.hpp"
 

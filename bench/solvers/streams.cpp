@@ -4,10 +4,10 @@
 #include <cmath>
 #include <complex>
 
-#include "fields/moving_foci.hpp"
 #include "prostm/acoustics/field/propagation.hpp"
 #include "prostm/acoustics/focus/live_focus_solver.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/fields/moving_foci.hpp"
 #include "solvers/solver_tables.hpp"
 
 namespace prostm::bench {

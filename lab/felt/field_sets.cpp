@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "fields/felt_fields.hpp"
-#include "fields/fields.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/fields/felt_fields.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/pipeline/pipeline.hpp"
 
 namespace prostm::bench {

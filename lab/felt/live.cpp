@@ -8,8 +8,8 @@
 #include "felt/judge.hpp"
 #include "felt/skins.hpp"
 #include "felt_time/felt_live.hpp"
-#include "fields/fields.hpp"
 #include "prostm/core/worker_pool.hpp"
+#include "prostm/fields/fields.hpp"
 
 namespace prostm::bench {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "fields/felt_fields.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/fields/felt_fields.hpp"
 #include "prostm/plan/detail/fit/fit_planner.hpp"
 #include "prostm/plan/felt_plan.hpp"
 

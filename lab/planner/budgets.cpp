@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "fields/fields.hpp"
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 
 namespace prostm::bench {

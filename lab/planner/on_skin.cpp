@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fields/skin_shapes.hpp"
 #include "planner/contenders.hpp"
+#include "prostm/fields/skin_shapes.hpp"
 #include "prostm/plan/lifted_plan.hpp"
 
 namespace prostm::bench {

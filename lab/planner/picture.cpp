@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "fields/fields.hpp"
 #include "planner/as_played.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "fields/fields.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/textbook/textbook.hpp"
 

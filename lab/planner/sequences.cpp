@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "fields/fields.hpp"
 #include "prostm/core/input_error.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/io/recorder.hpp"
 

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <limits>
 
-#include "fields/fields.hpp"
 #include "planner/contenders.hpp"
 #include "planner/sequences.hpp"
 #include "prostm/core/distribution.hpp"
 #include "prostm/emit/detail/path_emitter.hpp"
+#include "prostm/fields/fields.hpp"
 
 namespace prostm::bench {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "fields/fields.hpp"
 #include "planner/as_played.hpp"
 #include "prostm/emit/detail/matching.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/quasi_static/closest_point.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 

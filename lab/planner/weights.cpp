@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fields/fields.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 

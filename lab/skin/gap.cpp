@@ -1,38 +1,17 @@
-/// The gap from which two foci, amplitude modulated at 200 Hz, are felt as two.
+/// Tables of the gap from which two foci are felt as two.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "prostm/acoustics/skin/skin_percept.hpp"
-#include "prostm/core/units.hpp"
-#include "prostm/figure/figures.hpp"
-#include "skin/experiments.hpp"
-#include "skin/stimuli.hpp"
+#include "prostm/experiments/experiments.hpp"
+#include "skin/tables.hpp"
 
 namespace prostm::bench {
+
+using namespace experiments;
+
 namespace {
-
-constexpr double kRate = 200.0;  // [Hz]
-constexpr int kSamples = 16;     // per period of the modulation
-const SkinPatch kPatch{49, 65, 1.5e-3};
-
-/// Returns the middle over the higher peak, along the line of two foci; 1 means a single place.
-double dip(const std::vector<double>& map) {
-  const auto row = static_cast<std::size_t>(kPatch.rows / 2 * kPatch.cols);
-  const auto first = map.begin() + static_cast<std::ptrdiff_t>(row);
-  return first[kPatch.cols / 2] / *std::max_element(first, first + kPatch.cols);
-}
-
-/// Returns the square of (1 + cos ωt)/2, each transducer's drive, times the pressure at rest.
-std::vector<double> modulated(const std::vector<double>& at_rest) {
-  std::vector<double> pressure;
-  for (int k = 0; k < kSamples; ++k) {
-    const double drive = 0.5 + 0.5 * std::cos(2.0 * kPi * k / kSamples);
-    for (const double p : at_rest) pressure.push_back(drive * drive * p);
-  }
-  return pressure;
-}
 
 std::string gap_text(double gap) {
   return gap > 0.0 ? fmt::format("{:.1f}", 1e3 * gap) : "over 60";
@@ -40,49 +19,12 @@ std::string gap_text(double gap) {
 
 }  // namespace
 
-GapCurves gap_curves(Skins skins, const Step& step) {
-  const TransducerArray array = usx_array();
-  const Palm palm{kPatch};
-  std::vector<SkinResponse> responses;
-  for (const SkinSettings& settings : skins) {
-    responses.emplace_back(SkinModel(settings), kPatch);
-    responses.back().prepare(1.0 / kRate, kSamples);
-  }
-  GapCurves out;
-  out.felt.resize(skins.size());
-  for (double gap = 6e-3; gap < 60.5e-3; gap += 1.5e-3) {
-    const std::vector<double> at_rest =
-        foci_pressure(array, palm, {Vec2(-0.5 * gap, 0.0), Vec2(0.5 * gap, 0.0)});
-    const std::vector<double> pressure = modulated(at_rest);
-    out.gaps.push_back(gap);
-    out.acoustic.push_back(dip(at_rest));
-    std::vector<double> map(palm.cells());
-    for (std::size_t s = 0; s < skins.size(); ++s) {
-      responses[s].respond({1.0 / kRate, kSamples, pressure});
-      percept_map(responses[s], map);
-      out.felt[s].push_back(dip(map));
-    }
-    step();
-  }
-  return out;
-}
-
-double gap_where(const std::vector<double>& gaps, const std::vector<double>& dips, double level) {
-  for (std::size_t i = gaps.size(); i-- > 0;) {
-    if (dips[i] <= level) continue;
-    if (i + 1 == gaps.size()) return 0.0;
-    const double share = (dips[i] - level) / (dips[i] - dips[i + 1]);
-    return gaps[i] + share * (gaps[i + 1] - gaps[i]);
-  }
-  return gaps.front();
-}
-
 void compute_gap(const std::string& figure, std::vector<Row>& rows) {
   const auto skins = skin_settings_interval();
   const GapCurves curves = gap_curves(skins, [] {});
   const std::vector<double>&gaps = curves.gaps, &acoustic = curves.acoustic;
   const std::vector<std::vector<double>>& felt = curves.felt;
-  fmt::print("\ntwo foci at {:.0f} Hz: middle over the higher peak\n", kRate);
+  fmt::print("\ntwo foci at {:.0f} Hz: middle over the higher peak\n", kGapRate);
   fmt::print("{:>8} {:>20} {:>16} {:>16}\n", "gap [mm]", "radiation pressure", "felt, nominal",
              "low – high");
   for (std::size_t i = 0; i < gaps.size(); i += 2) {
@@ -112,24 +54,6 @@ void compute_gap(const std::string& figure, std::vector<Row>& rows) {
   rows.push_back(
       value_row("gap of two foci, felt", "mm", 1e3 * gap_where(gaps, felt[4], kNoticed)));
   if (!figure.empty()) draw_gap(curves, figure);
-}
-
-void draw_gap(const GapCurves& curves, const std::string& path) {
-  Chart chart{
-      "Two foci, modulated at 200 Hz", "gap / mm", "middle over the higher peak", false, {}, false};
-  const auto add = [&](const std::string& name, const std::vector<double>& dips) {
-    ChartSeries series{name, {}, dips};
-    for (const double gap : curves.gaps) series.x.push_back(1e3 * gap);
-    chart.series.push_back(series);
-  };
-  add("pressure", curves.acoustic);
-  const std::size_t all = curves.felt.size(), nominal = all / 2;
-  add("felt, nominal", curves.felt[nominal]);
-  if (all > 1) {
-    add("felt, slower waves", curves.felt[nominal - all / 3]);
-    add("felt, faster waves", curves.felt[nominal + all / 3]);
-  }
-  draw_charts({chart}, path);
 }
 
 }  // namespace prostm::bench

@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "fields/moving_foci.hpp"
 #include "prostm/acoustics/field/propagation.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/fields/moving_foci.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
 #include "support/only_targets.hpp"

@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "plan/random_fields.hpp"
 #include "prostm/am/am_pressures.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/score.hpp"
 #include "prostm/target/pressure_share.hpp"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <complex>
 
-#include "fields/fields.hpp"
 #include "plan/random_fields.hpp"
 #include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/acoustics/skin/skin_response.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/score/physical.hpp"
 #include "support/heap_guard.hpp"
 

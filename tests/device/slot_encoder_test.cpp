@@ -9,9 +9,9 @@
 #include <limits>
 #include <numbers>
 
-#include "fields/moving_foci.hpp"
 #include "prostm/acoustics/focus/array_output.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/fields/moving_foci.hpp"
 #include "support/heap_guard.hpp"
 #include "support/load.hpp"
 

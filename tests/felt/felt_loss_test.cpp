@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fields/fields.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/felt/detail/felt_kernels.hpp"
 #include "prostm/felt/step_path.hpp"
+#include "prostm/fields/fields.hpp"
 #include "support/heap_guard.hpp"
 #include "support/only_targets.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/fields/fields.hpp"
 
 namespace prostm {
 namespace {

@@ -1,4 +1,4 @@
-#include "fields/felt_fields.hpp"
+#include "prostm/fields/felt_fields.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fields/fields.hpp"
+#include "prostm/fields/fields.hpp"
 
 #include <gtest/gtest.h>
 

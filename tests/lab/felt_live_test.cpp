@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "felt/live.hpp"
-#include "fields/felt_fields.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/fields/felt_fields.hpp"
 
 namespace prostm::bench {
 namespace {

@@ -7,9 +7,9 @@
 #include "acoustics/skin_loops.hpp"
 #include "felt_time/felt_live.hpp"
 #include "felt_time/time_skin.hpp"
-#include "fields/fields.hpp"
 #include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/am/am_planner.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/felt_skill.hpp"
 

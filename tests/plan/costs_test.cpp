@@ -5,8 +5,8 @@
 #include <functional>
 #include <limits>
 
-#include "fields/fields.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/detail/paper/refine.hpp"
 
 namespace prostm {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "fields/fields.hpp"
 #include "plan_checks.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "random_fields.hpp"
 

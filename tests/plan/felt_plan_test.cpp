@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "fields/fields.hpp"
 #include "plan/plan_checks.hpp"
 #include "plan/random_fields.hpp"
+#include "prostm/fields/fields.hpp"
 #include "support/heap_guard.hpp"
 
 namespace prostm {

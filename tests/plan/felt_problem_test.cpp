@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "fields/fields.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/detail/fit/felt/rise_cost.hpp"
 
 namespace prostm {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "fields/fields.hpp"
 #include "gradient_check.hpp"
 #include "plan_checks.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/detail/fit/descent.hpp"
 #include "prostm/plan/detail/fit/fit_planner.hpp"
 #include "prostm/plan/detail/fit/initial_loops.hpp"

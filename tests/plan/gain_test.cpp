@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "fields/fields.hpp"
-#include "fields/skin_shapes.hpp"
 #include "plan_checks.hpp"
+#include "prostm/fields/fields.hpp"
+#include "prostm/fields/skin_shapes.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/disturbance.hpp"

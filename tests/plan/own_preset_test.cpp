@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "fields/fields.hpp"
 #include "plan_checks.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 
 namespace prostm {

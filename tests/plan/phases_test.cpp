@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "support/load.hpp"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "plan_checks.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/textbook/textbook.hpp"
 #include "random_fields.hpp"
 #include "support/heap_guard.hpp"

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <vector>
 
-#include "fields/fields.hpp"
 #include "plan_checks.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/emit/emitter.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/score.hpp"
 #include "random_fields.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "fields/fields.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/io/field/field_file.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/score.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fields/skin_shapes.hpp"
 #include "plan_checks.hpp"
 #include "prostm/emit/detail/path_emitter.hpp"
+#include "prostm/fields/skin_shapes.hpp"
 #include "prostm/plan/detail/fit/spacing.hpp"
 #include "prostm/plan/lifted_plan.hpp"
 #include "prostm/plan/planner.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "fields/fields.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/score.hpp"
 #include "support/load.hpp"

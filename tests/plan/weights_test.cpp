@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "fields/fields.hpp"
 #include "gradient_check.hpp"
 #include "plan_checks.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/detail/fit/descent.hpp"
 #include "prostm/plan/detail/fit/initial_loops.hpp"
 #include "prostm/plan/detail/fit/raster/cell_weights.hpp"

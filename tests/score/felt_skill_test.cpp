@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fields/fields.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/score/felt.hpp"
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fields/fields.hpp"
 #include "prostm/acoustics/skin/skin_percept.hpp"
 #include "prostm/core/units.hpp"
+#include "prostm/fields/fields.hpp"
 
 namespace prostm {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "fields/fields.hpp"
 #include "prostm/am/am_planner.hpp"
 #include "prostm/core/random.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 

@@ -1,5 +1,5 @@
-#include "fields/fields.hpp"
 #include "plan/plan_pictures.hpp"
+#include "prostm/fields/fields.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "report/metrics_table.hpp"
 #include "report/report.hpp"

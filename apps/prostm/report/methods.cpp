@@ -1,17 +1,17 @@
 #include <fmt/format.h>
 
-#include "methods/comparison.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/figure/figures.hpp"
+#include "prostm/methods/comparison.hpp"
 #include "report/report.hpp"
 
 namespace prostm::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using bench::kWays;
-using bench::Means;
-using bench::Way;
+using methods::kWays;
+using methods::Means;
+using methods::Way;
 using AllMeans = std::array<Means, kWays.size()>;
 
 Json mean(const Distribution& of) {
@@ -38,7 +38,7 @@ Json shape_rows(const AllMeans& means) {
   return rows;
 }
 
-Json level_rows(const AllMeans& means, bench::Equal equal) {
+Json level_rows(const AllMeans& means, methods::Equal equal) {
   Json rows = Json::array();
   for (std::size_t w = 0; w < kWays.size(); ++w) {
     const Means::Level& level = means[w].level[static_cast<std::size_t>(equal)];
@@ -69,13 +69,13 @@ void add_tables(const AllMeans& means, Json& blocks) {
        {"ghosts", "ghosts", "", 2}},
       shape_rows(means)));
   struct Equality {
-    bench::Equal equal;
+    methods::Equal equal;
     const char* caption;
   };
   for (const Equality& of :
-       {Equality{bench::Equal::Drive, "Levels, when the largest drive is equal"},
-        Equality{bench::Equal::Power, "Levels, when the mean power is that of best"},
-        Equality{bench::Equal::Percept, "Levels, when the strongest percept is that of best"}}) {
+       {Equality{methods::Equal::Drive, "Levels, when the largest drive is equal"},
+        Equality{methods::Equal::Power, "Levels, when the mean power is that of best"},
+        Equality{methods::Equal::Percept, "Levels, when the strongest percept is that of best"}}) {
     blocks.push_back(report::table_block(of.caption,
                                          {{"way", "way"},
                                           {"pressure", "highest pressure", "Pa", 2},
@@ -108,8 +108,8 @@ void make_methods(const ReportWork& work, Json& document) {
     for (int i = 0; i < frames; ++i) {
       const int frame = (2 * i + 1) * recording.frames() / (2 * frames);
       const TargetField target = recorded_field(recording, frame);
-      bench::Renderer renderer(usx_array(), target);
-      if (bench::add_ways(renderer, target, means)) ++felt;
+      methods::Renderer renderer(usx_array(), target);
+      if (methods::add_ways(renderer, target, means)) ++felt;
       work.progress((static_cast<double>(s) * frames + i + 1.0) / all);
     }
     if (felt == 0) {
@@ -123,7 +123,7 @@ void make_methods(const ReportWork& work, Json& document) {
     add_tables(means, blocks);
   }
   if (work.quick) return;
-  bench::draw_ways(work.folder.path("methods.svg"));
+  methods::draw_ways(work.folder.path("methods.svg"));
   blocks.push_back(report::figure_block(
       "methods.svg",
       "One wide plume and four thin ones, generated: the target, the pressure that the array puts "

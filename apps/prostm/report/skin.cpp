@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "prostm/experiments/experiments.hpp"
 #include "report/report.hpp"
-#include "skin/experiments.hpp"
 
 namespace prostm::app {
 namespace {
@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 class Steps {
  public:
   Steps(const ReportWork& work, double all) : work_(work), all_(all) {}
-  bench::Step step(double weight) {
+  experiments::Step step(double weight) {
     return [this, weight] { work_.progress(std::min(1.0, (done_ += weight) / all_)); };
   }
 
@@ -34,25 +34,26 @@ std::vector<report::Column> with_range(std::vector<report::Column> columns) {
   return columns;
 }
 
-double peak(const bench::Curve& curve) {
-  return bench::peak_place(bench::circle_speeds(), curve.intensity);
+double peak(const experiments::Curve& curve) {
+  return experiments::peak_place(experiments::circle_speeds(), curve.intensity);
 }
 
-void add_circles(const ReportWork& work, bench::Skins skins, Steps& steps, Json& blocks) {
-  std::vector<double> circles(bench::kCircumferences.begin(), bench::kCircumferences.end());
-  if (work.quick) circles = {bench::kCircumferences[1]};
-  const auto all = bench::circle_curves(circles, skins, steps.step(10.0));
+void add_circles(const ReportWork& work, experiments::Skins skins, Steps& steps, Json& blocks) {
+  std::vector<double> circles(experiments::kCircumferences.begin(),
+                              experiments::kCircumferences.end());
+  if (work.quick) circles = {experiments::kCircumferences[1]};
+  const auto all = experiments::circle_curves(circles, skins, steps.step(10.0));
   Json rows = Json::array();
-  for (const bench::CircleCurves& curves : all) {
+  for (const experiments::CircleCurves& curves : all) {
     Json& row = rows.emplace_back();
     row = {{"circle", 1e3 * curves.circumference},
            {"peak", peak(curves.nominal())},
            {"memoryless", peak(curves.memoryless)}};
     std::vector<double> peaks;
-    for (const bench::Curve& curve : curves.skins) peaks.push_back(peak(curve));
+    for (const experiments::Curve& curve : curves.skins) peaks.push_back(peak(curve));
     add_range(row, peaks);
   }
-  bench::draw_circles(all, work.folder.path("skin-circles.svg"));
+  experiments::draw_circles(all, work.folder.path("skin-circles.svg"));
   blocks.push_back(report::heading_block("Circles"));
   blocks.push_back(report::text_block(
       "Published [Frier 2018]: circles are strongest at 5 to 8 m/s, whatever their size."));
@@ -68,16 +69,16 @@ void add_circles(const ReportWork& work, bench::Skins skins, Steps& steps, Json&
                                         "Two charts of strength against speed"));
 }
 
-void add_squares(const ReportWork& work, bench::Skins skins, Steps& steps, Json& blocks) {
+void add_squares(const ReportWork& work, experiments::Skins skins, Steps& steps, Json& blocks) {
   std::vector<double> speeds = {2, 4, 6, 8, 10, 12};
   if (work.quick) speeds = {8};
   Json rows = Json::array();
-  for (const double side : bench::kSquareSides) {
-    const auto looks = bench::square_looks(side, speeds, skins, steps.step(1.0));
-    const bench::SquareLooks& nominal = looks[looks.size() / 2];
+  for (const double side : experiments::kSquareSides) {
+    const auto looks = experiments::square_looks(side, speeds, skins, steps.step(1.0));
+    const experiments::SquareLooks& nominal = looks[looks.size() / 2];
     for (std::size_t i = 0; i < speeds.size(); ++i) {
       const auto peaks = std::ranges::count_if(
-          looks, [&](const bench::SquareLooks& of) { return of.rms[i].peak_inside; });
+          looks, [&](const experiments::SquareLooks& of) { return of.rms[i].peak_inside; });
       rows.push_back({{"side", 100.0 * side},
                       {"speed", speeds[i]},
                       {"middle", nominal.rms[i].middle},
@@ -104,11 +105,12 @@ void add_squares(const ReportWork& work, bench::Skins skins, Steps& steps, Json&
                           rows));
 }
 
-void add_lines(const ReportWork& work, bench::Skins skins, Steps& steps, Json& blocks) {
+void add_lines(const ReportWork& work, experiments::Skins skins, Steps& steps, Json& blocks) {
   std::vector<double> speeds = {2, 4, 5, 6, 7, 8, 10, 12};
   if (work.quick) speeds = {4, 8};
   Json rows = Json::array();
-  for (const bench::SpeedReach& at : bench::line_reaches(speeds, skins, steps.step(3.0))) {
+  for (const experiments::SpeedReach& at :
+       experiments::line_reaches(speeds, skins, steps.step(3.0))) {
     Json& row = rows.emplace_back();
     row = {{"speed", at.speed},
            {"ahead", 1e3 * at.nominal.ahead},
@@ -132,12 +134,12 @@ void add_lines(const ReportWork& work, bench::Skins skins, Steps& steps, Json& b
       rows));
 }
 
-void add_gap(const ReportWork& work, bench::Skins skins, Steps& steps, Json& blocks) {
-  const bench::GapCurves curves = bench::gap_curves(skins, steps.step(1.0));
-  constexpr double kDips[] = {0.99, bench::kNoticed};
+void add_gap(const ReportWork& work, experiments::Skins skins, Steps& steps, Json& blocks) {
+  const experiments::GapCurves curves = experiments::gap_curves(skins, steps.step(1.0));
+  constexpr double kDips[] = {0.99, experiments::kNoticed};
   Json rows = Json::array();
   const auto gap = [&](const std::vector<double>& dips, double level) {
-    const double at = bench::gap_where(curves.gaps, dips, level);
+    const double at = experiments::gap_where(curves.gaps, dips, level);
     return at > 0.0 ? Json(1e3 * at) : Json(nullptr);
   };
   for (const double level : kDips) {
@@ -145,7 +147,7 @@ void add_gap(const ReportWork& work, bench::Skins skins, Steps& steps, Json& blo
                     {"pressure", gap(curves.acoustic, level)},
                     {"felt", gap(curves.felt[curves.felt.size() / 2], level)}});
   }
-  bench::draw_gap(curves, work.folder.path("skin-gap.svg"));
+  experiments::draw_gap(curves, work.folder.path("skin-gap.svg"));
   blocks.push_back(report::heading_block("Two foci"));
   blocks.push_back(report::text_block(
       "Published [Howard 2023]: two foci at 200 Hz merge acoustically below 15 to 18 mm; they feel "

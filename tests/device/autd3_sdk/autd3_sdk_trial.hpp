@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "device/autd3_sdk/autd3_sdk_units.hpp"
-#include "fields/moving_foci.hpp"
 #include "prostm/device/autd3_sdk/autd3_sdk_array.hpp"
+#include "prostm/fields/moving_foci.hpp"
 #include "support/eventually.hpp"
 #include "support/heap_guard.hpp"
 

@@ -1,9 +1,8 @@
-/// Shared parts of the experiments, and the cost of a response of the skin.
-#include "skin/experiments.hpp"
+#include "skin/tables.hpp"
 
+#include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/core/random.hpp"
 #include "prostm/core/stage_timer.hpp"
-#include "skin/stimuli.hpp"
 
 namespace prostm::bench {
 
@@ -11,16 +10,6 @@ Row value_row(const std::string& name, const std::string& unit, double value) {
   Distribution one;
   one.add(value);
   return {name, unit, one.summary(), "", 0.0};
-}
-
-double peak_place(const std::vector<double>& x, const std::vector<double>& y) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < y.size(); ++i) {
-    if (y[i] > y[best]) best = i;
-  }
-  if (best == 0 || best + 1 == y.size()) return x[best];
-  const double before = y[best - 1], at = y[best], after = y[best + 1];
-  return x[best] + 0.5 * (x[best] - x[best - 1]) * (before - after) / (before - 2.0 * at + after);
 }
 
 void measure_response(std::vector<Row>& rows) {

@@ -1,4 +1,4 @@
-#include "fields/skin_shapes.hpp"
+#include "prostm/fields/skin_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fields/moving_foci.hpp"
+#include "prostm/fields/moving_foci.hpp"
 
 #include <cmath>
 

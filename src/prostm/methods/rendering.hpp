@@ -11,7 +11,7 @@
 #include "prostm/score/score.hpp"
 #include "prostm/target/target_field.hpp"
 
-namespace prostm::bench {
+namespace prostm::methods {
 
 /// The compared ways. BestNarrow is Best planned with the width of the array's own focus; all
 /// others use the paper's σ. Flat needs no array: the same pressure on all skin, modulated as in
@@ -49,4 +49,4 @@ class Renderer {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace prostm::bench
+}  // namespace prostm::methods

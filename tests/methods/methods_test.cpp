@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "fields/fields.hpp"
-#include "methods/comparison.hpp"
+#include "prostm/fields/fields.hpp"
+#include "prostm/methods/comparison.hpp"
 #include "support/load.hpp"
 
-namespace prostm::bench {
+namespace prostm::methods {
 namespace {
 
 constexpr int kCells = 32;
@@ -50,4 +50,4 @@ TEST(Rendering, FlatHasNoSkillAndBestHas) {
 }
 
 }  // namespace
-}  // namespace prostm::bench
+}  // namespace prostm::methods

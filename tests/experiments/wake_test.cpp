@@ -1,3 +1,5 @@
+#include "prostm/experiments/wake.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 #include <stdexcept>
 
 #include "acoustics/skin_loops.hpp"
-#include "skin/wake.hpp"
 
 namespace prostm {
 namespace {

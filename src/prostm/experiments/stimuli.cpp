@@ -1,4 +1,4 @@
-#include "skin/stimuli.hpp"
+#include "prostm/experiments/stimuli.hpp"
 
 #include <Eigen/Core>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "prostm/acoustics/focus/focus_solver.hpp"
 #include "prostm/core/units.hpp"
 
-namespace prostm::bench {
+namespace prostm::experiments {
 namespace {
 
 /// Computes G from every transducer to every cell, (A1).
@@ -128,4 +128,4 @@ std::vector<double> foci_pressure(const TransducerArray& array, const Palm& palm
   return pressure;
 }
 
-}  // namespace prostm::bench
+}  // namespace prostm::experiments

@@ -9,7 +9,7 @@
 #include "prostm/acoustics/skin/skin_response.hpp"
 #include "prostm/core/geometry.hpp"
 
-namespace prostm::bench {
+namespace prostm::experiments {
 
 /// The palm: a flat raster parallel to the array, above its centre.
 struct Palm {
@@ -51,4 +51,4 @@ class StmField {
 std::vector<double> foci_pressure(const TransducerArray& array, const Palm& palm,
                                   const std::vector<Vec2>& foci);
 
-}  // namespace prostm::bench
+}  // namespace prostm::experiments

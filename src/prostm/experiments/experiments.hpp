@@ -1,7 +1,6 @@
 #pragma once
 /// Published experiments with focal points on skin, computed with the skin model of
-/// docs/design/skin.md. Each prints its tables, appends its figures to `rows`, and draws a picture
-/// on request. docs/experiments has a page on each.
+/// docs/design/skin.md. docs/experiments has a page on each.
 
 #include <array>
 #include <functional>
@@ -10,9 +9,8 @@
 #include <vector>
 
 #include "prostm/acoustics/skin/skin_model.hpp"
-#include "report.hpp"
 
-namespace prostm::bench {
+namespace prostm::experiments {
 
 /// Skins to compute with; the nominal one stands in the middle.
 using Skins = std::span<const SkinSettings>;
@@ -45,7 +43,8 @@ struct GapCurves {
   std::vector<double> acoustic;           ///< of the radiation pressure
   std::vector<std::vector<double>> felt;  ///< on each skin
 };
-inline constexpr double kNoticed = 0.8;  ///< a dip by a Weber fraction of 0.2
+inline constexpr double kNoticed = 0.8;    ///< a dip by a Weber fraction of 0.2
+inline constexpr double kGapRate = 200.0;  ///< of the modulation [Hz]
 GapCurves gap_curves(Skins skins, const Step& step);
 /// The gap from which the dip stays at or below a level, interpolated; 0 if it never does [m].
 double gap_where(const std::vector<double>& gaps, const std::vector<double>& dips, double level);
@@ -101,30 +100,15 @@ struct LoopTable {
 };
 LoopTable loop_table(std::span<const double> lengths, std::span<const double> speeds, Skins skins,
                      const Step& step);
+inline constexpr double kLongestGain = 1.4;  ///< γ of the longest loop at its usual speed, (P9b)
 /// Gain of each length at 7 m/s that makes it as strong as the longest, whose gain is 1.
 std::vector<double> relative_gains(const SkinLoops& loops, double LoopStrength::*strength);
 /// The speed of kLoopSpeeds at which a loop is strongest [m/s].
 double strongest_speed(const std::vector<LoopStrength>& by_speed, double LoopStrength::*strength);
-
-/// Perceived intensity of circles against speed, compared with Frier et al. 2018.
-void compute_circles(const std::string& figure, std::vector<Row>& rows);
-/// Squares of 1 and 3 cm, compared with Reardon et al. 2023.
-void compute_squares(const std::string& figure, std::vector<Row>& rows);
-/// A focal point on a straight line, compared with Reardon et al. 2019.
-void compute_regimes(const std::string& figure, std::vector<Row>& rows);
-/// Two modulated foci side by side, compared with Howard et al. 2023.
-void compute_gap(const std::string& figure, std::vector<Row>& rows);
-/// Gain by period and strength by speed of loops of 35 to 140 mm: the paper's open problems (iv)
-/// and (v), answered by the model.
-void compute_loops(const std::string& figure, std::vector<Row>& rows);
-/// Measures the cost of a response.
-void measure_response(std::vector<Row>& rows);
-
-/// Returns a row with one value.
-Row value_row(const std::string& name, const std::string& unit, double value);
+void draw_loops(const LoopTable& table, const std::string& path);
 
 /// Returns the x of a curve's maximum over equally spaced x, by a parabola through the highest
 /// value and its neighbours; at an end, that end. @pre as many y as x, at least 3.
 double peak_place(const std::vector<double>& x, const std::vector<double>& y);
 
-}  // namespace prostm::bench
+}  // namespace prostm::experiments

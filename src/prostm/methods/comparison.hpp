@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "methods/rendering.hpp"
-#include "report.hpp"
+#include "prostm/core/distribution.hpp"
+#include "prostm/methods/rendering.hpp"
 
-namespace prostm::bench {
+namespace prostm::methods {
 
 /// The quantity that is made equal between ways before they are compared.
 enum class Equal { Drive, Power, Percept };
@@ -45,11 +45,7 @@ struct Means {
 bool add_ways(Renderer& renderer, const TargetField& target,
               std::array<Means, kWays.size()>& means);
 
-/// Renders targets in every way with the USX-like array, and prints means: first the quantities
-/// that no factor changes, then pressures and percepts under each control.
-void compare_ways(const Targets& targets, std::vector<Row>& rows);
-
 /// Draws the target, and for each way the envelope and the percept, for two generated fields.
 void draw_ways(const std::string& path);
 
-}  // namespace prostm::bench
+}  // namespace prostm::methods

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "prostm/experiments/experiments.hpp"
+#include "prostm/experiments/stimuli.hpp"
 #include "prostm/plan/gain.hpp"
-#include "skin/experiments.hpp"
-#include "skin/stimuli.hpp"
 
-namespace prostm::bench {
+namespace prostm::experiments {
 namespace {
 
 TEST(SkinBench, LapsAreClosedAndRunAtOneSpeed) {
@@ -121,4 +121,4 @@ TEST(SkinBench, SmallLoopsAreStrongestAtTheFastestSpeed) {
 }
 
 }  // namespace
-}  // namespace prostm::bench
+}  // namespace prostm::experiments

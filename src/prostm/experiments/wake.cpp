@@ -1,4 +1,4 @@
-#include "skin/wake.hpp"
+#include "prostm/experiments/wake.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "fields/fields.hpp"
+#include "prostm/fields/fields.hpp"
 
 namespace prostm::fields {
 

@@ -1,4 +1,4 @@
-#include "methods/rendering.hpp"
+#include "prostm/methods/rendering.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "prostm/emit/loop_samples.hpp"
 #include "prostm/plan/planner.hpp"
 
-namespace prostm::bench {
+namespace prostm::methods {
 namespace {
 
 constexpr double kRate = 40e3;         // sample rate [Hz]
@@ -151,4 +151,4 @@ Rendering Renderer::render(Way way, const TargetField& target) {
   return out;
 }
 
-}  // namespace prostm::bench
+}  // namespace prostm::methods
