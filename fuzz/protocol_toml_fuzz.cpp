@@ -6,6 +6,8 @@
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/study/task/course.hpp"
+#include "prostm/study/task/protocol_file.hpp"
+#include "prostm/study/task/task.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prostm;
@@ -22,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (int i = 0; i < kFew && !course.is_done(); ++i) {
         const Trial& t = course.trial();
         if (t.level && !(*t.level >= level.low - 0.5 && *t.level <= level.high + 0.5)) std::abort();
-        if (protocol.trials.task == StudyTask::Adjustment) {
+        if (protocol.trials.task->is_tuned()) {
           course.tune(i % 3 - 1, i % 2 == 0);
           course.accept(*course.trial().level);
         } else {

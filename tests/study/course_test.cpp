@@ -118,7 +118,7 @@ TEST(Course, DrawsIntervalsAndTurnsFairly) {
     EXPECT_FALSE(course.is_open());
     for (; !course.is_done(); course.answer(*course.trial().level > 5.0)) {
       const Trial& t = course.trial();
-      first += t.level_first ? 1 : 0;
+      first += t.level_first() ? 1 : 0;
       if (all++ % 2 == 0) leads += t.track == 1 ? 1 : 0, ++rounds;
     }
   }

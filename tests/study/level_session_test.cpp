@@ -81,8 +81,8 @@ TEST(LevelSession, PresentsTwoIntervalsWithAGapAndTakesTheAnswerAfterBothHaveBeg
   for (int trial = 0; trial < 6; ++trial) {
     ASSERT_TRUE(s.present());
     const Trial t = s.session.trial();
-    first += t.level_first ? 1 : 0;
-    const double levels[2] = {t.level_first ? *t.level : 2.0, t.level_first ? 2.0 : *t.level};
+    first += t.level_first() ? 1 : 0;
+    const double levels[2] = {t.level_first() ? *t.level : 2.0, t.level_first() ? 2.0 : *t.level};
     EXPECT_EQ(s.session.interval(), 1);
     EXPECT_EQ(s.session.wanted().level, levels[0]);
     EXPECT_TRUE(s.session.wanted().sound);
@@ -100,10 +100,10 @@ TEST(LevelSession, PresentsTwoIntervalsWithAGapAndTakesTheAnswerAfterBothHaveBeg
     if (trial % 2 == 0) {
       ASSERT_TRUE(s.until([&] { return !s.session.wanted().sound; }));
     }
-    const int chosen = trial == 3 ? (t.level_first ? 2 : 1) : (t.level_first ? 1 : 2);
+    const int chosen = trial == 3 ? (t.level_first() ? 2 : 1) : (t.level_first() ? 1 : 2);
     EXPECT_EQ(s.answer(chosen), "");
     const ResponseLine line = s.lines("trial").back();
-    EXPECT_EQ(line["interval"], t.level_first ? 1 : 2);
+    EXPECT_EQ(line["interval"], t.level_first() ? 1 : 2);
     EXPECT_EQ(line["answer"], chosen);
     EXPECT_EQ(line["felt"], trial == 3 ? 0 : 1);
     EXPECT_EQ(line["correct"], trial == 3 ? 0 : 1);
@@ -121,7 +121,7 @@ TEST(LevelSession, ComparesWithAnotherMethodWithoutRightAnswers) {
   const Protocol p = protocol(kForced, kLinear + "against = \"am\"\nshare = 0.5\n", kAm);
   Sitting s(p, folder.file("1.jsonl"));
   ASSERT_TRUE(s.present());
-  const bool level_first = s.session.trial().level_first;
+  const bool level_first = s.session.trial().level_first();
   EXPECT_EQ(s.session.wanted().standard, !level_first);
   EXPECT_EQ(s.session.wanted().level.has_value(), level_first);
   ASSERT_TRUE(s.until([&] { return s.session.interval() == 2; }));
@@ -218,14 +218,13 @@ std::vector<nlohmann::ordered_json> trials_of(const std::string& path) {
 /// An act that depends on the trial alone.
 StudyAct steady(const StudySession& session) {
   const Trial& t = session.trial();
-  if (session.protocol().trials.task == StudyTask::Adjustment) {
+  if (session.protocol().trials.task == &adjustment()) {
     if (std::abs(*t.level - 6.0) < 0.2) return {.what = Do::Accept};
     return {.what = Do::Tune, .steps = *t.level < 6.0 ? 1 : -1};
   }
   const bool felt = *t.level > 5.0;
-  if (session.protocol().trials.task == StudyTask::Judgement)
-    return {.what = Do::Answer, .yes = felt};
-  return {.what = Do::Answer, .interval = felt == t.level_first ? 1 : 2};
+  if (session.protocol().trials.task == &judgement()) return {.what = Do::Answer, .yes = felt};
+  return {.what = Do::Answer, .interval = felt == t.level_first() ? 1 : 2};
 }
 
 TEST(LevelSession, GoesOnAfterItWasKilledAtAnyStep) {

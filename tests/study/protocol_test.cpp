@@ -1,8 +1,7 @@
-#include "prostm/study/protocol/protocol.hpp"
-
 #include <nlohmann/json.hpp>
 
 #include "prostm/core/file/file.hpp"
+#include "prostm/study/task/protocol_file.hpp"
 #include "study/study_support.hpp"
 #include "support/input_errors.hpp"
 #include "support/places.hpp"
@@ -93,7 +92,7 @@ TEST(Protocol, ExamplesOfEveryTaskAreRead) {
     return read_protocol(test::source_file(std::string("data/protocols/") + name), {});
   };
   const Protocol gain = read("gain-as-strong-as-am.toml");
-  EXPECT_EQ(gain.trials.task, StudyTask::Adjustment);
+  EXPECT_EQ(gain.trials.task, &adjustment());
   ASSERT_TRUE(gain.standard);
   EXPECT_EQ(gain.standard->name, "am");
   EXPECT_EQ(gain.standard->settings.method, Method::Am);
@@ -102,14 +101,14 @@ TEST(Protocol, ExamplesOfEveryTaskAreRead) {
   EXPECT_EQ(gain.methods[0].settings.emit.full_scale_pressure,
             gain.standard->settings.emit.full_scale_pressure);
   const Protocol continuity = read("continuity.toml");
-  EXPECT_EQ(continuity.trials.task, StudyTask::Judgement);
+  EXPECT_EQ(continuity.trials.task, &judgement());
   EXPECT_EQ(continuity.level.setting, "plan.draw_rate");
   EXPECT_EQ(continuity.level.start, 120.0) << "where it is easiest";
   const Protocol paths = read("number-of-paths.toml");
   EXPECT_EQ(paths.level.setting, "plan.paths");
   EXPECT_EQ(paths.level.procedure, Staircase::Bayes);
   const Protocol stronger = read("just-stronger.toml");
-  EXPECT_EQ(stronger.trials.task, StudyTask::ForcedChoice);
+  EXPECT_EQ(stronger.trials.task, &forced_choice());
   EXPECT_FALSE(stronger.standard);
   EXPECT_EQ(stronger.level.start, 2.0);
   for (const Protocol* p : {&gain, &continuity, &paths, &stronger}) {

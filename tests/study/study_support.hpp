@@ -4,6 +4,7 @@
 #include <string>
 
 #include "prostm/study/session/session.hpp"
+#include "prostm/study/task/protocol_file.hpp"
 
 namespace prostm::test {
 

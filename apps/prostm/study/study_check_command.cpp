@@ -4,6 +4,7 @@
 
 #include "common.hpp"
 #include "prostm/study/task/course.hpp"
+#include "prostm/study/task/task.hpp"
 #include "study/study_protocol.hpp"
 
 namespace prostm::app {
@@ -61,16 +62,16 @@ Json method_json(const Protocol& protocol, const StudyMethod& method, bool varie
   }
   json["levels"] = {level_json(protocol, method.settings, protocol.level.low),
                     level_json(protocol, method.settings, protocol.level.high)};
-  if (protocol.trials.task != StudyTask::Judgement && !protocol.standard)
+  if (protocol.trials.task->traits().compares && !protocol.standard)
     json["reference"] = level_json(protocol, method.settings, protocol.level.reference);
   return json;
 }
 
 Json presented_json(const Protocol& protocol, const PipelineSettings& base) {
-  const bool varies = protocol.trials.task != StudyTask::Identification;
+  const bool varies = protocol.trials.task->traits().has_levels;
   const Course course(protocol, 1);
   Json json = {{"format", "prostm-study-check/1"},
-               {"task", name_of(protocol.trials.task)},
+               {"task", protocol.trials.task->name()},
                {"participants", protocol.study.participants},
                {"methods_of", name_of(protocol.study.methods)},
                {"device", base.device},

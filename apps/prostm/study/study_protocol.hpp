@@ -4,7 +4,7 @@
 #include <string>
 
 #include "options.hpp"
-#include "prostm/study/protocol/protocol.hpp"
+#include "prostm/study/task/protocol_file.hpp"
 
 namespace prostm::app {
 

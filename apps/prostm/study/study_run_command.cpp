@@ -13,6 +13,7 @@
 #include "prostm/study/session/roster.hpp"
 #include "prostm/study/session/session.hpp"
 #include "prostm/study/session/spelling.hpp"
+#include "prostm/study/task/line_keys.hpp"
 #include "run/view.hpp"
 #include "study/study_protocol.hpp"
 
@@ -192,7 +193,7 @@ void write_rest(MarkerSender& markers, StudySession& session) {
 int run_of(const ResponseFile& file) {
   const auto& lines = file.lines();
   return 1 + static_cast<int>(std::count_if(lines.begin(), lines.end(), [](const ResponseLine& l) {
-           return l.value("kind", "") == "resume";
+           return l.value(line::kKind, "") == line::kResume;
          }));
 }
 
@@ -200,7 +201,8 @@ int run_of(const ResponseFile& file) {
 void tell_delays(std::FILE* out, const ResponseFile& file, int run) {
   Distribution begins, ends;
   for (const ResponseLine& line : file.lines()) {
-    if (line.value("kind", "") != "marker" || line["run"] != run || line["late_ms"].is_null())
+    if (line.value(line::kKind, "") != line::kMarker || line["run"] != run ||
+        line["late_ms"].is_null())
       continue;
     const bool on = line["event"].get<std::string>().ends_with("-on");
     (on ? begins : ends).add(line["late_ms"].get<double>());
@@ -215,7 +217,7 @@ void tell_delays(std::FILE* out, const ResponseFile& file, int run) {
 
 std::size_t answers_in(const std::vector<ResponseLine>& lines) {
   return static_cast<std::size_t>(std::ranges::count_if(
-      lines, [](const ResponseLine& l) { return l.value("kind", "") == "trial"; }));
+      lines, [](const ResponseLine& l) { return l.value(line::kKind, "") == line::kTrial; }));
 }
 
 void report(std::FILE* out, const StudySession& session, const ResponseFile& file,

@@ -8,6 +8,7 @@
 
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/study/task/task.hpp"
 #include "prostm/viewer/detail/state_json.hpp"
 
 namespace prostm {
@@ -29,6 +30,20 @@ Json jets_json(const std::string& scene) {
   for (const SmokeJet& jet : scene_from_name(scene).smoke.jets)
     jets.push_back({1e3 * jet.centre.x(), 1e3 * jet.centre.y(), 1e3 * jet.radius});
   return jets;
+}
+
+/// How an answer is given, from which both pages make their buttons and keys.
+Json controls_json(const Task& task) {
+  const TaskTraits& traits = task.traits();
+  return {{"form", name_of(traits.form)},
+          {"words", traits.words},
+          {"spoken", traits.spoken},
+          {"intervals", traits.intervals}};
+}
+
+/// The number of the answer that pages get as true: yes, or the second interval.
+int truth_of(const Task& task) {
+  return task.traits().form == AnswerForm::Interval ? 2 : 1;
 }
 
 double rendered_force(const ViewFrame& frame) {
@@ -237,7 +252,8 @@ Json StudyView::both(const char* room) const {
                {"done", session_.trials_done()},
                {"trials", session_.course().most()},
                {"open", session_.course().is_open()},
-               {"task", name_of(p.trials.task)},
+               {"task", p.trials.task->name()},
+               {"controls", controls_json(*p.trials.task)},
                {"interval", session_.interval()},
                {"takes_answer", session_.takes_answer()},
                {"training_left_s", std::ceil(session_.training_left())},
@@ -262,7 +278,7 @@ Json StudyView::experimenter() const {
   json["strengths"] = session_.strengths();
   json["problem"] = session_.problem().empty() ? problem_ : session_.problem();
   json["last"] = nullptr;
-  if (session_.last_answer()) json["last"] = *session_.last_answer();
+  if (const auto last = session_.last_answer()) json["last"] = *last == truth_of(*p.trials.task);
   json["question"] = nullptr;
   json["condition"] = nullptr;
   const auto& gate = session_.gate();
@@ -296,7 +312,7 @@ Json StudyView::participant() const {
     json["waits_for"] = session_.waits_for();
   if (phase == StudyPhase::Presenting) {
     const StudyScene& asked = p.scenes[static_cast<std::size_t>(session_.trial().question)];
-    const bool pictured = p.trials.task == StudyTask::Identification;
+    const bool pictured = p.trials.task->traits().pictured;
     json["question"] = {{"text", asked.question},
                         {"jets_mm", pictured ? jets_json(asked.name) : Json::array()}};
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/crc.hpp>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -17,10 +16,10 @@
 #include "prostm/core/text/json.hpp"
 #include "prostm/study/analysis/detail/answer_table.hpp"
 #include "prostm/study/analysis/detail/identities.hpp"
+#include "prostm/study/analysis/detail/response_answers.hpp"
 #include "prostm/study/analysis/detail/same_stimuli.hpp"
 #include "prostm/study/analysis/detail/table_columns.hpp"
 #include "prostm/study/analysis/detail/text_encoding.hpp"
-#include "prostm/study/session/response_file.hpp"
 #include "prostm/study/session/roster.hpp"
 
 namespace prostm {
@@ -175,113 +174,6 @@ std::string tidy_csv(std::span<const Answer> answers) {
 
 namespace {
 
-/// The kind of the answers to a protocol, as the first line of a participant's file has it.
-AnswerKind kind_of(const ResponseLine& protocol) {
-  const auto trials = protocol.value("trials", ResponseLine::object());
-  const auto level = protocol.value("level", ResponseLine::object());
-  const std::string task = trials.value("task", "identification");
-  if (task == "adjustment") return AnswerKind::Adjusted;
-  const bool is_felt = task == "judgement" || !level.value("against", "").empty();
-  return is_felt ? AnswerKind::Felt : AnswerKind::Right;
-}
-
-Answer answer_of(const ResponseLine& line, const std::string& participant, AnswerKind kind) {
-  Answer answer;
-  answer.participant = participant;
-  answer.method = line.at("method");
-  answer.scene = line.at("scene");
-  answer.trial = std::to_string(line.at("trial").get<int>());
-  if (line.contains("level")) {
-    answer.level = line.at("level").get<double>();
-  } else {
-    answer.question = line.at("question");
-  }
-  answer.kind = kind;
-  if (line.contains("response_s")) answer.response_s = line["response_s"].get<double>();
-  answer.stimulus = line.value("stimulus", "");
-  if (const auto gate = line.find("gate"); gate != line.end() && gate->is_object())
-    answer.gate = gate->value("pass", false) ? "pass" : "fail";
-  if (line.value("anyway", false)) answer.gate = "anyway";
-  return answer;
-}
-
-std::string text_in(const ResponseLine& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-/// The run, from the first line of a participant's file.
-RunFacts facts_of(const ResponseLine& first) {
-  boost::crc_32_type sum;
-  const auto protocol = first.find("protocol");
-  const std::string text = protocol == first.end() ? std::string() : protocol->dump();
-  sum.process_bytes(text.data(), text.size());
-  const ResponseLine& run = first.at("run");
-  return {text.empty() ? std::string() : fmt::format("{:08x}", sum.checksum()),
-          text_in(run, "prostm"), text_in(run, "device"), text_in(run, "array"),
-          text_in(run, "hand")};
-}
-
-/// A participant's file: answers, and what they are compared by.
-struct Responses {
-  std::vector<Answer> answers;
-  study::StudyFile file;
-  int trials = 0;  ///< that the protocol has
-  bool ended = false;
-};
-
-/// Adds the trial of a line, or corrects the last one.
-void take_line(const ResponseLine& line, const std::string& where, AnswerKind of, Responses& out) {
-  const std::string kind = line.value("kind", "");
-  if (kind == "trial") {
-    out.answers.push_back(answer_of(line, out.file.participant, of));
-  } else if (out.answers.empty() ||
-             out.answers.back().trial != std::to_string(line.at("trial").get<int>())) {
-    throw InputError(where + " corrects another trial than the last");
-  }
-  if (of == AnswerKind::Adjusted) return;
-  Answer& answer = out.answers.back();
-  answer.correct = line.at(of == AnswerKind::Felt ? "felt" : "correct").get<int>() == 1;
-  if (!answer.question.empty()) answer.yes = line.at("answer").get<int>() == 1;
-}
-
-Responses read_responses(std::string_view text, const std::string& file,
-                         std::vector<std::string>& notes) {
-  Responses out;
-  const std::vector<ResponseLine> lines = responses_from_text(text, file);
-  std::string where = file + ", line 1";
-  try {
-    if (lines.empty() || lines.front().value("format", "") != kResponseFormat)
-      throw InputError(where + " does not begin a participant's file of prostm study run");
-    const ResponseLine& first = lines.front();
-    out.file = {first.at("participant"), first.value("protocol", ResponseLine::object()),
-                first.at("run").at("rehearsal")};
-    out.trials = first.at("trials");
-    const AnswerKind of = kind_of(out.file.protocol);
-    const RunFacts facts = facts_of(first);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const std::string kind = lines[i].value("kind", "");
-      where = fmt::format("{}, line {}", file, i + 1);
-      if (kind == "end") {
-        out.ended = true;
-        const std::string strengths = text_in(lines[i], "strengths");
-        if (!strengths.empty()) notes.push_back(file + ": " + strengths);
-      }
-      if (kind == "trial" || kind == "correction") take_line(lines[i], where, of, out);
-    }
-    for (Answer& answer : out.answers) answer.run = facts;
-  } catch (const ResponseLine::exception& error) {
-    throw InputError(fmt::format("{}: {}", where, error.what()));
-  }
-  if (out.file.rehearsal)
-    notes.push_back(file + " is a rehearsal: nobody felt anything, and answers are made up.");
-  if (!out.ended && static_cast<int>(out.answers.size()) < out.trials) {
-    notes.push_back(fmt::format("Participant {} gave {} of {} answers ({}).", out.file.participant,
-                                out.answers.size(), out.trials, file));
-  }
-  return out;
-}
-
 /// Whether a file is a participant's, by its name.
 bool is_responses(std::string_view path) {
   return path.ends_with(".jsonl");
@@ -290,8 +182,8 @@ bool is_responses(std::string_view path) {
 /// Reads several files into one list of answers.
 class Files {
  public:
-  Files(const ReadingSettings& settings, std::vector<std::string>& notes)
-      : settings_(settings), notes_(notes) {}
+  Files(const ReadingSettings& settings, Tasks tasks, std::vector<std::string>& notes)
+      : settings_(settings), tasks_(tasks), notes_(notes) {}
 
   void read(std::span<const std::string> paths);
   std::vector<Answer> take();
@@ -304,6 +196,7 @@ class Files {
   void add(std::vector<Answer> answers, const std::string& path);
 
   const ReadingSettings& settings_;
+  Tasks tasks_;
   std::vector<std::string>& notes_;
   std::vector<Answer> all_;
   std::vector<study::StudyFile> studies_;
@@ -375,7 +268,7 @@ void Files::read_one(const std::string& path, const std::string& prefix) {
   refuse_copies(path, text);
   std::vector<Answer> answers;
   if (is_responses(path)) {
-    Responses responses = read_responses(text, path, notes_);
+    study::Responses responses = study::read_responses(text, path, tasks_, notes_);
     responses.file.participant = prefix + responses.file.participant;
     if (!responses.answers.empty()) studies_.push_back(std::move(responses.file));
     answers = std::move(responses.answers);
@@ -430,18 +323,19 @@ std::vector<Answer> Files::take() {
 }  // namespace
 
 std::vector<Answer> answers_from_responses(std::string_view text, const std::string& file,
-                                           std::vector<std::string>& notes) {
-  return read_responses(text, file, notes).answers;
+                                           std::vector<std::string>& notes, Tasks tasks) {
+  return study::read_responses(text, file, tasks, notes).answers;
 }
 
 std::vector<Answer> read_answers(std::span<const std::string> paths,
-                                 std::vector<std::string>& notes, const ReadingSettings& settings) {
+                                 std::vector<std::string>& notes, const ReadingSettings& settings,
+                                 Tasks tasks) {
   if (paths.size() == 1 && paths.front().ends_with(".json")) {
     const std::string text = read_file(paths.front(), kMaxBytes);
     refuse_list(text, paths.front());
     return answers_from_paper(text, paths.front());
   }
-  Files files(settings, notes);
+  Files files(settings, tasks, notes);
   files.read(paths);
   return files.take();
 }

@@ -13,13 +13,13 @@ namespace {
 using Levels = std::map<double, Proportion>;
 
 /// All participants of one method in one scene, by name; those of the empty name are all together.
-struct Task {
+struct Cell {
   std::string method, scene;
   std::map<std::string, Levels> participants;
 };
 
-/// Tasks by the places at which scenes, and then methods, come first.
-std::vector<Task> tasks_of(std::span<const Answer> answers) {
+/// Cells by the places at which scenes, and then methods, come first.
+std::vector<Cell> cells_of(std::span<const Answer> answers) {
   std::vector<std::string> methods, scenes;
   const auto place = [](std::vector<std::string>& names, const std::string& name) {
     const auto at = std::find(names.begin(), names.end(), name);
@@ -27,19 +27,19 @@ std::vector<Task> tasks_of(std::span<const Answer> answers) {
     names.push_back(name);
     return std::ssize(names) - 1;
   };
-  std::map<std::pair<std::ptrdiff_t, std::ptrdiff_t>, Task> tasks;
+  std::map<std::pair<std::ptrdiff_t, std::ptrdiff_t>, Cell> cells;
   for (const Answer& a : answers) {
-    Task& task = tasks[{place(scenes, a.scene), place(methods, a.method)}];
-    task.method = a.method;
-    task.scene = a.scene;
+    Cell& cell = cells[{place(scenes, a.scene), place(methods, a.method)}];
+    cell.method = a.method;
+    cell.scene = a.scene;
     for (const std::string& of : {std::string(), a.participant}) {
-      Proportion& score = task.participants[of][*a.level];
+      Proportion& score = cell.participants[of][*a.level];
       ++score.trials;
       score.successes += a.correct ? 1 : 0;
     }
   }
-  std::vector<Task> out;
-  for (auto& [where, task] : tasks) out.push_back(std::move(task));
+  std::vector<Cell> out;
+  for (auto& [where, cell] : cells) out.push_back(std::move(cell));
   return out;
 }
 
@@ -48,11 +48,11 @@ std::vector<Task> tasks_of(std::span<const Answer> answers) {
 std::vector<ThresholdResult> fit_thresholds(std::span<const Answer> answers,
                                             const PsychometricSettings& settings) {
   std::vector<ThresholdResult> out;
-  for (const Task& task : tasks_of(answers)) {
-    for (const auto& [participant, levels] : task.participants) {
+  for (const Cell& cell : cells_of(answers)) {
+    for (const auto& [participant, levels] : cell.participants) {
       ThresholdResult& result = out.emplace_back();
-      result.method = task.method;
-      result.scene = task.scene;
+      result.method = cell.method;
+      result.scene = cell.scene;
       result.participant = participant;
       for (const auto& [x, score] : levels) result.scores.push_back({x, score});
       PsychometricResult found = fit_psychometric(result.scores, settings);

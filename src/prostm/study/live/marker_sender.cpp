@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "prostm/core/stage_timer.hpp"
+#include "prostm/study/task/line_keys.hpp"
 
 namespace prostm {
 namespace {
@@ -133,7 +134,7 @@ void MarkerSender::send(Marker& marker) {
 }
 
 ResponseLine MarkerSender::line(const Marker& marker) const {
-  ResponseLine line = {{"kind", "marker"}};
+  ResponseLine line = {{line::kKind, line::kMarker}};
   line.update(marker_json(marker, protocol_, run_.run));
   if (marker.failed == 0) return line;
   line["failed"] = nlohmann::ordered_json::array();

@@ -8,20 +8,9 @@
 
 #include "prostm/core/settings.hpp"
 #include "prostm/pipeline/settings.hpp"
-#include "prostm/study/task/staircase.hpp"
+#include "prostm/study/protocol/level_range.hpp"
 
 namespace prostm {
-
-/// The work of a participant in a trial.
-enum class StudyTask : std::uint8_t {
-  Identification,  ///< one interval: is it the scene that is asked for?
-  ForcedChoice,    ///< two intervals, the level's and the standard's: which?
-  Judgement,       ///< one interval at a level: yes or no
-  Adjustment       ///< the level is tuned until it feels like the standard
-};
-template <>
-inline constexpr std::array<std::string_view, 4> kNames<StudyTask> = {
-    "identification", "forced-choice", "judgement", "adjustment"};
 
 enum class Staircase : std::uint8_t { UpDown, Bayes };
 template <>

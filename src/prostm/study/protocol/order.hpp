@@ -16,7 +16,9 @@ struct Trial {
   int question = 0;  ///< the scene that is asked for
   int track = 0;     ///< from 1; 0: the trial has no level
   std::optional<double> level = {};
-  bool level_first = false;  ///< of two intervals, the level's is the first
+  int level_at = 0;  ///< the interval that is the level's, from 1; 0: none is
+  /// Whether the trial begins with the level's interval.
+  bool level_first() const { return level_at == 1; }
   bool operator==(const Trial&) const = default;
 };
 

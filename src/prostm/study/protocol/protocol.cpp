@@ -1,20 +1,7 @@
 #include "prostm/study/protocol/protocol.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <nlohmann/json.hpp>
-
-#include "prostm/core/file/file.hpp"
-#include "prostm/core/input_error.hpp"
-#include "prostm/io/settings_file.hpp"
-#include "prostm/pipeline/smoke/scene.hpp"
-#include "prostm/study/task/detail/settle_level.hpp"
-
 namespace prostm {
 namespace {
-
-constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
 template <class Settings, class V>
 void list_study(Settings& s, V& v) {
@@ -46,7 +33,6 @@ void list_training(Settings& s, V& v) {
 
 template <class Settings, class V>
 void list_trials(Settings& s, V& v) {
-  v.field({.name = "task", .help = "of the participant in a trial"}, s.task);
   v.field({.name = "repeats",
            .least = 1,
            .most = 1000,
@@ -93,49 +79,6 @@ void list_markers(Settings& s, V& v) {
           s.conditions);
 }
 
-/// The names in a table of the protocol. @throws InputError: fewer than `least`.
-std::vector<std::string> names_in(std::string_view text, const std::string& file,
-                                  const std::string& table, std::size_t least) {
-  std::vector<std::string> names = tables_in_toml(text, file, table);
-  if (names.size() < least) {
-    throw InputError(fmt::format("{} has {} [{}.NAME], and a study needs {} at least", file,
-                                 names.size(), table, least));
-  }
-  return names;
-}
-
-/// @throws InputError: a method gives what scenes give, or what cannot change during a run.
-void refuse_settings_of_the_run(const std::vector<std::string>& given, const std::string& file,
-                                const std::string& method) {
-  for (const char* fixed : {"pipeline.scene", "pipeline.device", "pipeline.array",
-                            "pipeline.tracker", "pipeline.world_rate", "pipeline.threads"}) {
-    if (std::find(given.begin(), given.end(), fixed) == given.end()) continue;
-    throw InputError(fmt::format(
-        "{}: [method.{}] gives {}, which is the same for all trials; give it on the command line, "
-        "and scenes as [scene.NAME]",
-        file, method, fixed));
-  }
-}
-
-StudyScene read_scene(std::string_view text, const std::string& file, const std::string& name) {
-  const auto known = scenes();
-  if (std::none_of(known.begin(), known.end(), [&](const Scene& s) { return s.name == name; })) {
-    std::vector<std::string_view> names;
-    for (const Scene& scene : known) names.push_back(scene.name);
-    throw InputError(fmt::format("{}: there is no scene for [scene.{}]; scenes are {}", file, name,
-                                 fmt::join(names, ", ")));
-  }
-  StudyScene scene{name, {}};
-  settings_from_toml(text, file, {group_of(name, scene)}, {"scene"},
-                     tables_in_toml(text, file, "scene"));
-  if (scene.question.empty()) {
-    throw InputError(fmt::format(
-        "{}: [scene.{}] has no question; give e.g. question = \"Is there one plume of smoke?\"",
-        file, name));
-  }
-  return scene;
-}
-
 }  // namespace
 
 void StudySettings::visit(SettingsReader& v) const {
@@ -168,55 +111,6 @@ void StudyScene::visit(SettingsReader& v) const {
 }
 void StudyScene::visit(SettingsWriter& v) {
   v.field({.name = "question", .help = "yes or no, as it is read and shown"}, question);
-}
-
-Protocol protocol_from_toml(std::string_view text, const std::string& file,
-                            const PipelineSettings& base) {
-  Protocol protocol;
-  const auto given_above = settings_from_toml(
-      text, file,
-      {group_of("study", protocol.study), group_of("training", protocol.training),
-       group_of("trials", protocol.trials), group_of("markers", protocol.markers),
-       group_of("level", protocol.level)},
-      {}, {"method", "scene"});
-  const bool identifies = protocol.trials.task == StudyTask::Identification;
-  for (const std::string& name : names_in(text, file, "scene", identifies ? 2 : 1))
-    protocol.scenes.push_back(read_scene(text, file, name));
-  for (const std::string& name : names_in(text, file, "method", 1)) {
-    StudyMethod& method = protocol.methods.emplace_back(StudyMethod{name, base});
-    const auto given =
-        settings_from_toml(text, file, settings_groups(method.settings), {"method", name});
-    refuse_settings_of_the_run(given, file, name);
-    study::require_playable_method(method, file, text);
-  }
-  study::settle_level(given_above, file, text, protocol);
-  const std::size_t conditions = protocol.methods.size() * protocol.scenes.size();
-  if (protocol.markers.conditions && conditions > kMostMarkedConditions) {
-    throw InputError(fmt::format(
-        "{}: markers.conditions is true for {} conditions, methods times scenes, and there are "
-        "codes for {}; leave it out, or take fewer",
-        file, conditions, kMostMarkedConditions));
-  }
-  return protocol;
-}
-
-Protocol read_protocol(const std::string& path, const PipelineSettings& base) {
-  return protocol_from_toml(read_file(path, kMaxBytes), path, base);
-}
-
-nlohmann::ordered_json protocol_json(const Protocol& protocol) {
-  nlohmann::ordered_json json = settings_to_json(
-      {group_of("study", protocol.study), group_of("training", protocol.training),
-       group_of("trials", protocol.trials), group_of("markers", protocol.markers)});
-  for (const StudyScene& scene : protocol.scenes)
-    json["scene"][scene.name] = {{"question", scene.question}};
-  for (const StudyMethod& method : protocol.methods)
-    json["method"][method.name] = settings_to_json(settings_groups(method.settings));
-  if (protocol.trials.task == StudyTask::Identification) return json;
-  json["level"] = settings_to_json({group_of("level", protocol.level)})["level"];
-  if (const auto& standard = protocol.standard)
-    json["method"][standard->name] = settings_to_json(settings_groups(standard->settings));
-  return json;
 }
 
 }  // namespace prostm

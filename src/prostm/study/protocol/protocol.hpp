@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +13,8 @@
 #include "prostm/study/protocol/level.hpp"
 
 namespace prostm {
+
+class Task;
 
 /// Who gets which methods.
 enum class MethodsOf : std::uint8_t {
@@ -70,8 +71,8 @@ struct TrainingSettings {
 
 /// [trials]
 struct TrialSettings {
-  StudyTask task = StudyTask::Identification;
-  int repeats = 8;  ///< of each scene, with each method; staircases end by themselves
+  const Task* task = nullptr;  ///< of the participant; set by whoever reads the protocol
+  int repeats = 8;             ///< of each scene, with each method; staircases end by themselves
   Questions questions = Questions::Random;
   AnswersFrom answers = AnswersFrom::Experimenter;
   bool noise = false;       ///< the participant's page plays noise, which masks the array's sound
@@ -85,6 +86,7 @@ struct TrialSettings {
   double strength = 0.2;
   GateUse gate = GateUse::Required;
 
+  /// Visits all but the task, which protocol_file.hpp names.
   void visit(SettingsReader& v) const;
   void visit(SettingsWriter& v);
 };
@@ -119,21 +121,10 @@ struct Protocol {
   TrainingSettings training;
   TrialSettings trials;
   MarkerSettings markers;
-  LevelSettings level;               ///< of tasks but identification
+  LevelSettings level;               ///< of tasks that have levels
   std::vector<StudyMethod> methods;  ///< as they stand in the file, as do scenes; `standard` aside
   std::vector<StudyScene> scenes;
   std::optional<StudyMethod> standard;  ///< that a level is compared with, where level.against is
 };
-
-/// Reads a protocol (docs/study/study.md). @param base the settings that methods begin with.
-/// @throws InputError with file and line: no TOML, a table or key that is unknown, a value that is
-/// out of bounds; no method, too few scenes, a scene that does not exist, no question; levels that
-/// are missing, are not for this task, or do not suit their setting.
-Protocol protocol_from_toml(std::string_view text, const std::string& file,
-                            const PipelineSettings& base);
-Protocol read_protocol(const std::string& path, const PipelineSettings& base);
-
-/// All of it, the settings of each method included.
-nlohmann::ordered_json protocol_json(const Protocol& protocol);
 
 }  // namespace prostm

@@ -1,6 +1,7 @@
 #include "prostm/study/session/page_watch.hpp"
 
 #include "prostm/study/session/detail/session_lines.hpp"
+#include "prostm/study/task/line_keys.hpp"
 
 namespace prostm {
 namespace {
@@ -22,7 +23,7 @@ bool PageWatch::look(const PageTask& task, const ParticipantPage& page, double t
 }
 
 ResponseLine PageWatch::line() const {
-  return {{"kind", "page"}, {"open", told_open_}, {"missing", names_of(told_missing_)}};
+  return {{line::kKind, line::kPage}, {"open", told_open_}, {"missing", names_of(told_missing_)}};
 }
 
 void PageWatch::begin_presentation() {

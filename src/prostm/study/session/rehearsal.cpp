@@ -1,6 +1,6 @@
 #include "prostm/study/session/rehearsal.hpp"
 
-#include <cmath>
+#include "prostm/study/task/task.hpp"
 
 namespace prostm {
 namespace {
@@ -8,40 +8,22 @@ namespace {
 constexpr double kFeels = 0.5;     // before it goes on, and before it answers [s]
 constexpr double kPatience = 5.0;  // with a gate that does not pass [s]
 
-constexpr double kSlope = 20.0;     // of a simulated person, over the range of levels
-constexpr double kNoise = 0.02;     // of what they feel in an adjustment, of the range
-constexpr double kContent = 0.015;  // with a difference, of the range
-constexpr double kFar = 0.15;       // a difference that is tuned in large steps, of the range
-
 }  // namespace
 
 SimulatedPerson::SimulatedPerson(const Protocol& protocol, double threshold, std::uint64_t seed)
-    : protocol_(protocol),
-      width_(protocol.level.range().high - protocol.level.range().low),
-      random_(seed) {
-  felt_.threshold = protocol.level.to_scale(threshold);
-  felt_.slope = kSlope / width_;
-  felt_.guess = has_right_answers(protocol) ? 0.5 : 0.0;
-}
+    : task_(*protocol.trials.task),
+      perception_(protocol.level, threshold, task_.guess(protocol), seed) {}
 
 StudyAct SimulatedPerson::act(const Trial& trial) {
-  using Do = StudyAct::Do;
-  const double level = protocol_.level.to_scale(*trial.level);
-  if (protocol_.trials.task == StudyTask::Adjustment) {
-    const double off = (level - felt_.threshold) / width_ + kNoise * random_.normal();
-    if (std::abs(off) < kContent) return {.what = Do::Accept};
-    return {.what = Do::Tune, .steps = off > 0.0 ? -1 : 1, .coarse = std::abs(off) > kFar};
-  }
-  const bool felt = random_.uniform() < felt_.at(level);
-  if (protocol_.trials.task == StudyTask::Judgement) return {.what = Do::Answer, .yes = felt};
-  return {.what = Do::Answer, .interval = felt == trial.level_first ? 1 : 2};
+  return task_.respond(trial, perception_);
 }
 
 std::optional<StudyAct> Rehearsal::act(const StudySession& session, double time) {
   using Do = StudyAct::Do;
   if (!phase_) first_ = session.trials_done();
   const Protocol& protocol = session.protocol();
-  if (!person_ && protocol.trials.task != StudyTask::Identification) {
+  const Task& task = *protocol.trials.task;
+  if (!person_ && task.traits().has_levels) {
     const double threshold = random_.uniform(1.0 / 3.0, 2.0 / 3.0);
     const LevelRange range = protocol.level.range();
     person_.emplace(protocol,
@@ -66,7 +48,7 @@ std::optional<StudyAct> Rehearsal::act(const StudySession& session, double time)
     case StudyPhase::Presenting:
       if (!session.takes_answer()) return {};
       if (person_) return person_->act(session.trial());
-      return StudyAct{.what = Do::Answer, .yes = random_.below(2) == 0};
+      return task.guessed(random_);
     default:
       return StudyAct{.what = Do::Next};
   }

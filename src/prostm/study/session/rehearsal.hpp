@@ -6,28 +6,26 @@
 
 #include "prostm/core/random.hpp"
 #include "prostm/study/session/session.hpp"
-#include "prostm/study/task/psychometric.hpp"
+#include "prostm/study/task/perception.hpp"
 
 namespace prostm {
 
-/// A simulated person at levels: feels them as a psychometric function of the level does, on the
-/// scale of the protocol. No model of touch, but one with a known threshold.
+/// A simulated person at levels, who answers as the task has a model observer answer.
 class SimulatedPerson {
  public:
-  /// @param threshold the level half-way between guessing and the most, in the setting's unit.
+  /// @pre the protocol outlives this, and its task has levels. @param threshold the level half-way
+  /// between guessing and the most, in the setting's unit.
   SimulatedPerson(const Protocol& protocol, double threshold, std::uint64_t seed);
   /// The act that answers a trial, or tunes it.
   StudyAct act(const Trial& trial);
 
  private:
-  const Protocol& protocol_;
-  Psychometric felt_;
-  double width_;  // of levels, on the scale
-  Random random_;
+  const Task& task_;
+  Perception perception_;
 };
 
-/// Goes on by itself, and answers: an identification at random, levels as a simulated person does
-/// whose threshold is drawn from the middle third of the levels.
+/// Goes on by itself, and answers: a task without levels at random, others as a simulated person
+/// does whose threshold is drawn from the middle third of the levels.
 class Rehearsal {
  public:
   /// @param trials to answer; 0: all.

@@ -9,6 +9,7 @@
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/study/session/spelling.hpp"
+#include "prostm/study/task/line_keys.hpp"
 
 namespace prostm {
 namespace {
@@ -27,25 +28,25 @@ int own_order(const std::string& participant) {
 std::optional<RosterEntry> roster_entry(std::string_view text, const std::string& file) {
   if (text.find(kResponseFormat) == std::string_view::npos) return {};
   const std::vector<ResponseLine> lines = responses_from_text(text, file);
-  if (lines.empty() || lines.front().value("format", "") != kResponseFormat) return {};
+  if (lines.empty() || lines.front().value(line::kFormat, "") != kResponseFormat) return {};
   const ResponseLine& first = lines.front();
   RosterEntry entry;
   entry.file = file;
   try {
-    entry.participant = first.at("participant");
-    entry.replaces = first.value("replaces", "");
-    entry.order = first.value("order", own_order(entry.participant));
-    entry.trials = first.at("trials");
-    entry.rehearsal = first.at("run").at("rehearsal");
-    entry.protocol = first.value("protocol", ResponseLine());
+    entry.participant = first.at(line::kParticipant);
+    entry.replaces = first.value(line::kReplaces, "");
+    entry.order = first.value(line::kOrder, own_order(entry.participant));
+    entry.trials = first.at(line::kTrials);
+    entry.rehearsal = first.at(line::kRun).at("rehearsal");
+    entry.protocol = first.value(line::kProtocol, ResponseLine());
   } catch (const ResponseLine::exception& error) {
     throw InputError(fmt::format("{}, line 1: {}", file, error.what()));
   }
   for (const ResponseLine& line : lines) {
-    const std::string kind = line.value("kind", "");
-    if (kind == "trial") ++entry.answers;
-    if (kind == "end") entry.attendance = Attendance::Complete;
-    if (kind == "withdrawn") entry.attendance = Attendance::Left;
+    const std::string kind = line.value(line::kKind, "");
+    if (kind == line::kTrial) ++entry.answers;
+    if (kind == line::kEnd) entry.attendance = Attendance::Complete;
+    if (kind == line::kWithdrawn) entry.attendance = Attendance::Left;
   }
   return entry;
 }

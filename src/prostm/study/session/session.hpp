@@ -11,13 +11,14 @@
 #include <string_view>
 #include <vector>
 
-#include "prostm/core/geometry.hpp"
 #include "prostm/core/text/names.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/study/session/page_watch.hpp"
 #include "prostm/study/session/response_file.hpp"
+#include "prostm/study/session/study_sight.hpp"
 #include "prostm/study/task/course.hpp"
 #include "prostm/study/task/intervals.hpp"
+#include "prostm/study/task/study_act.hpp"
 
 namespace prostm {
 
@@ -37,55 +38,6 @@ template <>
 inline constexpr std::array<std::string_view, 10> kNames<StudyPhase> = {
     "consent",    "about", "training", "ready", "settling",
     "presenting", "break", "paused",   "done",  "withdrawn"};
-
-/// An act of somebody at the study.
-struct StudyAct {
-  enum class Do : std::uint8_t {
-    Next,     ///< goes on from Ready, Break and Paused; ends Training; closes what is over
-    Anyway,   ///< presents a trial although the gate does not pass or the page lacks something
-    Answer,   ///< to the question: `yes`, or `interval` of a forced choice
-    Correct,  ///< the last answer was the other one, before the next is asked for
-    Pause,    ///< a trial under way is presented again
-    Consent,  ///< the participant agrees
-    About,    ///< `about`
-    Explore,  ///< in Training: the scene `scene`
-    Withdraw,
-    Tune,   ///< an adjustment's level, by `steps`
-    Accept  ///< it feels like the standard
-  } what = Do::Next;
-  bool yes = false;
-  int scene = 0;
-  nlohmann::ordered_json about = nlohmann::ordered_json::object();  ///< texts by name
-  int interval = 0;                                                 ///< 1 or 2
-  int steps = 0;                                                    ///< up or, below 0, down
-  bool coarse = false;                                              ///< large ones
-};
-template <>
-inline constexpr std::array<std::string_view, 11> kNames<StudyAct::Do> = {
-    "next",  "anyway",  "answer",   "correct", "pause", "consent",
-    "about", "explore", "withdraw", "tune",    "accept"};
-
-/// Emission of a plan.
-struct StudyPlayed {
-  double speed = 0.0;   ///< mean of its focal points [m/s]; 0 where they stand still
-  double period = 0.0;  ///< of its longest lap, or of the modulation [s]
-  int changed = 0;      ///< paths that are played at another period than planned
-};
-/// In the units of participants' files.
-nlohmann::ordered_json played_json(const StudyPlayed& played);
-
-/// The run as it is now.
-struct StudySight {
-  double time = 0.0;                       ///< of a clock that never jumps [s]
-  double utc = 0.0;                        ///< since 1970 [s]
-  bool in_force = false;                   ///< whether the run plays what is wanted
-  std::optional<Pose> palm;                ///< in D; none without a hand
-  std::optional<GateResult> gate;          ///< of the newest target
-  double target_force = 0.0;               ///< of it [N]
-  double rendered_force = 0.0;             ///< of what is rendered for it [N]
-  std::optional<StudyPlayed> played = {};  ///< of the newest plan; none without one
-  ParticipantPage page;
-};
 
 /// The stimulus that is to be presented.
 struct StudyWanted {
@@ -139,7 +91,7 @@ class StudySession {
   const Course& course() const { return course_; }
   /// The trial that is next or under way. @pre not all are done.
   const Trial& trial() const { return course_.trial(); }
-  /// The interval of a trial that sounds, 1 or 2; 0 in silence, and where a trial has only one.
+  /// The interval of a trial that sounds, from 1; 0 in silence, and where a trial has only one.
   int interval() const { return phase_ == StudyPhase::Presenting ? intervals_.interval() : 0; }
   /// Whether an answer is taken now.
   bool takes_answer() const {
@@ -148,8 +100,8 @@ class StudySession {
   double training_left() const { return training_left_; }  ///< [s]
   int explored() const { return explored_; }               ///< scene of Training
   const std::optional<GateResult>& gate() const { return gate_; }
-  /// The last answer: yes, or the second interval; nothing before the first.
-  std::optional<bool> last_answer() const { return last_; }
+  /// The number of the last answer, as files have it; nothing before the first.
+  std::optional<int> last_answer() const { return last_; }
   /// Why the trial does not begin, as things are; empty where it does.
   const std::string& waits_for() const { return waits_for_; }
   /// A sentence on the first need that the participant's page lacks, with the remedy; else empty.
@@ -179,6 +131,13 @@ class StudySession {
     int looks = 0, changed = 0;        // changed: most paths
   };
 
+  const Task& task() const { return *protocol_.trials.task; }
+  ResponseLine first_line(const std::optional<Replacement>& replaces) const;
+  void begin_file(const ResponseLine& first, const nlohmann::ordered_json& facts,
+                  const StudySight& now);
+  void resume_file(const ResponseLine& first, const StudySight& now);
+  void require_same_study(const ResponseLine& first) const;
+  void require_open(StudyPhase phase) const;
   StudyPhase replay();
   void pass_consent(double time);
   void enter(StudyPhase phase, double time);
@@ -190,7 +149,9 @@ class StudySession {
   void note_bound(const StudySight& sight);
   void repeat_trial(const ResponseLine& line);
   void repeat_correction(const ResponseLine& line);
-  void want(bool level);
+  StudyWanted still_air() const;
+  StudyWanted exploring(bool sound) const;
+  StudyWanted stimulus(bool level, bool sound) const;
   void add_played(const StudySight& sight);
   nlohmann::ordered_json played_json() const;
   std::string answer(const StudyAct& act, const StudySight& sight);
@@ -204,7 +165,7 @@ class StudySession {
   std::string write_rest(double time);
   void add_strength(const Trial& trial, double target, double rendered);
   void watch_clock(const StudySight& sight);
-  ResponseLine trial_line(std::optional<bool> chosen, const StudySight& sight) const;
+  ResponseLine trial_line(std::optional<int> answer, const StudySight& sight) const;
   bool starts_method() const;
 
   const Protocol& protocol_;
@@ -225,7 +186,8 @@ class StudySession {
   bool closed_ = false;
   std::optional<GateResult> gate_, gate_at_onset_;
   std::string waits_for_, problem_;
-  std::optional<bool> feedback_, last_;
+  std::optional<bool> feedback_;
+  std::optional<int> last_;
   std::vector<ResponseLine> unwritten_;
   std::vector<std::string> news_;
   double tried_ = 0.0;                      // to write them [s]
@@ -238,8 +200,5 @@ class StudySession {
   nlohmann::ordered_json hand_;             // of the trial: [s, x, y, z in mm, quaternion]
   double hand_at_ = 0.0, hand_gone_ = 0.0;  // [s]
 };
-
-/// UTC as ISO 8601 with milliseconds.
-std::string utc_text(double seconds_since_1970);
 
 }  // namespace prostm

@@ -8,6 +8,7 @@
 
 #include "prostm/study/session/detail/session_lines.hpp"
 #include "prostm/study/session/session.hpp"
+#include "prostm/study/task/line_keys.hpp"
 
 namespace prostm {
 
@@ -35,7 +36,9 @@ void StudySession::watch_page(const StudySight& sight) {
   if (phase_ != StudyPhase::Presenting || lost.none() || intervals_.is_over()) return;
   page_.interrupt();
   enter(StudyPhase::Settling, sight.time);
-  write({{"kind", "interrupted"}, {"trial", trials_done() + 1}, {"missing", names_of(lost)}},
+  write({{line::kKind, line::kInterrupted},
+         {line::kTrial, trials_done() + 1},
+         {"missing", names_of(lost)}},
         sight);
 }
 
@@ -44,12 +47,12 @@ void StudySession::note_bound(const StudySight& sight) {
   if (course_.lanes().empty()) return;
   const int number = last_trial_->track;
   const AtBound bound = course_.lanes()[static_cast<std::size_t>(number) - 1].track.at_bound();
-  if (bound.answers != answers_at_bound(protocol_)) return;
+  if (bound.answers != task().traits().answers_at_bound) return;
   news_.push_back(at_bound());
-  write({{"kind", "bound"},
-         {"trial", trials_done()},
-         {"track", number},
-         {"bound", bound.low ? "low" : "high"},
+  write({{line::kKind, line::kBound},
+         {line::kTrial, trials_done()},
+         {line::kTrack, number},
+         {line::kBound, bound.low ? "low" : "high"},
          {"answers", bound.answers}},
         sight);
 }
@@ -60,7 +63,7 @@ std::string StudySession::at_bound() const {
   const auto most = std::max_element(lanes.begin(), lanes.end(), [&](const auto& a, const auto& b) {
     return answers(a) < answers(b);
   });
-  if (most == lanes.end() || answers(*most) < answers_at_bound(protocol_)) return {};
+  if (most == lanes.end() || answers(*most) < task().traits().answers_at_bound) return {};
   return study::bound_sentence(protocol_, *most);
 }
 
@@ -80,7 +83,7 @@ void StudySession::add_strength(const Trial& trial, double target, double render
 }
 
 double StudySession::strength_difference() const {
-  if (protocol_.trials.task != StudyTask::Identification) return 0.0;  // levels are to differ
+  if (task().traits().has_levels) return 0.0;  // levels are to differ
   const std::size_t scenes = protocol_.scenes.size();
   double worst = 0.0;
   for (std::size_t method = 0; method < protocol_.methods.size(); ++method) {

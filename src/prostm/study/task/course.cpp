@@ -2,25 +2,28 @@
 
 #include <utility>
 
+#include "prostm/study/task/task.hpp"
+
 namespace prostm {
 
 Course::Course(const Protocol& protocol, int participant)
     : protocol_(&protocol),
       participant_(participant),
       turns_(random_for(protocol, Purpose::Tracks, static_cast<std::uint32_t>(participant))) {
-  if (protocol.trials.task == StudyTask::Identification) {
-    list_ = trial_order(protocol, participant);
+  const Task& task = *protocol.trials.task;
+  if (!task.traits().has_levels) {
+    list_ = task.trials(protocol, participant);
     most_ = list_.size();
     trial_ = list_.front();
     return;
   }
-  const bool adjusts = protocol.trials.task == StudyTask::Adjustment;
-  open_ = !adjusts && protocol.level.procedure == Staircase::UpDown;
+  const TrackPlan plan = task.tracks(protocol);
+  open_ = plan.open;
   methods_ = method_order(protocol, participant);
   Random seeds = random_for(protocol, Purpose::Intervals, static_cast<std::uint32_t>(participant));
   for (const int method : methods_) {
     for (int scene = 0; scene < static_cast<int>(protocol.scenes.size()); ++scene) {
-      for (int i = 0; i < (adjusts ? 1 : protocol.level.tracks); ++i) {
+      for (int i = 0; i < plan.tracks; ++i) {
         const std::uint64_t seed = seeds.bits();
         lanes_.push_back({method, scene, Track(protocol, seed), Random(seeds.bits())});
         most_ += lanes_.back().track.most();
@@ -50,7 +53,7 @@ void Course::next_lane() {
             .question = l.scene,
             .track = static_cast<int>(place) + 1,
             .level = l.track.level(),
-            .level_first = l.intervals.below(2) == 0};
+            .level_at = protocol_->trials.task->draw_interval(l.intervals)};
 }
 
 bool Course::is_done() const {

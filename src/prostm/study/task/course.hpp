@@ -12,10 +12,10 @@ namespace prostm {
 
 /// A state without a clock: the same protocol, participant and answers lead to the same trials.
 ///
-/// An identification has a list of trials. Other tasks have tracks: for each method, in the order
-/// of method_order(), `tracks` staircases in each scene, or the adjustments of a scene. They are
-/// taken in turn: in every round each that is not done comes once, in a random order. Which
-/// of two intervals is the level's is drawn for each trial.
+/// A task without levels has a list of trials. Other tasks have tracks: for each method, in the
+/// order of method_order(), `tracks` searches in each scene. They are taken in turn: in every round
+/// each that is not done comes once, in a random order. Which interval is the level's is drawn for
+/// each trial.
 class Course {
  public:
   /// A track, and what it is presented with.
@@ -47,7 +47,7 @@ class Course {
   /// Ends it at a level.
   void accept(double level);
 
-  /// Tracks by their number less 1; none in an identification.
+  /// Tracks by their number less 1; none without levels.
   const std::vector<Lane>& lanes() const { return lanes_; }
   /// The level that a track, from 1, has found so far; NaN before there is any.
   double result(int track) const;
@@ -59,7 +59,7 @@ class Course {
 
   const Protocol* protocol_;
   int participant_;
-  std::vector<Trial> list_;  // of an identification
+  std::vector<Trial> list_;  // of a task without levels
   std::vector<Lane> lanes_;
   std::vector<int> methods_;
   std::size_t method_ = 0;          // place in methods_

@@ -2,20 +2,10 @@
 
 namespace prostm {
 
-bool Intervals::begins_with_level(const Protocol& protocol, const Trial& trial) {
-  if (protocol.trials.task == StudyTask::ForcedChoice) return trial.level_first;
-  return protocol.trials.task != StudyTask::Adjustment;
-}
-
-void Intervals::begin(const Protocol& protocol, const Trial& trial, double time) {
-  task_ = protocol.trials.task;
-  const bool identifies = task_ == StudyTask::Identification;
-  several_ = task_ == StudyTask::ForcedChoice || task_ == StudyTask::Adjustment;
-  length_ = identifies ? protocol.trials.time_limit : protocol.level.interval;
-  gap_ = protocol.level.gap;
-  needed_ = several_ ? 2 : 1;
-  number_ = 1;
-  shows_level_ = begins_with_level(protocol, trial);
+void Intervals::begin(const IntervalPlan& plan, double time) {
+  plan_ = plan;
+  place_ = 0;
+  begun_ = 1;
   sounds_ = true;
   over_ = false;
   since_ = asked_at_ = time;
@@ -23,19 +13,20 @@ void Intervals::begin(const Protocol& protocol, const Trial& trial, double time)
 
 void Intervals::look(double time, bool in_force) {
   if (over_) return;
+  const std::size_t count = plan_.shows_level.size();
   if (sounds_) {
-    if (!(length_ > 0.0) || time - since_ < length_) return;
+    if (!(plan_.length > 0.0) || time - since_ < plan_.length) return;
     sounds_ = false;
     since_ = time;
-    over_ = !several_ || (task_ == StudyTask::ForcedChoice && number_ == needed_);
-    if (!over_) shows_level_ = !shows_level_;
+    over_ = !several() || (!plan_.in_turn && begun_ == count);
+    if (!over_) place_ = (place_ + 1) % count;
     return;
   }
-  if (time - since_ < gap_ || !in_force) return;
+  if (time - since_ < plan_.gap || !in_force) return;
   sounds_ = true;
   since_ = time;
-  ++number_;
-  if (number_ == needed_) asked_at_ = time;
+  ++begun_;
+  if (begun_ == count) asked_at_ = time;
 }
 
 }  // namespace prostm

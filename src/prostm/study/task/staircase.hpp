@@ -8,14 +8,10 @@
 #include <vector>
 
 #include "prostm/core/random.hpp"
+#include "prostm/study/protocol/level_range.hpp"
 #include "prostm/study/task/psychometric.hpp"
 
 namespace prostm {
-
-/// Bounds of levels that a procedure may ask for.
-struct LevelRange {
-  double low = 0.0, high = 1.0;
-};
 
 struct UpDownSettings {
   double start = 0.8;

@@ -1,48 +1,12 @@
 #include "prostm/study/task/track.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "prostm/study/task/task.hpp"
 
 namespace prostm {
 namespace {
-
-constexpr double kSlope = 20.0;   // of bayes, over the range
-constexpr double kSpread = 0.25;  // of its prior, of the range
-constexpr double kLapses = 0.02;
-constexpr double kAway = 0.25;   // from the middle that adjustments begin, of the range
-constexpr double kCoarse = 4.0;  // steps of a coarse one
-
-using Procedure = std::variant<WeightedUpDown, BayesianStaircase, Adjustment>;
-
-Procedure procedure_of(const Protocol& protocol, std::uint64_t seed) {
-  const LevelSettings& s = protocol.level;
-  const LevelRange range = s.range();
-  const double width = range.high - range.low;
-  if (protocol.trials.task == StudyTask::Adjustment) {
-    const double step = s.step_on_scale();
-    return Adjustment({.coarse = std::min(kCoarse * step, width),
-                       .fine = step,
-                       .repeats = protocol.trials.repeats,
-                       .away = kAway * width,
-                       .seed = seed,
-                       .range = range});
-  }
-  if (s.procedure == Staircase::UpDown) {
-    return WeightedUpDown({.start = s.to_scale(s.start),
-                           .step = s.step_on_scale(),
-                           .target = s.share,
-                           .coarse = s.coarse,
-                           .reversals = s.reversals,
-                           .range = range});
-  }
-  const double slope = s.slope > 0.0 ? s.slope : kSlope / width;
-  return BayesianStaircase({.shape = {.slope = slope,
-                                      .guess = has_right_answers(protocol) ? 0.5 : 0.0,
-                                      .lapse = kLapses},
-                            .expected = s.to_scale(s.start),
-                            .spread = kSpread * width,
-                            .trials = s.trials,
-                            .range = range});
-}
 
 /// So many digits are written down, and are presented.
 double six_digits(double x) {
@@ -53,21 +17,11 @@ double six_digits(double x) {
 
 }  // namespace
 
-int answers_at_bound(const Protocol& protocol) {
-  return protocol.trials.task == StudyTask::Adjustment ? 1 : 3;
-}
-
-bool has_right_answers(const Protocol& protocol) {
-  return protocol.trials.task == StudyTask::ForcedChoice && !protocol.standard;
-}
-
 Track::Track(const Protocol& protocol, std::uint64_t seed)
     : settings_(protocol.level),
       base_(protocol.methods.front().settings),
-      procedure_(procedure_of(protocol, seed)),
-      most_(static_cast<std::size_t>(protocol.trials.task == StudyTask::Adjustment
-                                         ? protocol.trials.repeats
-                                         : protocol.level.trials)),
+      procedure_(protocol.trials.task->procedure(protocol, seed)),
+      most_(static_cast<std::size_t>(protocol.trials.task->tracks(protocol).trials)),
       lowest_(presented(settings_.low)),
       highest_(presented(settings_.high)) {
   settle();

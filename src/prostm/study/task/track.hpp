@@ -1,12 +1,12 @@
 #pragma once
-/// The search for a level in one scene with one method: a procedure of staircase.hpp, in the
+/// The search for a level in one scene with one method: a procedure of its task, in the
 /// setting's own unit.
 
 #include <cstddef>
 #include <cstdint>
-#include <variant>
 
 #include "prostm/study/protocol/protocol.hpp"
+#include "prostm/study/task/procedures.hpp"
 
 namespace prostm {
 
@@ -48,18 +48,11 @@ class Track {
 
   LevelSettings settings_;
   PipelineSettings base_;  // that levels are set in
-  std::variant<WeightedUpDown, BayesianStaircase, Adjustment> procedure_;
+  Procedure procedure_;
   std::size_t answers_ = 0, most_ = 0;
   double lowest_, highest_;  // levels that can be presented
   double level_ = 0.0;
   AtBound at_bound_;
 };
-
-/// Answers in a row at an end of the range from which on the experimenter is told: 3, and of
-/// adjustments 1, since each of them is a result.
-int answers_at_bound(const Protocol& protocol);
-
-/// Whether guessing makes half of the answers right: two intervals of the same method.
-bool has_right_answers(const Protocol& protocol);
 
 }  // namespace prostm

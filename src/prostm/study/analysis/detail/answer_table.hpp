@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "prostm/study/analysis/scores.hpp"
+#include "prostm/study/analysis/answer.hpp"
 
 namespace prostm::study {
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "prostm/study/analysis/scores.hpp"
+#include "prostm/study/analysis/answer.hpp"
+#include "prostm/study/analysis/reading_settings.hpp"
 
 namespace prostm::study {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "prostm/study/analysis/scores.hpp"
+#include "prostm/study/analysis/answer.hpp"
 
 namespace prostm::study {
 

@@ -1,24 +1,16 @@
 #include "prostm/study/session/detail/session_lines.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <boost/crc.hpp>
-#include <cmath>
 #include <utility>
 
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
-#include "prostm/study/session/session.hpp"
-#include "prostm/study/task/track.hpp"
+#include "prostm/study/task/line_keys.hpp"
+#include "prostm/study/task/task.hpp"
 
 namespace prostm::study {
-
-/// A number with so many decimals, so that files stay small.
-double rounded(double value, int decimals) {
-  const double scale = std::pow(10.0, decimals);
-  return std::round(scale * value) / scale;
-}
 
 /// [s, x, y, z in mm, quaternion x, y, z, w]
 nlohmann::ordered_json pose_json(double time, const Pose& X_DP) {
@@ -51,54 +43,13 @@ std::string stimulus_hash(const Protocol& protocol, const Trial& trial) {
   return fmt::format("{:08x}", sum.checksum());
 }
 
-void add_stimulus(ResponseLine& line, const Protocol& protocol, const Trial& trial) {
-  const auto name_of_scene = [&](int scene) {
-    return protocol.scenes[static_cast<std::size_t>(scene)].name;
-  };
-  line["method"] = protocol.methods[static_cast<std::size_t>(trial.method)].name;
-  line["scene"] = name_of_scene(trial.scene);
-  if (!trial.level) {
-    line["question"] = name_of_scene(trial.question);
-    return;
-  }
-  line["track"] = trial.track;
-  line["level"] = *trial.level;
-  if (protocol.trials.task == StudyTask::Judgement) return;
-  if (protocol.standard) {
-    line["reference"] = protocol.standard->name;
-  } else {
-    line["reference"] = protocol.level.reference;
-  }
-  if (protocol.trials.task == StudyTask::ForcedChoice) line["interval"] = trial.level_first ? 1 : 2;
-}
-
-bool felt(const Protocol& protocol, const Trial& trial, bool chosen) {
-  return protocol.trials.task == StudyTask::ForcedChoice ? chosen != trial.level_first : chosen;
-}
-
-void add_answer(ResponseLine& line, const Protocol& protocol, const Trial& trial, bool chosen) {
-  const int answer = chosen ? 1 : 0;
-  const bool for_level = felt(protocol, trial, chosen);
-  const StudyTask task = protocol.trials.task;
-  line["answer"] = task == StudyTask::ForcedChoice ? answer + 1 : answer;
-  if (task == StudyTask::Identification)
-    line["correct"] = chosen == (trial.scene == trial.question) ? 1 : 0;
-  if (task != StudyTask::Identification) line["felt"] = for_level ? 1 : 0;
-  if (has_right_answers(protocol)) line["correct"] = for_level ? 1 : 0;
-}
-
-bool chose(const Protocol& protocol, const ResponseLine& line, const std::string& file) {
-  return number_in(line, "answer", file) ==
-         (protocol.trials.task == StudyTask::ForcedChoice ? 2.0 : 1.0);
-}
-
 double number_in(const ResponseLine& line, const char* key, const std::string& file) {
   const auto found = line.find(key);
   if (found != line.end() && found->is_number()) return found->get<double>();
   throw InputError(fmt::format(
       "{}: the line of the kind \"{}\" of trial {} has no number \"{}\", so the session "
       "cannot be resumed",
-      file, line.value("kind", ""), line.value("trial", 0), key));
+      file, line.value(line::kKind, ""), line.value(line::kTrial, 0), key));
 }
 
 std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane) {
@@ -111,7 +62,7 @@ std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane) {
                     protocol.scenes[static_cast<std::size_t>(lane.scene)].name,
                     protocol.methods[static_cast<std::size_t>(lane.method)].name);
   }
-  if (protocol.trials.task == StudyTask::Adjustment)
+  if (protocol.trials.task->is_tuned())
     return "An adjustment was accepted at " + where + ", so the result may lie beyond it.";
   return fmt::format(
       "{} answers in a row left a staircase at {}, so the threshold may lie beyond it. Check that "
@@ -126,13 +77,3 @@ ResponseLine stamped(ResponseLine line, const StudySight& sight) {
 }
 
 }  // namespace prostm::study
-
-namespace prostm {
-
-std::string utc_text(double seconds) {
-  const auto whole = static_cast<std::time_t>(std::floor(seconds));
-  const int milliseconds = static_cast<int>(1e3 * (seconds - std::floor(seconds)));
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(whole), milliseconds);
-}
-
-}  // namespace prostm

@@ -7,32 +7,20 @@
 
 #include "prostm/core/geometry.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
+#include "prostm/study/session/detail/rounded.hpp"
 #include "prostm/study/session/response_file.hpp"
+#include "prostm/study/session/study_sight.hpp"
 #include "prostm/study/task/course.hpp"
-
-namespace prostm {
-struct StudySight;
-}
 
 namespace prostm::study {
 
-/// A number with so many decimals, so that files stay small.
-double rounded(double value, int decimals);
 /// [s, x, y, z in mm, quaternion x, y, z, w]
 nlohmann::ordered_json pose_json(double time, const Pose& X_DP);
 nlohmann::ordered_json gate_json(const std::optional<GateResult>& gate);
 /// CRC-32 of all that makes a trial's stimulus: settings, with the level, and scene.
 std::string stimulus_hash(const Protocol& protocol, const Trial& trial);
-/// Adds the method, the scene, and the question or the level.
-void add_stimulus(ResponseLine& line, const Protocol& protocol, const Trial& trial);
-/// Adds the answer, and what it says. @param chosen yes, or the second interval.
-void add_answer(ResponseLine& line, const Protocol& protocol, const Trial& trial, bool chosen);
-/// The same from a line. @throws InputError if the line has no answer.
-bool chose(const Protocol& protocol, const ResponseLine& line, const std::string& file);
 /// A number of a line of `file`. @throws InputError if it is missing.
 double number_in(const ResponseLine& line, const char* key, const std::string& file);
-/// Whether an answer is for the trial's level: yes, or its interval.
-bool felt(const Protocol& protocol, const Trial& trial, bool chosen);
 /// Says that a track stands at an end of its range; which, only if the study is not blind.
 std::string bound_sentence(const Protocol& protocol, const Course::Lane& lane);
 /// Adds the time.

@@ -9,6 +9,7 @@
 #include "prostm/io/settings_file.hpp"
 #include "prostm/pipeline/playable.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/study/task/task.hpp"
 #include "prostm/study/task/track.hpp"
 
 namespace prostm::study {
@@ -18,15 +19,21 @@ class LevelChecks {
  public:
   LevelChecks(const std::string& file, std::string_view text, const std::vector<std::string>& given,
               Protocol& protocol)
-      : file_(file), text_(text), given_(given), protocol_(protocol), level_(protocol.level) {}
+      : file_(file),
+        text_(text),
+        given_(given),
+        protocol_(protocol),
+        task_(*protocol.trials.task),
+        level_(protocol.level) {}
 
   void check() {
-    const std::string_view task = name_of(protocol_.trials.task);
-    if (protocol_.trials.task == StudyTask::Identification) {
+    const std::string task = task_.name();
+    if (!task_.traits().has_levels) {
       if (std::any_of(given_.begin(), given_.end(),
                       [](const std::string& name) { return name.starts_with("level."); }))
-        fail("[level] is for another task than identification; give e.g. task = \"judgement\"");
-      return;
+        fail(fmt::format("[level] is for another task than {}; give e.g. task = \"judgement\"",
+                         task));
+      return check_task();
     }
     for (const char* key : {"setting", "low", "high"})
       if (!gives(key)) fail(fmt::format("task {} needs {} in [level]", task, key));
@@ -38,7 +45,7 @@ class LevelChecks {
       fail(fmt::format("level.low = {:g} must be above 0, since scale is log", level_.low));
     settle_start();
     take_standard();
-    if (protocol_.trials.feedback && !has_right_answers(protocol_))
+    if (protocol_.trials.feedback && !has_right_answers())
       fail(
           fmt::format("trials.feedback tells whether an answer was right, and task {} has no right "
                       "answers here",
@@ -58,14 +65,23 @@ class LevelChecks {
   bool gives(const std::string& key) const {
     return std::find(given_.begin(), given_.end(), "level." + key) != given_.end();
   }
-  bool compares() const { return protocol_.trials.task != StudyTask::Judgement; }
+  bool has_right_answers() const {
+    return task_.answer_kind(protocol_.standard.has_value()) == AnswerKind::Right;
+  }
+
+  void check_task() const {
+    try {
+      task_.check(protocol_);
+    } catch (const std::invalid_argument& error) {
+      fail(error.what());
+    }
+  }
 
   void settle_start() {
-    const bool adjusts = protocol_.trials.task == StudyTask::Adjustment;
-    const bool steps = adjusts || level_.procedure == Staircase::UpDown;
+    const bool steps = task_.is_tuned() || level_.procedure == Staircase::UpDown;
     if (steps && !(level_.step > 0.0)) {
       fail(fmt::format("{} needs step in [level], above 0",
-                       adjusts ? "adjustment" : "procedure up-down"));
+                       task_.is_tuned() ? task_.name() : "procedure up-down"));
     }
     if (!gives("start")) {
       const double middle = 0.5 * (level_.to_scale(level_.low) + level_.to_scale(level_.high));
@@ -78,16 +94,18 @@ class LevelChecks {
   }
 
   void take_standard() {
-    if (!compares()) {
-      if (gives("against") || gives("reference"))
-        fail("a judgement compares with nothing: leave level.against and level.reference out");
+    if (!task_.traits().compares) {
+      if (gives("against") || gives("reference")) {
+        fail(fmt::format("a {} compares with nothing: leave level.against and level.reference out",
+                         task_.name()));
+      }
       return;
     }
     if (level_.against.empty() == !gives("reference")) {
       fail(fmt::format(
           "task {} compares with a standard: give level.reference, a level, or level.against, a "
           "method, and not both",
-          name_of(protocol_.trials.task)));
+          task_.name()));
     }
     if (level_.against.empty()) return;
     auto& methods = protocol_.methods;
@@ -149,13 +167,7 @@ class LevelChecks {
     check_level(method, "high", level_.high);
     if (gives("start")) check_level(method, "start", level_.start);
     if (gives("reference")) check_level(method, "reference", level_.reference);
-    if (protocol_.trials.task == StudyTask::ForcedChoice && gives("reference") &&
-        level_.reference > level_.low) {
-      fail(
-          fmt::format("level.reference = {:g} must not be above low, {:g}: the right answer is "
-                      "the interval of the higher level",
-                      level_.reference, level_.low));
-    }
+    check_task();
     if (level_.setting == "plan.gain" && method.settings.emit.full_scale_pressure == 0.0) {
       fail(fmt::format(
           "level.setting = \"plan.gain\" would change nothing with method {}, whose full scale "
@@ -180,6 +192,7 @@ class LevelChecks {
   const std::string_view text_;
   const std::vector<std::string>& given_;
   Protocol& protocol_;
+  const Task& task_;
   LevelSettings& level_;
 };
 

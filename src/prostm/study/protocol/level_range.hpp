@@ -1,0 +1,11 @@
+#pragma once
+/// The bounds of the levels of a study.
+
+namespace prostm {
+
+/// Bounds of levels that a procedure may ask for, on its scale.
+struct LevelRange {
+  double low = 0.0, high = 1.0;
+};
+
+}  // namespace prostm
