@@ -133,15 +133,15 @@ nlohmann::ordered_json read_about(const Json& json) {
 }
 
 StudyAct read_study(const Json& json) {
-  constexpr double kMostScenes = 1000;
+  constexpr double kMostScenes = 1000, kMostIntervals = 9;
   enum class Way { Less, More };
   StudyAct act;
   act.what = choice<StudyAct::Do>(json, "do",
                                   {"next", "anyway", "answer", "correct", "pause", "consent",
                                    "about", "explore", "withdraw", "tune", "accept"});
   if (act.what == StudyAct::Do::Answer && json.contains("interval")) {
-    const double interval = number(json, "interval", 1.0, 2.0);
-    if (interval != std::floor(interval)) throw Wrong("\"interval\" must be 1 or 2");
+    const double interval = number(json, "interval", 1.0, kMostIntervals);
+    if (interval != std::floor(interval)) throw Wrong("\"interval\" must be a whole number");
     act.interval = static_cast<int>(interval);
   } else if (act.what == StudyAct::Do::Answer) {
     act.yes = truth(json, "yes");

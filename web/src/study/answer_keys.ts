@@ -1,26 +1,34 @@
 /// Keys of answers and of tuning: letters, digits, arrows, and those that foot switches and remote controls send.
 
 import { keyAmong, type KeyPress } from "../keyboard";
-import type { Task } from "./messages";
+import type { Controls } from "./messages";
 
 const kYes = ["y", "ArrowRight", "PageDown"], kNo = ["n", "ArrowLeft", "PageUp"];
-const kFirst = ["1", "ArrowLeft", "PageUp"], kSecond = ["2", "ArrowRight", "PageDown"];
+const kBefore = ["ArrowLeft", "PageUp"], kAfter = ["ArrowRight", "PageDown"];
 const kMore = ["+", "ArrowUp", "ArrowRight", "PageDown"], kLess = ["-", "ArrowDown", "ArrowLeft", "PageUp"];
 
 export type AnswerAct =
-  | { do: "answer"; first: boolean } // the left of two buttons, or the right one
+  | { do: "answer"; button: number } // its place, from 0 at the left
   | { do: "tune"; to: "less" | "more"; coarse: boolean }
   | { do: "accept" };
 
-/// The act of a key in a task; null for none.
-export function answerOf(press: KeyPress, task: Task): AnswerAct | null {
-  if (task === "adjustment") {
+/// The keys of each button: its number, and arrows for the leftmost and the rightmost one.
+function keysOf({ form, words }: Buttons): string[][] {
+  if (form === "yes-no") return [kYes, kNo];
+  return words.map((_, i) => [`${i + 1}`, ...(i === 0 ? kBefore : i === words.length - 1 ? kAfter : [])]);
+}
+
+export type Buttons = Pick<Controls, "form" | "words">;
+
+/// The act of a key where answers are given so; null for none.
+export function answerOf(press: KeyPress, controls: Buttons): AnswerAct | null {
+  if (controls.form === "tuned") {
     const key = keyAmong(press, [...kMore, ...kLess, "Enter"]);
     if (key === undefined) return null;
     if (key === "Enter") return { do: "accept" };
     return { do: "tune", to: kMore.includes(key) ? "more" : "less", coarse: press.shiftKey && key !== "+" };
   }
-  const [first, second] = task === "forced-choice" ? [kFirst, kSecond] : [kYes, kNo];
-  const key = keyAmong(press, [...first, ...second]);
-  return key === undefined ? null : { do: "answer", first: first.includes(key) };
+  const keys = keysOf(controls);
+  const key = keyAmong(press, keys.flat());
+  return key === undefined ? null : { do: "answer", button: keys.findIndex((of) => of.includes(key)) };
 }

@@ -45,13 +45,13 @@ const page = new StudyPage<Experimenter>("/live", "experimenter", (study) => {
   find("next").hidden = next === undefined;
   setText(find("next-word"), next ?? "");
   showTask(study, phase === "presenting");
-  const forced = study.task === "forced-choice";
+  const forced = study.controls.form === "interval";
   setText(find("first-key"), forced ? "1" : "Y");
   setText(find("second-key"), forced ? "2" : "N");
   setText(find("answers-by"), phase === "presenting" && study.answers === "participant" ? "The participant answers; these are for when they cannot." : "");
   find("anyway").hidden = phase !== "settling" || (study.waits_for === "" && study.needs === "");
   find("pause").hidden = phase !== "settling" && phase !== "presenting";
-  find("correct").hidden = study.last === null || phase === "presenting" || phase === "withdrawn";
+  find("correct").hidden = study.last === null || study.controls.words.length !== 2 || phase === "presenting" || phase === "withdrawn";
   setText(find("last"), study.last === null ? "" : `The last answer was ${kAnswers[forced ? 1 : 0]![study.last ? 0 : 1]}: change it`);
   find("withdraw").hidden = phase === "done" || phase === "withdrawn";
   find("scenes").hidden = phase !== "training";

@@ -4,8 +4,16 @@ export const kPhases = [
   "consent", "about", "training", "ready", "settling", "presenting", "break", "paused", "done", "withdrawn",
 ] as const;
 export type Phase = (typeof kPhases)[number];
-export const kTasks = ["identification", "forced-choice", "judgement", "adjustment"] as const;
-export type Task = (typeof kTasks)[number];
+export const kForms = ["yes-no", "interval", "tuned"] as const;
+export type AnswerForm = (typeof kForms)[number];
+
+/// How an answer is given, whatever the task: the pages make their buttons and keys from it.
+export interface Controls {
+  form: AnswerForm;
+  words: string[]; // of the buttons, from left to right; none where the level is tuned
+  spoken: string; // the sentence for those who answer aloud
+  intervals: number; // of a trial
+}
 
 interface StudyBase {
   type: "study";
@@ -14,8 +22,9 @@ interface StudyBase {
   done: number; // answers
   trials: number; // in all, or at most
   open: boolean; // whether they may become fewer
-  task: Task;
-  interval: number; // that sounds, 1 or 2; 0 in silence, and of a trial with only one
+  task: string; // its name in the protocol
+  controls: Controls;
+  interval: number; // that sounds, from 1; 0 in silence, and of a trial with only one
   takes_answer: boolean;
   training_left_s: number;
   explored: number; // the scene of training, by its place
@@ -56,7 +65,7 @@ export type Study = Experimenter | Participant;
 export type StudyAct =
   | { type: "study"; do: "next" | "anyway" | "correct" | "pause" | "consent" | "withdraw" | "accept" }
   | { type: "study"; do: "answer"; yes: boolean }
-  | { type: "study"; do: "answer"; interval: 1 | 2 }
+  | { type: "study"; do: "answer"; interval: number }
   | { type: "study"; do: "tune"; to: "less" | "more"; coarse: boolean }
   | { type: "study"; do: "explore"; scene: number }
   | { type: "study"; do: "about"; about: Record<string, string> };
@@ -64,9 +73,15 @@ export type StudyAct =
 const isText = (x: unknown): x is string => typeof x === "string";
 const isList = (x: unknown, of: (v: unknown) => boolean): boolean => Array.isArray(x) && x.every(of);
 
+function isControls(x: unknown): boolean {
+  if (typeof x !== "object" || x === null) return false;
+  const { form, words, spoken, intervals } = x as Record<string, unknown>;
+  return kForms.includes(form as AnswerForm) && isList(words, isText) && isText(spoken) && Number.isFinite(intervals);
+}
+
 export function isStudy(x: Record<string, unknown>): boolean {
   const numbers = [x.done, x.trials, x.training_left_s, x.explored, x.interval];
-  const base = [x.title, x.waits_for].every(isText) && kPhases.includes(x.phase as Phase) && kTasks.includes(x.task as Task) &&
+  const base = [x.title, x.waits_for].every(isText) && kPhases.includes(x.phase as Phase) && isText(x.task) && isControls(x.controls) &&
     typeof x.takes_answer === "boolean" && typeof x.open === "boolean" &&
     numbers.every((v) => Number.isFinite(v)) && isList(x.scenes, isText);
   if (!base) return false;

@@ -5,7 +5,7 @@ import { find, setText } from "../dom";
 import { entryOf, isCommand } from "../keyboard";
 import { answerOf } from "./answer_keys";
 import { Picture } from "./picture";
-import type { Study, StudyAct, Task } from "./messages";
+import type { Controls, Study, StudyAct } from "./messages";
 
 /// How far the session is, in words.
 export function progress(study: Study): string {
@@ -79,24 +79,41 @@ export function showScenes(root: HTMLElement, study: Study, explore: (scene: num
   [...root.children].forEach((button, i) => button.setAttribute("aria-pressed", String(i === study.explored)));
 }
 
-/// The task's buttons, and what its intervals are called. The same on both pages.
+/// The answers' buttons: two stand on the page, and more are added where a task has more answers.
+function showAnswers(words: string[]): void {
+  const [first, second] = words;
+  setText(find("first-word"), first ?? "");
+  setText(find("second-word"), second ?? "");
+  const root = find("answers"), more = [...root.querySelectorAll<HTMLButtonElement>("button.more-answers")];
+  for (let i = more.length; i < words.length - 2; ++i) {
+    const button = document.createElement("button");
+    [button.type, button.className] = ["button", "more-answers"];
+    button.dataset.button = String(i + 2);
+    root.append(button);
+  }
+  root.querySelectorAll<HTMLButtonElement>("button.more-answers").forEach((button, i) => {
+    button.hidden = i + 2 >= words.length;
+    setText(button, words[i + 2] ?? "");
+  });
+}
+
+/// The task's buttons, and the interval that sounds. The same on both pages.
 export function showTask(study: Study, answers: boolean): void {
-  const { task } = study;
-  find("answers").hidden = !answers || task === "adjustment";
-  find("tuning").hidden = !answers || task !== "adjustment";
-  const [first, second] = task === "forced-choice" ? ["The first", "The second"] : ["Yes", "No"];
-  setText(find("first-word"), first!);
-  setText(find("second-word"), second!);
-  for (const id of ["first", "second", "accept"]) find<HTMLButtonElement>(id).disabled = !study.takes_answer;
-  const silent = task === "adjustment" || !study.takes_answer ? "…" : "";
-  setText(find("interval"), study.phase !== "presenting" ? "" : study.interval > 0 ? `${study.interval}` : task === "forced-choice" || task === "adjustment" ? silent : "");
+  const { form, words, intervals } = study.controls;
+  const tuned = form === "tuned";
+  find("answers").hidden = !answers || tuned;
+  find("tuning").hidden = !answers || !tuned;
+  if (!tuned) showAnswers(words);
+  for (const button of document.querySelectorAll<HTMLButtonElement>("#first, #second, #accept, .more-answers")) button.disabled = !study.takes_answer;
+  const silent = intervals > 1 && (tuned || !study.takes_answer) ? "…" : "";
+  setText(find("interval"), study.phase !== "presenting" ? "" : study.interval > 0 ? `${study.interval}` : silent);
 }
 
 type Acting = Pick<StudyPage<Study>, "study" | "act">;
 
-/// How a participant answers: the left of two buttons, or the right one; and how they tune.
+/// How a participant answers, by the place of a button from 0 at the left; and how they tune.
 export interface Answering {
-  answer(first: boolean): void;
+  answer(button: number): void;
   tune(to: "less" | "more", coarse: boolean): void;
   accept(): void;
 }
@@ -105,22 +122,26 @@ export interface Answering {
 export function answering(page: Acting, may: () => boolean): Answering {
   const study = () => (page.study?.phase === "presenting" && may() ? page.study : null);
   const ways: Answering = {
-    answer: (first) => {
+    answer: (button) => {
       const now = study();
-      if (now === null || !now.takes_answer || now.task === "adjustment") return;
-      if (now.task === "forced-choice") page.act({ type: "study", do: "answer", interval: first ? 1 : 2 });
-      else page.act({ type: "study", do: "answer", yes: first });
+      if (now === null || !now.takes_answer || now.controls.form === "tuned") return;
+      if (now.controls.form === "interval") page.act({ type: "study", do: "answer", interval: button + 1 });
+      else page.act({ type: "study", do: "answer", yes: button === 0 });
     },
     tune: (to, coarse) => {
-      if (study()?.task === "adjustment") page.act({ type: "study", do: "tune", to, coarse });
+      if (study()?.controls.form === "tuned") page.act({ type: "study", do: "tune", to, coarse });
     },
     accept: () => {
       const now = study();
-      if (now?.task === "adjustment" && now.takes_answer) page.act({ type: "study", do: "accept" });
+      if (now?.controls.form === "tuned" && now.takes_answer) page.act({ type: "study", do: "accept" });
     },
   };
-  find("first").addEventListener("click", () => ways.answer(true));
-  find("second").addEventListener("click", () => ways.answer(false));
+  find("first").addEventListener("click", () => ways.answer(0));
+  find("second").addEventListener("click", () => ways.answer(1));
+  find("answers").addEventListener("click", (event) => {
+    const more = (event.target as HTMLElement).closest<HTMLElement>(".more-answers");
+    if (more !== null) ways.answer(Number(more.dataset.button));
+  });
   addTuning(find("tuning"), ways);
   return ways;
 }
@@ -146,11 +167,11 @@ function addTuning(root: HTMLElement, ways: Answering): void {
   accept.className = "strong";
 }
 
-/// @return whether the key is the task's. One that is held down counts once, but for tuning.
-function press(event: KeyboardEvent, task: Task, ways: Answering): boolean {
-  const act = answerOf(event, task);
+/// @return whether the key answers or tunes. One that is held down counts once, but for tuning.
+function press(event: KeyboardEvent, controls: Controls, ways: Answering): boolean {
+  const act = answerOf(event, controls);
   if (act?.do === "tune") ways.tune(act.to, act.coarse);
-  if (act?.do === "answer" && !event.repeat) ways.answer(act.first);
+  if (act?.do === "answer" && !event.repeat) ways.answer(act.button);
   if (act?.do === "accept" && !event.repeat) ways.accept();
   return act !== null;
 }
@@ -166,7 +187,7 @@ export function listen(page: Acting, ways: Answering, others: Record<string, () 
     if (onButton) return;
     const study = page.study;
     const other = entryOf(event, others);
-    if (study?.phase === "presenting" && press(event, study.task, ways)) event.preventDefault();
+    if (study?.phase === "presenting" && press(event, study.controls, ways)) event.preventDefault();
     else if (other && !event.repeat) {
       other();
       event.preventDefault();

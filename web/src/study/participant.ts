@@ -4,7 +4,7 @@ import { find, setText } from "../dom";
 import { drawHand } from "./hand_drawing";
 import { Noise } from "./noise";
 import { answering, listen, minutes, showScenes, showTask, StudyPage } from "./page";
-import type { Participant, Phase, Task } from "./messages";
+import type { Participant, Phase } from "./messages";
 import "../styles/base.css";
 import "../styles/study.css";
 
@@ -15,11 +15,6 @@ const kWords: Record<Phase, string> = {
   settling: "Hold your hand flat above the device, palm down, and wait.",
   presenting: "", break: "A break. Rest your hand.", paused: "A pause. Rest your hand.",
   done: "That was all. Thank you!", withdrawn: "You have left the study. Thank you for your time.",
-};
-
-const kSpoken: Record<Task, string> = {
-  identification: "Say yes or no.", judgement: "Say yes or no.", "forced-choice": "Say one or two.",
-  adjustment: "Say more or less, and when they are alike.",
 };
 
 const kReports = 500; // between reports of what this page does [ms]
@@ -45,7 +40,7 @@ const page = new StudyPage<Participant>("/guest/live", "participant", (study) =>
   }
   find("drawing").hidden = question === null || question.jets_mm.length === 0;
   showTask(study, phase === "presenting" && study.answers === "participant");
-  setText(find("spoken"), phase === "presenting" && study.answers === "experimenter" ? kSpoken[study.task] : "");
+  setText(find("spoken"), phase === "presenting" && study.answers === "experimenter" ? study.controls.spoken : "");
   const told = study.feedback === null || phase === "presenting" ? "" : study.feedback ? "That was right." : "That was wrong.";
   setText(find("feedback"), told);
   noise.play(study.noise && (phase === "training" || phase === "settling" || phase === "presenting"));
