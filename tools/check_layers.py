@@ -31,6 +31,7 @@ RANKS = {
     "io": (("io/detail",), ("io/field", "io/hand")),
     "pipeline": (("pipeline/smoke",), ("pipeline/realtime",)),
     "plan": (("plan/quasi_static", "plan/detail"), ("plan/detail/paper", "plan/detail/fit")),
+    "study": (("study/protocol",), ("study/task",), ("study/session",), ("study/analysis",), ("study/live",)),
 }
 RANK_OF = {room: rank for ranks in RANKS.values() for rank, rooms in enumerate(ranks) for room in rooms}
 # Headers of a stage that use its rooms, so no room includes them.
