@@ -1,6 +1,6 @@
 #pragma once
-/// The words of a participant's file (docs/study-files.md): kinds of lines, and the keys that more
-/// than one part of prostm writes or reads.
+/// The words of a participant's file (docs/study/study-files.md): kinds of lines, and the keys that
+/// more than one part of prostm writes or reads.
 
 namespace prostm::line {
 

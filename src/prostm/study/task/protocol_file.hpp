@@ -10,8 +10,8 @@
 
 namespace prostm {
 
-/// Reads a protocol (docs/study.md). @param base the settings that methods begin with. @param tasks
-/// those that it may name; the first is the default. They outlive the protocol.
+/// Reads a protocol (docs/study/study.md). @param base the settings that methods begin with. @param
+/// tasks those that it may name; the first is the default. They outlive the protocol.
 /// @throws InputError with file and line: no TOML, a table or key that is unknown, a value that is
 /// out of bounds; no method, too few scenes, a scene that does not exist, no question; levels that
 /// are missing, are not for this task, or do not suit their setting.
