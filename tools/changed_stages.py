@@ -19,8 +19,9 @@ SHARED = (("src", "prostm", "textbook"), ("src", "prostm", "fields"))
 # what tests of devices run against
 DEVICE_SUPPORT = (("tests", "support", "standins"), ("tests", "support", "ultraleap_sdk"))
 # files that no sanitizer or fuzzer covers
-ELSEWHERE = ("docs", "web", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md",
-             "CITATION.cff", "LICENSE", ".ci", ".gitignore")
+ELSEWHERE = ("docs", "web", "bench", "lab", "examples", "python", "README.md", "CHANGELOG.md", "CONTRIBUTING.md",
+             "SECURITY.md", "CITATION.cff", "LICENSE", ".ci", ".github", ".gitignore", ".vale.ini", ".codespellrc",
+             ".pre-commit-config.yaml")
 
 
 def git(*arguments):

@@ -4,76 +4,29 @@ long.
 
 usage: check_words.py FOLDER
 
-FOLDER is a checkout. Exit status 1 when anything is listed.
+FOLDER is a checkout. The rules of wording are those of tools/vale/prostm, which tools/check_prose.sh gives to Vale;
+needs Python's yaml. Exit status 1 when anything is listed.
 """
 
 import re
 import sys
 from pathlib import Path
 
+from vale_rules import read_rules
+
 LONGEST = 120
 FOLDERS = ("apps", "bench", "cmake", "data", "docs", "examples", "fuzz", "lab", "python", "src", "tests", "tools",
            "web/src", "web/tests")
 DOCUMENTS = (".md",)
 SOURCES = (".cpp", ".hpp", ".py", ".pyi", ".sh", ".ts", ".txt", ".cmake", "run")
-# this list, and what tests it, must name what they forbid
+# what tests this must name what it forbids
 LISTS = ("tools/check_words.py", "tests/tools/test_check_words.py")
+RULES = Path(__file__).resolve().parent / "vale" / "prostm"
 
-IDIOM = {
-    re.compile(r"\b(?:is|are) none\b"): "say what is missing: 'there is no …'",
-    re.compile(r"\bis one(?=[.,;:)\"]|$| (?:that|which|who)\b)"): "name the thing in place of 'one'",
-    re.compile(r"\bfor ever\b"): "'without end', 'never'",
-    re.compile(r"\bof no meaning\b"): "'unspecified'",
-}
-# as comments, documents and messages had them, white space and emphasis aside
-SENTENCES = (
-    "Use my mouse as the hand is one",
-    "which has been tried against stand-ins that replay recordings, and never with a real one",
-    "nothing else has to be there but git",
-    "What cannot be is answered with a sentence",
-    "A frame that cannot be is dropped",
-    "A pose file comes of a calibration",
-    "hands are taken to be where they will be so much later",
-    "takes the place of one that the frame does not have",
-    "with one corner of its own sign",
-    "the output fades, for the depth of the queue and the time of the fade",
-    "a test that uses data which is not part of the project says so",
-    "It is printed and judges nothing",
-    "What the smoke's stage is built from",
-    "itself where it is alone",
-    "Of a focal point that sounds",
-    "What is in it before is of no meaning",
-    "No hand, for ever",
-    "is none; give one like",
-    "by way of int, for which the machine has an instruction",
-    "for an id that is none",
-    "share of a cost that is none",
-    "the one sentence that refuses what lies outside them",
-)
 # a comment's or docstring's first line
 OPENING = re.compile(r'^\s*(?:///?<?|#|""")\s*(Of|What)\b')
 TRAILING = re.compile(r"\S.*?\s(?:///<?|//|#)\s+(Of|What)\b")
 COMMENT = re.compile(r"^\s*(?://|#(?!include|pragma|if|endif|else|define))")
-
-
-def plain(text):
-    """Without the marks of comments and emphasis, in single spaces."""
-    return re.sub(r"[\s*_]+", " ", re.sub(r"^\s*(?:///?<?|#)", "", text, flags=re.MULTILINE))
-
-
-def idiom_in(text):
-    """(line, what is wrong) of each place."""
-    for number, line in enumerate(text.splitlines(), 1):
-        for pattern, better in IDIOM.items():
-            if found := pattern.search(line):
-                yield number, f'"{found[0]}": {better}'
-
-
-def sentences_in(text):
-    flat = plain(text)
-    for sentence in SENTENCES:
-        if sentence in flat:
-            yield 1, f'the old sentence "{sentence}"'
 
 
 def openings_in(text):
@@ -108,9 +61,10 @@ def texts_in(root):
 
 
 def problems(root):
+    rules = read_rules(RULES)
     for name, path in texts_in(root):
         text = path.read_text(encoding="utf-8")
-        checks = (idiom_in, sentences_in, long_lines_in if name.endswith(DOCUMENTS) else openings_in)
+        checks = [rule.places for rule in rules] + [long_lines_in if name.endswith(DOCUMENTS) else openings_in]
         for number, what in sorted(place for check in checks for place in check(text)):
             yield f"{name}:{number}: {what}"
 

@@ -11,9 +11,9 @@
 namespace prostm {
 
 /// Sets what the file gives and leaves the rest. @throws InputError that names file, line and key:
-/// unknown group or key (with the nearest known one), a value of the wrong type, a name that is
-/// none of a choice's, a number that is not finite or out of its bounds. @return the names of what
-/// it gives, "plan.sigma".
+/// unknown group or key (with the nearest known one), a value of the wrong type, a name that
+/// the choice lacks, a number that is not finite or out of its bounds. @return the names of what it
+/// gives, "plan.sigma".
 std::vector<std::string> read_settings(const std::string& path,
                                        const std::vector<SettingsGroup>& groups);
 /// @param inside the table that holds the groups, {"method", "am"}; empty: the document.

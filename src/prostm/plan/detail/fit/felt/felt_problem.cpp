@@ -14,7 +14,7 @@ constexpr float kSpare = 1.05F;
 constexpr double kLeastPace = 0.7;    // below which no more loudness is asked for
 constexpr float kLeastShare = 1e-6F;  // of a lap that a point stands for, in a divisor
 
-/// Points that move can make use of finer cells than pressures can.
+/// Points that move can use finer cells than pressures can.
 std::size_t most_cells(const PlanSettings& settings) {
   return settings.felt_points ? kFinerFeltCells : kFeltCells;
 }
