@@ -1,5 +1,5 @@
 #pragma once
-/// Seeded random numbers that are the same on every platform (the distributions of <random> are
+/// Seeded random numbers that are the same on every platform (the distributions of `<random>` are
 /// not).
 
 #include <cmath>

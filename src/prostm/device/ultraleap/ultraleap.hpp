@@ -12,7 +12,7 @@
 
 namespace prostm {
 
-/// Parts of the address in ultraleap://ADDRESS: [DEVICE][@CONNECTION].
+/// Parts of the address in `ultraleap://ADDRESS`: `[DEVICE][@CONNECTION]`.
 struct UltraleapAddress {
   std::string device;      ///< identifier, as USX:00000001; empty: the first one that streams
   std::string connection;  ///< "direct", or "local:PATH" of a service; empty: the usual service
