@@ -3,8 +3,8 @@
 
 usage: skipped_tests.py LOG     LOG is Testing/Temporary/LastTest.log of a build folder
 
-Prints one line for each reason, with the tests: those of GoogleTest by their entry in ctest, those of pytest by file
-and line. Prints nothing where none was skipped.
+Prints one line for each reason, with the tests: those of GoogleTest and of scripts by their entry in ctest, those of
+pytest by file and line. Prints nothing where none was skipped.
 """
 
 import re
@@ -13,6 +13,7 @@ from pathlib import Path
 
 ENTRY = re.compile(r"^\d+/\d+ Test(?:ing)?: (.+)$")
 GOOGLE = re.compile(r"^\S+:\d+: Skipped$")
+PLAIN = re.compile(r"^skipped: (.+)$")  # of a script
 PYTEST = re.compile(r"^SKIPPED \[\d+\] (\S+:\d+): (.*)$")
 
 
@@ -25,6 +26,8 @@ def skipped(log):
             entry = begun.group(1)
         elif by_pytest:
             reasons.setdefault(by_pytest.group(2), []).append(by_pytest.group(1))
+        elif by_script := PLAIN.match(line):
+            reasons.setdefault(by_script.group(1), []).append(entry)
         elif GOOGLE.match(line):
             reason = lines[i + 1].strip() if i + 1 < len(lines) else ""
             reasons.setdefault(reason, []).append(entry)

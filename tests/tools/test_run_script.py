@@ -145,7 +145,46 @@ needs data/leap/flapping.json in ../shared, which is not part of the project
 .....s..                                                                 [100%]
 SKIPPED [1] tests/command_line/test_x.py:12: too slow here
 7 passed, 1 skipped in 3.00s
+4/4 Testing: prose
+4/4 Test: prose
+skipped: there is no Vale
 """
+
+
+# builds nothing: says what it would configure and build, and what ctest would run
+DRY = """
+install_for_program() { :; }
+configure() { echo "configure $1"; }
+build_targets() { echo "build $*"; }
+cmake() { :; }
+ctest() { echo "ctest $*"; }
+rm() { :; }
+mkdir -p "$root/build"
+"""
+
+
+def test_a_part_of_full_makes_its_own_build_alone(shell):
+    told = shell.call(f"{DRY}run_tests --full --only=asan").splitlines()
+    assert told[:3] == ["configure release", "configure asan", "build asan all"]
+    assert told[3].endswith("-R ^asan\\.") and len(told) == 4
+    told = shell.call(f"{DRY}run_tests --full --only=checks").splitlines()
+    assert told[0] == "configure release" and told[1].startswith("ctest ") and len(told) == 2
+
+
+def test_full_makes_all_builds(shell):
+    told = shell.call(f"{DRY}run_tests --full -N").splitlines()
+    assert [line for line in told if line.startswith("configure")] == [
+        "configure release", "configure asan", "configure tsan", "configure fuzz"]
+    assert "build release all" in told
+
+
+@pytest.mark.parametrize("options, says", [
+    ("--full --only=ubsan", "test --only has no part 'ubsan'; there are: asan, tsan, fuzz, checks"),
+    ("--only=asan", "test --changed and --only belong to --full"),
+    ("--changed", "test --changed and --only belong to --full"),
+])
+def test_a_part_that_is_unknown_or_alone_is_refused(shell, options, says):
+    assert says in shell.call(f"{DRY}run_tests {options}", status=2)
 
 
 def test_skipped_tests_are_told_with_their_reasons(tmp_path):
@@ -156,5 +195,6 @@ def test_skipped_tests_are_told_with_their_reasons(tmp_path):
     assert told == [
         "skipped: needs data/leap/flapping.json in ../shared, which is not part of the project: "
         "track.LeapClient.Arrives, track.OpenXr.Arrives",
-        "skipped: too slow here: tests/command_line/test_x.py:12"]
+        "skipped: too slow here: tests/command_line/test_x.py:12",
+        "skipped: there is no Vale: prose"]
     assert subprocess.run([*tool, tmp_path / "none"], capture_output=True).returncode == 2
