@@ -1,4 +1,4 @@
-"""The public workflow, the hooks before a commit and .ci/run: each is well formed, and what it calls exists."""
+"""The public workflow and the hooks before a commit: each is well formed, and the commands that it calls exist."""
 
 import itertools
 import json
