@@ -19,6 +19,12 @@ OURS = re.compile(r"\bprostm_(\w+)\b")
 PROGRAMS = ("apps", "python", "bench", "lab", "fuzz")
 MAY_LOOK_INSIDE = ("tests", "bench", "lab")
 STAGES = "src/prostm/"
+# These programs are shipped: they include headers of stages and of their own folder alone, and nothing that is shipped
+# links the lab, benchmarks or tests.
+SHIPPED = ("apps/", "python/")
+NOT_SHIPPED = re.compile(r"\bprostm_(?:\w+_lab|\w+_bench|rows|test_support)\b"
+                         r"|(?<![\w-])(?:\.\./)*(?:tests|lab|bench)/[\w./-]*")
+LISTS = ("CMakeLists.txt", "apps/CMakeLists.txt", "python/CMakeLists.txt")
 OF_ALL = (STAGES + "prostm.hpp", STAGES + "version.hpp", STAGES + "commit.hpp")
 
 # Rooms, the folders inside a stage, by rank: a room includes rooms of lower ranks, itself with its subfolders, and the
@@ -167,6 +173,34 @@ def check_include(path, stage, quoted, name, layers, programs):
     return check_stage_include(path.removeprefix(STAGES), stage, header, layers)
 
 
+def check_own_include(root, file, name):
+    """Returns the problem of a quoted #include of a shipped program, or None: a header that is of no stage must lie in the
+    program's own folder."""
+    if name.startswith("prostm/"):
+        return None
+    top, *rest = file.relative_to(root).parts
+    own = root / top / rest[0] if len(rest) > 1 else root / top
+    for place in (file.parent, own):
+        header = (place / name).resolve()
+        if header.is_file() and header.is_relative_to(own.resolve()):
+            return None
+    folder = own.relative_to(root).as_posix()
+    return f'"{name}" is no header of {folder}/: what is shipped uses nothing of lab, bench or tests'
+
+
+def check_lists(root):
+    """Returns the violations of the CMake files of what is shipped, as 'file:line: message'."""
+    found = []
+    for name in LISTS:
+        if not (root / name).is_file():
+            continue
+        for number, line in enumerate((root / name).read_text(encoding="utf-8").split("\n"), 1):
+            match = NOT_SHIPPED.search(line.split("#")[0])
+            if match:
+                found.append(f"{name}:{number}: {match.group(0)} is not for what is shipped: move the code into a stage")
+    return found
+
+
 def check_file(root, file, layers, programs):
     """Returns the violations of one C++ file, as (line, message)."""
     path = file.relative_to(root).as_posix()
@@ -182,6 +216,8 @@ def check_file(root, file, layers, programs):
         if include:
             wrong = check_include(path, folder, include.group(1) == '"', include.group(2), layers,
                                   programs)
+            if not wrong and include.group(1) == '"' and path.startswith(SHIPPED):
+                wrong = check_own_include(root, file, include.group(2))
             if wrong:
                 found.append((number, wrong))
     for number, line in enumerate(without_text(source).split("\n"), 1):
@@ -196,7 +232,7 @@ def check_tree(root):
     """Returns all violations below root, as 'file:line: message', sorted by file."""
     layers = read_layers(root)
     programs = read_programs(root, layers)
-    lines = []
+    lines = check_lists(root)
     for top in ("src", "apps", "python", "bench", "lab", "examples", "fuzz", "tests", "tools", "docs", "cmake"):
         for file in sorted((root / top).rglob("*")):
             if not file.is_file() or "__pycache__" in file.parts:

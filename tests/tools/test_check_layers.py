@@ -29,6 +29,7 @@ GOOD = {
     "apps/prostm/main.cpp": '#include <iostream>\n#include "prostm/io/file.hpp"\nint main() { std::cout << 1; }\n',
     "src/prostm/plan/detail/fit/fit.cpp": '#include "prostm/plan/detail/fit/fit.hpp"\n#include "prostm/plan/detail/a.hpp"\n',
     "src/prostm/prostm.hpp": '#include "prostm/device/device.hpp"\n#include "prostm/version.hpp"\n',
+    "lab/methods/tables.hpp": "\n",
     "tests/plan/planner_test.cpp": '#include <thread>\n#include "prostm/io/file.hpp"\n#include "prostm/plan/detail/a.hpp"\n',
 }
 
@@ -91,6 +92,13 @@ def test_accepts_a_tree_that_keeps_the_rules(tree):
     ("apps/prostm/a.cpp", "#include <expected>\n", 1, "<expected>"),
     ("tests/plan/a_test.cpp", "auto v = x | std::views::take(3);\n", 1, "std::views"),
     ("bench/a_bench.cpp", "auto v = x | std::ranges::views::reverse;\n", 1, "views"),
+    ("apps/prostm/a.cpp", '#include "methods/tables.hpp"\n', 1, "nothing of lab, bench or tests"),
+    ("apps/prostm/a.cpp", '#include "../../lab/methods/tables.hpp"\n', 1, "no header of apps/prostm/"),
+    ("python/a.cpp", '\n#include "support/places.hpp"\n', 2, "no header of python/"),
+    ("apps/CMakeLists.txt", "target_link_libraries(prostm PRIVATE prostm_io\n  prostm_skin_lab)\n", 2, "prostm_skin_lab is not"),
+    ("apps/CMakeLists.txt", "target_link_libraries(prostm PRIVATE prostm_io prostm_rows)\n", 1, "prostm_rows is not"),
+    ("python/CMakeLists.txt", "\nadd_subdirectory(../tests/fields fields)\n", 2, "../tests/fields is not"),
+    ("CMakeLists.txt", GOOD["CMakeLists.txt"] + "  add_subdirectory(tests/fields)\n", 13, "tests/fields is not"),
     ("src/prostm/plan/planner_old.cpp", "\n", 1, "old copy"),
     ("src/prostm/plan/planner_v2.cpp", "\n", 1, "old copy"),
     ("src/prostm/plan/planner.cpp.bak", "\n", 1, "old copy"),
@@ -111,7 +119,9 @@ def test_finds_every_violation_of_a_file(tree):
 
 
 def test_a_program_may_include_what_the_linked_stages_link(tree):
-    files = [("apps/prostm/a.cpp", '#include "prostm/plan/plan.hpp"\n#include "prostm/core/units.hpp"\n#include "options.hpp"\n')]
+    files = [("apps/prostm/a.cpp", '#include "prostm/plan/plan.hpp"\n#include "prostm/core/units.hpp"\n#include "options.hpp"\n'),
+             ("apps/prostm/options.hpp", ""), ("apps/prostm/run/a.cpp", '#include "options.hpp"\n#include "b.hpp"\n'),
+             ("apps/prostm/run/b.hpp", "")]
     assert check(TOOL, tree(files))[0] == 0
 
 
