@@ -40,7 +40,8 @@ def stage_of(path):
     folder = parts[2:] if parts[:2] == ("src", "prostm") else parts[1:] if parts[0] == "tests" else ()
     if len(folder) > 1 and (ROOT / "src/prostm" / folder[0]).is_dir():
         return folder[0]
-    if parts[:2] in (("tests", "python"), ("tests", "lab"), ("tests", "library"), ("tests", "tools")):
+    if parts[:2] in (("tests", "python"), ("tests", "lab"), ("tests", "library"), ("tests", "symbols"),
+                     ("tests", "tools")):
         return ""
     if parts[:2] == ("tests", "ultraleap") or parts[:3] in DEVICE_SUPPORT:
         return "device"
