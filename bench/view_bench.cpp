@@ -173,7 +173,7 @@ void measure_hand_off(const Options& given, Distribution& step, Distribution& sm
     StageTimer timer;
     snapshots.step(pipeline.contact(), pipeline.world_stage());
     step.add(1e6 * timer.lap());
-    snapshots.smoke(pipeline.world_stage().world());
+    snapshots.volume(pipeline.world_stage().world());
     smoke.add(1e6 * timer.lap());
     if (!planned) continue;
     snapshots.plan(pipeline.contact(), pipeline.plan(), 0.02);

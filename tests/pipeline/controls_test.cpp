@@ -14,9 +14,8 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
-#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
 #include "prostm/pipeline/snapshot.hpp"
-#include "support/smoke_of.hpp"
 
 namespace prostm {
 namespace {
@@ -234,6 +233,17 @@ TEST(Controls, BothPartsOfThePressureComeAndGo) {
   }
 }
 
+std::vector<float> smoke_of(const World& world) {
+  std::vector<float> out;
+  for (int k = 0; k < world.grid().nz; ++k) {
+    for (int j = 0; j < world.grid().ny; ++j) {
+      const auto row = world.seen_row(j, k).density;
+      out.insert(out.end(), row.begin(), row.end());
+    }
+  }
+  return out;
+}
+
 TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   LiveSettings s = small_settings();
   Pipeline pipeline = pipeline_of(s);
@@ -242,7 +252,7 @@ TEST(Reconfigure, ChangesThePlanAndKeepsTheSmoke) {
   ASSERT_GT(pipeline.plan().plan.paths.size(), 2U);
   const std::int64_t blocks = pipeline.device_stats().blocks;
   const std::int64_t updates = pipeline.plan().id;
-  const auto smoke = [&] { return test::smoke_of(*pipeline.world_stage().world().fluid()); };
+  const auto smoke = [&] { return smoke_of(pipeline.world_stage().world()); };
   const std::vector<float> before = smoke();
 
   s.pipeline.plan.paths = 2;
@@ -296,28 +306,33 @@ TEST(Reconfigure, WhatIsRefusedLeavesEverythingAsItWas) {
   EXPECT_EQ(pipeline.device().status(), DeviceStatus::Running);
 }
 
-TEST(SmokeView, IsTheMeanOfBlocks) {
+TEST(VolumeView, IsTheMeanOfBlocks) {
   for (const int cells : {32, 33, 48, 64, 80, 96, 100, 131}) {
     SCOPED_TRACE(cells);
     WorkerPool pool(1);
-    FluidSettings settings;
-    settings.cells = cells;
-    Fluid fluid(settings, scene_from_name("four-plumes").smoke, pool);
-    HandRasteriser hands(fluid.grid());
+    PipelineSettings settings;
+    settings.scene = "four-plumes";
+    settings.fluid.cells = cells;
+    const std::unique_ptr<World> world = make_smoke_world(settings, pool);
+    HandRasteriser hands(world->grid());
     hands.rasterise({}, pool);
-    for (int i = 0; i < 10; ++i) fluid.step(0.02, hands.raster());
-    SmokeView view;
-    view_smoke(fluid, view);
-    ASSERT_LE(view.n, kSmokeViewCells);
-    EXPECT_GT(view.n, kSmokeViewCells / 2);
-    EXPECT_NEAR(view.edge, settings.width, 1e-12);
+    for (int i = 0; i < 10; ++i) {
+      world->prepare(0.02);
+      world->meet(hands.raster());
+      world->settle();
+    }
+    VolumeView view;
+    view_volume(*world, view);
+    ASSERT_LE(view.n, kVolumeViewCells);
+    EXPECT_GT(view.n, kVolumeViewCells / 2);
+    EXPECT_NEAR(view.edge, settings.fluid.width, 1e-12);
     const auto edge = [&](int i) { return i * cells / view.n; };
     const auto cell_mean = [&](int i, int j, int k) {
       double sum = 0.0, count = 0.0;
       for (int z = edge(k); z < edge(k + 1); ++z)
         for (int y = edge(j); y < edge(j + 1); ++y)
           for (int x = edge(i); x < edge(i + 1); ++x, ++count)
-            sum += static_cast<double>(fluid.smoke_row(y, z)[static_cast<std::size_t>(x)]);
+            sum += static_cast<double>(world->seen_row(y, z).density[static_cast<std::size_t>(x)]);
       return 255.0 * sum / count;
     };
     int brightest = 0;

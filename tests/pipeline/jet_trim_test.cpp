@@ -6,6 +6,7 @@
 
 #include "prostm/core/units.hpp"
 #include "prostm/pipeline/pipeline.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/track/palm.hpp"
 #include "support/heap_guard.hpp"
 

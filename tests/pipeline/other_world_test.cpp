@@ -1,4 +1,4 @@
-// A world other than smoke, through the whole pipeline: an example of how to write one.
+// A world that a caller makes, through the whole pipeline.
 #include <gtest/gtest.h>
 
 #include "prostm/device/simulated/simulated_array.hpp"
@@ -34,6 +34,7 @@ TEST(OtherWorld, IsFelt) {
       most = std::max(most, max_pressure(pipeline.contact().target.patches.at(0)));
   }
   EXPECT_EQ(most, 2.0);
+  EXPECT_TRUE(pipeline.world_stage().world().quantities().empty());
   EXPECT_GT(pipeline.emit_stats().laps_started, 100);
 }
 

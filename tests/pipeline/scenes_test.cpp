@@ -12,6 +12,7 @@
 
 #include "prostm/core/units.hpp"
 #include "prostm/pipeline/pipeline.hpp"
+#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
 
 namespace prostm {

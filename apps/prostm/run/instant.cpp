@@ -18,7 +18,7 @@ void draw_instant(const WorldFrame& contact, const PlanFrame& planned,
   figure.nz = grid.nz;
   figure.cell = grid.cell;
   figure.origin = grid.p_DF({0, 2}) + Vec2::Constant(0.5 * grid.cell);
-  figure.smoke = contact.side.smoke;
+  figure.smoke = contact.side.density;
   figure.hand = contact.side.hand;
   for (const Vec3& p : settings.transducers.position) figure.array.emplace_back(p.x(), p.z());
   LiftedPlan lifted;

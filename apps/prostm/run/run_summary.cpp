@@ -43,6 +43,24 @@ void print_foci(std::FILE* out, const RunSummary& s, const PipelineSettings& set
                         s.emit.dropped_paths));
 }
 
+/// The means of what the world declares, in words: "; on average …", or nothing.
+std::string world_words(const RunSummary& s) {
+  std::string words;
+  for (std::size_t q = 0; q < s.world_quantities.size(); ++q) {
+    const WorldQuantity& quantity = s.world_quantities[q];
+    std::string clause = quantity.words;
+    if (clause.empty()) {
+      clause = fmt::format("{} {{}}{}{}", quantity.name, *quantity.unit == '\0' ? "" : " ",
+                           quantity.unit);
+    }
+    const std::size_t at = clause.find("{}");
+    if (at != std::string::npos)
+      clause.replace(at, 2, fmt::format("{:.2g}", quantity.words_scale * s.world_means[q]));
+    words += (q == 0 ? "; on average " : ", and ") + clause;
+  }
+  return words;
+}
+
 /// Prints the largest levels, which are 0 where nothing sounded.
 void print_levels(std::FILE* out, const RunSummary& s) {
   const SafetyStats& levels = s.safety;
@@ -89,10 +107,7 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
                                   : ", cut short by " + stopped_by);
   print_row(
       out, "smoke",
-      fmt::format("{} steps, {} skipped; on average the solver left {:.2g} of the divergence, and "
-                  "an error of about {:.2g} % in the pressure beside hands",
-                  s.world_steps, s.skipped_world_steps, s.mean_divergence,
-                  100.0 * s.mean_pressure_error));
+      fmt::format("{} steps, {} skipped{}", s.world_steps, s.skipped_world_steps, world_words(s)));
   print_row(out, "plans",
             fmt::format("{}, and {} updates without pressure on a hand; {} targets skipped",
                         s.plans, s.empty_updates, s.skipped_updates));
@@ -106,9 +121,9 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
   print_output(out, s);
   const ContactStats& c = s.contact_stats;
   print_row(out, "hand",
-            fmt::format("{:.1f} % of its joints outside the smoke's box; {:.0f} % of its skin too "
+            fmt::format("{:.1f} % of its joints outside the {}'s box; {:.0f} % of its skin too "
                         "steep to press on",
-                        percent(c.joints_outside, c.joints), 100.0 * steep_share(c)));
+                        percent(c.joints_outside, c.joints), "smoke", 100.0 * steep_share(c)));
   if (s.judged_updates > 0)
     print_row(out, "stimulus",
               fmt::format("as a study needs it in {:.0f} % of the updates (docs/guides/hands.md)",
@@ -210,6 +225,20 @@ nlohmann::ordered_json parts_json(const std::array<Summary, kLatencyParts>& part
   return json;
 }
 
+/// The numbers of the run, with the means of what the world declares before its resets.
+nlohmann::ordered_json run_json(const RunSummary& s) {
+  nlohmann::ordered_json json;
+  const nlohmann::ordered_json numbers = quantities_to_json(s);
+  for (const auto& [name, value] : numbers.items()) {
+    if (name == "world_resets") {
+      for (std::size_t q = 0; q < s.world_quantities.size(); ++q)
+        json[s.world_quantities[q].name] = s.world_means[q];
+    }
+    json[name] = value;
+  }
+  return json;
+}
+
 nlohmann::ordered_json verdict_json(const Verdict& verdict) {
   nlohmann::ordered_json held = nullptr;
   if (verdict.held) held = *verdict.held;
@@ -231,7 +260,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const PipelineSettings&
       {"stopped", s.stopped},
       {"failure", s.failure ? nlohmann::ordered_json(sentence_of(s.failure))
                             : nlohmann::ordered_json(nullptr)}};
-  json.update(quantities_to_json(s));
+  json.update(run_json(s));
   json.update(quantities_to_json(s.device));
   json.update(quantities_to_json(s.emit));
   json.update(quantities_to_json(s.safety));

@@ -2,6 +2,7 @@
 /// Sources of pressure on skin: smoke, or anything else.
 
 #include <span>
+#include <string_view>
 
 #include "prostm/core/geometry.hpp"
 
@@ -18,10 +19,10 @@ class PressureSource {
                       std::span<double> out) const noexcept = 0;
 };
 
-/// Parts of a pressure that are known apart.
-struct PressureParts {
-  const PressureSource& smoke;     ///< of the smoke that blows
-  const PressureSource& movement;  ///< of the hands' own movement
+/// A part of a pressure.
+struct NamedPressure {
+  std::string_view name;
+  const PressureSource* source;  ///< not null
 };
 
 }  // namespace prostm

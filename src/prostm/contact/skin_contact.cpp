@@ -42,6 +42,12 @@ double fade_of(double cosine) {
   return std::clamp((kFadeTo - angle) / (kFadeTo - kFadeFrom), 0.0, 1.0);
 }
 
+/// Returns the part with this name, or null.
+const PressureSource* part_named(std::string_view name, std::span<const NamedPressure> parts) {
+  const auto at = std::ranges::find(parts, name, &NamedPressure::name);
+  return at == parts.end() ? nullptr : at->source;
+}
+
 template <class Settings, class Visitor>
 void list(Settings& s, Visitor& v) {
   // above 0, since only one part of a hand may be visible
@@ -78,8 +84,10 @@ SkinContact::SkinContact(const ContactSettings& settings, const GridShape& grid)
 
 ContactStats SkinContact::extract(const PressureSource& source, const HandRaster& raster,
                                   const HandFrame& hands, TargetFrame& out,
-                                  const std::optional<PressureParts>& parts) noexcept {
+                                  std::span<const NamedPressure> parts) noexcept {
   ContactStats stats;
+  const PressureSource *smoke = part_named("smoke", parts),
+                       *movement = part_named("movement", parts);
   grid_ = raster.grid;
   shapes_.clear();
   for (const Hand& hand : hands.hands) {
@@ -105,9 +113,9 @@ ContactStats SkinContact::extract(const PressureSource& source, const HandRaster
     if (!place_patch(visible_[hand], hands.hands[hand], patch)) continue;
     find_skin(static_cast<int>(hand), patch);
     const Cells cells = press(source, shapes_[hand], patch);
-    if (parts) {
-      press_part(parts->smoke, patch, patch.smoke);
-      press_part(parts->movement, patch, patch.movement);
+    if (smoke != nullptr && movement != nullptr) {
+      press_part(*smoke, patch, patch.smoke);
+      press_part(*movement, patch, patch.movement);
     }
     stats.steep_cells += cells.steep;
     if (cells.skin == 0) continue;

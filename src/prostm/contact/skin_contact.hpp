@@ -4,7 +4,6 @@
 
 #include <array>
 #include <boost/container/static_vector.hpp>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -66,10 +65,10 @@ class SkinContact {
 
   /// @param raster the hands of `hands` on the constructor's grid, whose corner may have moved by
   /// whole cells.  @param hands in frame D; `out` takes over their time.  @param parts of the
-  /// source, if they are to stand in the patches too.
+  /// source. Patches keep those named smoke and movement, if both are there.
   ContactStats extract(const PressureSource& source, const HandRaster& raster,
                        const HandFrame& hands, TargetFrame& out,
-                       const std::optional<PressureParts>& parts = {}) noexcept;
+                       std::span<const NamedPressure> parts = {}) noexcept;
 
  private:
   struct SeenSkin {

@@ -11,6 +11,7 @@
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/emit/compensation.hpp"
 #include "prostm/pipeline/playable.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
 
 namespace prostm {
 namespace {
@@ -84,17 +85,22 @@ WorldStage::WorldStage(const PipelineSettings& settings, std::unique_ptr<HandSou
       filter_(checked(settings).track),
       X_DT_(settings.X_DT),
       pool_(settings.threads),
-      world_(world ? std::move(world) : make_smoke(settings, pool_)),
+      world_(world ? std::move(world) : make_smoke_world(settings, pool_)),
       rasteriser_(world_->grid()),
       contact_(settings.contact, world_->grid()),
       steps_per_plan_(settings.steps_per_plan()),
-      side_view_(settings.side_view) {}
+      side_view_(settings.side_view) {
+  if (world_->quantities().size() <= kMaxWorldQuantities) return;
+  throw std::invalid_argument("a world declares " + std::to_string(world_->quantities().size()) +
+                              " quantities; it must be at most " +
+                              std::to_string(kMaxWorldQuantities));
+}
 
 void WorldStage::adopt(WorldStage& other) {
   hands_ = std::move(other.hands_);
   mute_ = other.mute_;
   X_DT_ = other.X_DT_;
-  world_->go_on_from(*other.world_);
+  world_->continue_from(*other.world_);
 }
 
 void WorldStage::run(std::int64_t step, double time, double dt, WorldFrame& out) {
@@ -146,7 +152,7 @@ void WorldStage::meet(std::int64_t step, double due, double dt, WorldFrame& out)
     out.contact_stats =
         contact_.extract(pressure, rasteriser_.raster(), out.hands, out.target, world_->parts());
     out.stimulus = world_->stimulus();
-    world_->hear(out.hands, out.target, since);
+    world_->observe_target(out.hands, out.target, since);
   }
   out.contact_time = timer.lap();
   if (out.targeted && side_view_) view_from_side(out.side);
@@ -161,19 +167,17 @@ void WorldStage::settle() {
 void WorldStage::view_from_side(SideView& out) const {
   const GridShape& g = out.grid = world_->grid();
   const std::size_t size = static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.nz);
-  out.smoke.assign(size, 0.0F);
+  out.density.assign(size, 0.0F);
   out.hand.assign(size, 0);
-  const Fluid* fluid = world_->fluid();
-  if (fluid == nullptr) return;
-  const auto free = fluid->fluid_cells();
+  const auto width = static_cast<std::size_t>(g.nx);
   for (int k = 0; k < g.nz; ++k) {
+    const std::size_t first = static_cast<std::size_t>(k) * width;
     for (int j = 0; j < g.ny; ++j) {
-      const auto smoke = fluid->smoke_row(j, k);
-      for (int i = 0; i < g.nx; ++i) {
-        const std::size_t pixel = g.cell_index(i, 0, 0) + static_cast<std::size_t>(k * g.nx);
-        out.smoke[pixel] = std::max(out.smoke[pixel], smoke[static_cast<std::size_t>(i)]);
-        if (free[g.cell_index(i, j, k)] == 0) out.hand[pixel] = 1;
-      }
+      const SeenRow row = world_->seen_row(j, k);
+      for (std::size_t i = 0; i < row.density.size(); ++i)
+        out.density[first + i] = std::max(out.density[first + i], row.density[i]);
+      for (std::size_t i = 0; i < row.open.size(); ++i)
+        if (row.open[i] == 0) out.hand[first + i] = 1;
     }
   }
 }

@@ -27,7 +27,7 @@ namespace prostm {
 /// The box seen along y, for pictures: x fastest, then z.
 struct SideView {
   GridShape grid;                  ///< where the box was
-  std::vector<float> smoke;        ///< nx·nz, the densest along y, 0..1
+  std::vector<float> density;      ///< nx·nz, the densest along y, 0..1
   std::vector<std::uint8_t> hand;  ///< nx·nz, 1 where there is a hand
 };
 
@@ -59,11 +59,11 @@ class WorldStage {
   /// targets on every `steps_per_plan`th. Writes `due` = `taken` = time.
   void run(std::int64_t step, double time, double dt, WorldFrame& out);
 
-  /// The same in parts, to the bit: what needs no hands; the hands as they are at run time `time`
-  /// [s], which may be taken again while newer ones are hoped for; from the hands to the targets,
-  /// where the hands are put back along their velocities to where they were when the step was due,
-  /// so that the world's steps stay even; and what nobody waits for. @pre called in this order, or
-  /// take() before prepare(); dt the same.
+  /// The same in parts, to the bit. prepare() does what needs no hands. take() samples them at run
+  /// time `time` [s]; it may be repeated if a newer frame may arrive. meet() goes from the hands to
+  /// the targets; it puts the hands back along their velocities to where they were when the step
+  /// was due, so that the world's steps stay even. settle() runs off the critical path. @pre called
+  /// in this order, or take() before prepare(); dt the same.
   void prepare(double dt);
   void take(double time, WorldFrame& out);
   void meet(std::int64_t step, double due, double dt, WorldFrame& out);
@@ -73,7 +73,7 @@ class WorldStage {
   bool targets(std::int64_t step) const { return step % steps_per_plan_ == 0; }
 
   // between steps of a run that is steered
-  /// Goes on with the hands of another stage, and with its world as far as the two are alike.
+  /// Takes the hands of another stage, and the compatible state of its world.
   void adopt(WorldStage& other);
   void set_hands(std::unique_ptr<HandSource> hands) { hands_ = std::move(hands); }
   void set_tracker_pose(const Pose& X_DT) { X_DT_ = X_DT; }
@@ -193,9 +193,9 @@ class Pipeline {
   const PipelineSettings& settings() const { return settings_; }
 
   /// Takes other settings between two steps, and rebuilds what they concern: hands stay, and so
-  /// does the smoke where the box is the same. Where plans or their emission change the device
+  /// does the compatible state of the world. Where plans or their emission change the device
   /// starts anew, so that its samples count from 0. Not taken: another world_rate, array or device,
-  /// and nothing of hands, smoke and contact where the world is the caller's own.
+  /// and nothing of hands, world and contact where the world is the caller's own.
   /// @throws std::invalid_argument with a sentence; then everything is as it was.
   void reconfigure(const PipelineSettings& settings);
 

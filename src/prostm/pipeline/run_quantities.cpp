@@ -73,17 +73,6 @@ constexpr std::array kStats{
                          .merge = Merge::Newest},
     count("limited_samples", &RunSummary::limited_samples,
           "Samples that the limiter changed because a stage erred.", Better::Less),
-    Quantity<RunSummary>{.name = "mean_relative_divergence",
-                         .unit = "",
-                         .help = "What the fluid's pressure solve left, on the mean.",
-                         .value = &RunSummary::mean_divergence,
-                         .better = Better::Less},
-    Quantity<RunSummary>{
-        .name = "mean_pressure_error",
-        .unit = "",
-        .help = "Estimated error of the fluid's pressure beside hands, relative, on the mean.",
-        .value = &RunSummary::mean_pressure_error,
-        .better = Better::Less},
     count("world_resets", &RunSummary::world_resets,
           "Steps that began anew because a number was not finite.", Better::Less),
 };

@@ -200,7 +200,7 @@ void Run::look() {
 /// A pause belongs to those who look: somebody who has just come sees the smoke, and when nobody
 /// has been there for a while the run goes on.
 void Run::keep_the_pause(bool watched) {
-  if (watched && !watched_) steering_->snapshots().smoke(pipeline_.world_stage().world());
+  if (watched && !watched_) steering_->snapshots().volume(pipeline_.world_stage().world());
   const double now = steady_now();
   if (watched) alone_since_ = now;
   if (now - alone_since_ < pause_kept_) return;
@@ -213,6 +213,7 @@ RunSummary Run::summary() {
   s.mode = mode_;
   s.took = since_start_.seconds();
   plans_.follow();
+  s.world_quantities = pipeline_.world_stage().world().quantities();
   world_.log().write(s);
   plans_.log().write(s);
   s.played_by = pipeline_.device().info();

@@ -74,8 +74,10 @@ struct RunSummary {
   std::int64_t limited_samples = 0;
   SafetyStats safety;
   double max_path_length = 0, max_skin_length = 0;
-  double mean_divergence = 0;      ///< WorldStats::divergence over the steps
-  double mean_pressure_error = 0;  ///< WorldStats::pressure_error over the steps
+  /// Quantities of the world, and their means over its steps; of the last world, if a run had
+  /// several.
+  std::span<const WorldQuantity> world_quantities;
+  std::array<double, kMaxWorldQuantities> world_means = {};
   std::int64_t world_resets = 0;
   double full_scale_pressure = 0;  ///< rendered pressure at intensity 1 [Pa]
   Summary latency, redraw;
@@ -109,7 +111,7 @@ class RunObserver {
   virtual void on_rates(const std::string& news) { static_cast<void>(news); }
   /// The run's seconds are over, and it goes on (RunOptions::stay).
   virtual void on_summary(const RunSummary& summary) { static_cast<void>(summary); }
-  /// Nobody looks any more at a run that is paused, and it goes on from this run time [s].
+  /// A paused run resumed because its last viewer left; run time [s].
   virtual void on_abandoned_pause(double time) { static_cast<void>(time); }
 };
 

@@ -29,18 +29,18 @@ double force_of(const std::vector<double>& pressures, double cell) {
 /// Where blocks of cells begin and end along an edge, n of them.
 struct Blocks {
   explicit Blocks(std::size_t all) : cells(all) {
-    const std::size_t widest = (cells + kSmokeViewCells - 1) / kSmokeViewCells;
+    const std::size_t widest = (cells + kVolumeViewCells - 1) / kVolumeViewCells;
     n = (cells + widest - 1) / widest;
     for (std::size_t i = 0; i <= n; ++i) edges[i] = i * cells / n;
   }
   std::size_t width(std::size_t i) const { return edges[i + 1] - edges[i]; }
 
   std::size_t cells, n = 0;
-  std::array<std::size_t, kSmokeViewCells + 1> edges = {};
+  std::array<std::size_t, kVolumeViewCells + 1> edges = {};
 };
 
-/// Means over blocks. Smoke is never negative: advection weighs it with weights from 0 to 1.
-void average(const Fluid& fluid, const Blocks& blocks, std::span<std::uint8_t> out) {
+/// Means over blocks. @pre densities of 0 to 1.
+void average(const World& world, const Blocks& blocks, std::span<std::uint8_t> out) {
   const auto& edges = blocks.edges;
   std::array<float, FluidSettings::kMostCells>
       row;  // sums over the rows that a row of blocks takes
@@ -50,7 +50,7 @@ void average(const Fluid& fluid, const Blocks& blocks, std::span<std::uint8_t> o
       row.fill(0.0F);
       for (std::size_t z = edges[k]; z < edges[k + 1]; ++z) {
         for (std::size_t y = edges[j]; y < edges[j + 1]; ++y) {
-          const auto from = fluid.smoke_row(static_cast<int>(y), static_cast<int>(z));
+          const auto from = world.seen_row(static_cast<int>(y), static_cast<int>(z)).density;
           for (std::size_t x = 0; x < from.size(); ++x) row[x] += from[x];
         }
       }
@@ -68,14 +68,14 @@ void average(const Fluid& fluid, const Blocks& blocks, std::span<std::uint8_t> o
 
 }  // namespace
 
-void view_smoke(const Fluid& fluid, SmokeView& out) {
-  const GridShape& grid = fluid.grid();
+void view_volume(const World& world, VolumeView& out) {
+  const GridShape& grid = world.grid();
   const Blocks blocks(static_cast<std::size_t>(grid.nx));
   out.n = static_cast<int>(blocks.n);
   out.p_DF = grid.p_DF;
   out.edge = grid.cell * grid.nx;
   out.density.resize(blocks.n * blocks.n * blocks.n);
-  average(fluid, blocks, out.density);
+  average(world, blocks, out.density);
 }
 
 void Snapshots::step(const WorldFrame& frame, const WorldStage& stage) {
@@ -91,10 +91,10 @@ void Snapshots::step(const WorldFrame& frame, const WorldStage& stage) {
   step_.publish();
 }
 
-void Snapshots::smoke(const World& world) {
-  if (!watched() || world.fluid() == nullptr) return;
-  view_smoke(*world.fluid(), smoke_.draft());
-  smoke_.publish();
+void Snapshots::volume(const World& world) {
+  if (!watched() || world.seen_row(0, 0).density.empty()) return;
+  view_volume(world, volume_.draft());
+  volume_.publish();
 }
 
 void Snapshots::plan(const WorldFrame& contact, const PlanFrame& plan, double latency) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The state of a run for those who watch it: copies, handed over by threads that wait for
-/// nobody (docs/design/viewer.md).
+/// The state of a run for those who watch it: copies, published without
+/// blocking (docs/design/viewer.md).
 
 #include <array>
 #include <atomic>
@@ -19,19 +19,20 @@
 
 namespace prostm {
 
-inline constexpr int kSmokeViewCells = 32;  ///< along each edge
+inline constexpr int kVolumeViewCells = 32;  ///< along each edge
 
-/// The smoke in n³ cells of the box, at most kSmokeViewCells along an edge, 0 clear to 255: x
-/// fastest, then y, then z.
-struct SmokeView {
+/// The density in the world's box, in n³ cells, at most kVolumeViewCells along an edge, 0 clear to
+/// 255: x fastest, then y, then z.
+struct VolumeView {
   int n = 0;                 ///< cells along an edge
   Vec3 p_DF = Vec3::Zero();  ///< corner of the box [m]
   double edge = 0.0;         ///< of the box [m]
   std::vector<std::uint8_t> density;
 };
 
-/// Averages the smoke of `fluid` over blocks of cells. Allocates only while `out` grows.
-void view_smoke(const Fluid& fluid, SmokeView& out);
+/// Averages the world's density over blocks of cells. Allocates only while `out` grows. @pre the
+/// world's rows have a density.
+void view_volume(const World& world, VolumeView& out);
 
 /// One step of the world.
 struct StepSnapshot {
@@ -81,8 +82,8 @@ class Snapshots {
   // ---- the world's thread ----
   /// A step has met its hands.
   void step(const WorldFrame& frame, const WorldStage& stage);
-  /// The world has settled: its smoke, while somebody looks.
-  void smoke(const World& world);
+  /// The world has settled: the density in its box, while somebody looks.
+  void volume(const World& world);
 
   // ---- the planner's thread ----
   /// Publishes an update. @param latency of the last plan that was emitted, NaN without one [s].
@@ -100,8 +101,8 @@ class Snapshots {
   void watch(bool somebody) { watched_.store(somebody, std::memory_order_relaxed); }
   bool refresh_step() { return step_.refresh(); }
   const StepSnapshot& step() const { return step_.value(); }
-  bool refresh_smoke() { return smoke_.refresh(); }
-  const SmokeView& smoke() const { return smoke_.value(); }
+  bool refresh_volume() { return volume_.refresh(); }
+  const VolumeView& volume() const { return volume_.value(); }
   bool refresh_plan() { return plan_.refresh(); }
   const PlanSnapshot& plan() const { return plan_.value(); }
   bool refresh_run() { return run_.refresh(); }
@@ -112,7 +113,7 @@ class Snapshots {
  private:
   std::atomic<bool> watched_{false};
   Latest<StepSnapshot> step_;
-  Latest<SmokeView> smoke_;
+  Latest<VolumeView> volume_;
   Latest<PlanSnapshot> plan_;
   Latest<RunSnapshot> run_;
   SpscRing<double> latencies_{256};  // when full the newest are lost: nobody looks

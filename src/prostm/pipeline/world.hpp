@@ -1,65 +1,84 @@
 #pragma once
-/// The world that the hands meet: smoke, or anything else that presses on them.
+/// Sources of the pressure on hands: smoke, or a world of your own.
 
-#include <memory>
+#include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include "prostm/contact/pressure_source.hpp"
-#include "prostm/fluid/fluid.hpp"
 #include "prostm/hand/hand_raster.hpp"
-#include "prostm/pipeline/settings.hpp"
-#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/stimulus/stimulus.hpp"
 #include "prostm/target/target_field.hpp"
 #include "prostm/track/hand_frame.hpp"
 
 namespace prostm {
 
-/// How a step went.
+/// A number that a world declares. Each step has a value, and a run's summary has their mean.
+struct WorldQuantity {
+  const char* name;       ///< of the mean, in files
+  const char* unit = "";  ///< in files; empty for a plain number
+  const char* help = "";
+  /// Clause of a printed summary, with {} for the mean; empty: its name, value and unit.
+  const char* words = "";
+  double words_scale = 1.0;  ///< value in the clause over value in files
+};
+inline constexpr std::size_t kMaxWorldQuantities = 8;
+
+/// The result of a step.
 struct WorldStats {
-  double divergence = 0.0;  ///< of a fluid: rms that is left, over that before its pressure solve
-  /// of a fluid: estimated error of its pressure beside hands, relative (F16)
-  double pressure_error = 0.0;
-  bool reset = false;  ///< it went wrong (a number was not finite), and began anew at rest
+  bool reset = false;  ///< a number was not finite, and the world restarted at rest
+  /// By the order of World::quantities(); the rest is unused.
+  std::array<double, kMaxWorldQuantities> values = {};
 };
 
-/// Steps in three parts, so that the hands may come late: prepare, meet, settle, in this order and
-/// on one thread. Nothing of it throws or allocates once it is made.
+/// A row of cells of the grid along x, for pictures.
+struct SeenRow {
+  std::span<const float> density;      ///< 0 clear to 1 opaque; empty: nothing is ever seen
+  std::span<const std::uint8_t> open;  ///< 0 where a hand or another solid is
+};
+
+/// A step has three parts, so that the hands may come late: prepare, meet, settle, in this order
+/// and on one thread. After construction no method throws or allocates.
 class World {
  public:
   virtual ~World() = default;
-  /// On which hands are rasterised and their skin is looked for. Its corner may move by whole cells
-  /// in prepare(), and nothing else of it ever changes.
+  /// Hands are rasterised on this grid, and their skin is found there. Only its corner changes, by
+  /// whole cells in prepare().
   virtual const GridShape& grid() const = 0;
-  /// The pressure of a target that maps to full output [Pa].
+  /// Target pressure that maps to full output [Pa].
   virtual double full_scale_pressure() const = 0;
 
   /// Does the part of a step of dt that needs no hands [s].
   virtual void prepare(double dt) noexcept { static_cast<void>(dt); }
-  /// The hands, made for grid(), are there.
+  /// Receives the hands, rasterised on grid().
   virtual void meet(const HandRaster& raster) noexcept = 0;
-  /// Returns the pressure on the skin now. @param dt since the last call [s].
+  /// Returns the present pressure on the skin. @param dt since the last call [s].
   virtual const PressureSource& pressure(double dt) noexcept = 0;
-  /// The parts of that pressure, where they are known apart. @pre pressure() was called.
-  virtual std::optional<PressureParts> parts() const { return {}; }
-  /// Hears what the hands got, before settle(). @param target made from pressure().  @param dt
+  /// Parts of that pressure, where the world computes them; valid until the next step. @pre
+  /// pressure() was called.
+  virtual std::span<const NamedPressure> parts() const noexcept { return {}; }
+  /// Receives the resulting target before settle(). @param target made from pressure().  @param dt
   /// since the last call [s].
-  virtual void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept {
+  virtual void observe_target(const HandFrame& hands, const TargetFrame& target,
+                              double dt) noexcept {
     static_cast<void>(hands), static_cast<void>(target), static_cast<void>(dt);
   }
-  /// Does the rest of the step, for which nobody waits.
+  /// Does the rest of the step, off the critical path.
   virtual WorldStats settle() noexcept { return {}; }
 
-  /// Goes on from where another world is, as far as the two are alike. @pre between steps.
-  virtual void go_on_from(const World& other) { static_cast<void>(other); }
-  /// Where the scene is, and the pressure that it is meant to make there; none for a world that is
-  /// no stimulus.
+  /// The numbers in WorldStats::values, kMaxWorldQuantities at most. The list outlives the world
+  /// and all summaries.
+  virtual std::span<const WorldQuantity> quantities() const noexcept { return {}; }
+  /// Returns a row of cells (·, j, k) as it looks now.
+  virtual SeenRow seen_row(int j, int k) const noexcept {
+    static_cast<void>(j), static_cast<void>(k);
+    return {};
+  }
+  /// Copies the compatible state of another world. @pre between steps.
+  virtual void continue_from(const World& other) { static_cast<void>(other); }
+  /// The pressure that the scene is meant to make, and its place; nothing if it is no stimulus.
   virtual std::optional<PlacedStimulus> stimulus() const { return {}; }
-  /// The smoke, where there is some.
-  virtual const Fluid* fluid() const { return nullptr; }
 };
-
-/// The smoke of the settings' scene. @param pool outlives it.
-/// @throws std::invalid_argument with a sentence.
-std::unique_ptr<World> make_smoke(const PipelineSettings& settings, WorkerPool& pool);
 
 }  // namespace prostm

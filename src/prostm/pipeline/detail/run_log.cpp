@@ -14,10 +14,16 @@ void WorldLog::meet(const WorldFrame& frame) {
   merge(frame.contact_stats, contact_stats_);
 }
 
-void WorldLog::settle(const WorldStats& stats) {
+void WorldLog::settle(const WorldStage& stage) {
+  const WorldStats& stats = stage.world_stats();
+  const std::span<const WorldQuantity> quantities = stage.world().quantities();
   resets_ += stats.reset ? 1 : 0;
-  divergence_ += stats.divergence;
-  pressure_error_ += stats.pressure_error;
+  if (quantities.data() != quantities_.data()) {
+    quantities_ = quantities;
+    values_ = {};
+    before_ = steps_ - 1;
+  }
+  for (std::size_t q = 0; q < quantities_.size(); ++q) values_[q] += stats.values[q];
 }
 
 void WorldLog::write(RunSummary& out) const {
@@ -25,9 +31,9 @@ void WorldLog::write(RunSummary& out) const {
   out.skipped_world_steps = skipped_;
   out.world_resets = resets_;
   out.contact_stats = contact_stats_;
-  const auto steps = static_cast<double>(std::max<std::int64_t>(1, steps_));
-  out.mean_divergence = divergence_ / steps;
-  out.mean_pressure_error = pressure_error_ / steps;
+  if (steps_ > 0) out.world_quantities = quantities_;
+  const auto steps = static_cast<double>(std::max<std::int64_t>(1, steps_ - before_));
+  for (std::size_t q = 0; q < quantities_.size(); ++q) out.world_means[q] = values_[q] / steps;
   out.track = track_.summary();
   out.hand = hand_.summary();
   out.world = world_.summary();

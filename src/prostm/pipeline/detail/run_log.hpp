@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "prostm/pipeline/latency.hpp"
 #include "prostm/pipeline/runner.hpp"
@@ -16,7 +17,7 @@ class WorldLog {
   /// A step that has just met the hands.
   void meet(const WorldFrame& frame);
   /// The world has settled after it.
-  void settle(const WorldStats& stats);
+  void settle(const WorldStage& stage);
   /// Steps that were let go.
   void skip(std::int64_t steps) { skipped_ += steps; }
 
@@ -26,7 +27,9 @@ class WorldLog {
  private:
   std::int64_t steps_ = 0, skipped_ = 0, resets_ = 0;
   ContactStats contact_stats_;
-  double divergence_ = 0.0, pressure_error_ = 0.0;
+  std::span<const WorldQuantity> quantities_;            // of the newest world
+  std::array<double, kMaxWorldQuantities> values_ = {};  // sums over its steps
+  std::int64_t before_ = 0;                              // steps of other worlds
   Distribution track_, hand_, world_, contact_;
 };
 

@@ -41,7 +41,7 @@ void WorldSide::run() noexcept {
 
 void WorldSide::count(const WorldFrame& frame) {
   log_.meet(frame);
-  log_.settle(pipeline_.world_stage().world_stats());
+  log_.settle(pipeline_.world_stage());
 }
 
 /// A segment ends with a whole update, so that a run that is paused goes on by whole ones.
@@ -107,8 +107,8 @@ bool WorldSide::meet(double due, WorldFrame& frame) {
 }
 
 void WorldSide::settled(double time) {
-  log_.settle(pipeline_.world_stage().world_stats());
-  if (shared_.snapshots != nullptr) shared_.snapshots->smoke(pipeline_.world_stage().world());
+  log_.settle(pipeline_.world_stage());
+  if (shared_.snapshots != nullptr) shared_.snapshots->volume(pipeline_.world_stage().world());
   shared_.steps.store(log_.steps(), std::memory_order_relaxed);
   shared_.run_time.store(time, std::memory_order_relaxed);
 }

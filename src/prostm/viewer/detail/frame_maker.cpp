@@ -34,7 +34,7 @@ void fill_hand(const Hand& hand, ViewHand& out) {
   }
 }
 
-void fill_smoke(const SmokeView& smoke, ViewSmoke& out) {
+void fill_smoke(const VolumeView& smoke, ViewSmoke& out) {
   out.n = static_cast<std::uint32_t>(smoke.n);
   out.corner = floats(smoke.p_DF);
   out.edge = static_cast<float>(smoke.edge);
@@ -166,7 +166,7 @@ void FrameMaker::refresh(ViewFrame& frame, ViewNews& news) {
   // first, so that whoever reads that the run is paused finds what it was paused at
   snapshots_.refresh_run();
   new_step_ |= snapshots_.refresh_step();
-  new_smoke_ |= snapshots_.refresh_smoke();
+  new_smoke_ |= snapshots_.refresh_volume();
   new_plan_ |= snapshots_.refresh_plan();
   if (!snapshots_.run().paused || snapshots_.plan().step == snapshots_.step().step)
     take(frame, news);
@@ -182,7 +182,7 @@ void FrameMaker::take(ViewFrame& frame, ViewNews& news) {
     frame.run.recording_time = step.recording_time;
   }
   if (std::exchange(new_smoke_, false)) {
-    fill_smoke(snapshots_.smoke(), frame.smoke);
+    fill_smoke(snapshots_.volume(), frame.smoke);
     ++news.smoke;
   }
   if (std::exchange(new_plan_, false)) {

@@ -1,16 +1,28 @@
-#include "prostm/pipeline/world.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "prostm/core/units.hpp"
+#include "prostm/fluid/fluid.hpp"
 #include "prostm/fluid/fluid_pressure.hpp"
 #include "prostm/pipeline/smoke/box_follow.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
 
 namespace prostm {
 namespace {
+
+constexpr std::array<WorldQuantity, 2> kQuantities = {
+    {{.name = "mean_relative_divergence",
+      .help = "What the fluid's pressure solve left, on the mean.",
+      .words = "the solver left {} of the divergence"},
+     {.name = "mean_pressure_error",
+      .help = "Estimated error of the fluid's pressure beside hands, relative, on the mean.",
+      .words = "an error of about {} % in the pressure beside hands",
+      .words_scale = 100.0}}};
 
 /// The pressure of hands' own movement, found in air that nothing blows, and the smoke's, the rest.
 struct PartsApart {
@@ -34,9 +46,9 @@ struct PartsApart {
   std::vector<float> rest;  // the smoke's, a value a cell [Pa]
 };
 
-class Smoke final : public World {
+class SmokeWorld final : public World {
  public:
-  Smoke(const PipelineSettings& settings, WorkerPool& pool)
+  SmokeWorld(const PipelineSettings& settings, WorkerPool& pool)
       : scene_(scene_from_name(settings.scene)),
         settings_(settings.jets),
         waits_for_hand_(settings_.place == JetPlace::Hand),
@@ -49,6 +61,7 @@ class Smoke final : public World {
         part_(settings.fluid_pressure.part) {
     if (part_ == PressurePart::All && !settings.fluid_pressure.parts) return;
     apart_.emplace(settings, pool);
+    parts_ = {{{"smoke", &apart_->smoke}, {"movement", &apart_->movement}}};
     changed_ = true;
   }
 
@@ -71,7 +84,7 @@ class Smoke final : public World {
   WorldStats settle() noexcept override {
     const FluidStats stats = fluid_.settle();
     const bool reset = apart_ && apart_->still_air.settle().reset;
-    return {stats.divergence_rms, stats.pressure_error, stats.reset || reset};
+    return {stats.reset || reset, {stats.divergence_rms, stats.pressure_error}};
   }
   const PressureSource& pressure(double dt) noexcept override {
     pressure_.move_to(fluid_.grid().p_DF);
@@ -82,11 +95,12 @@ class Smoke final : public World {
            : part_ == PressurePart::Smoke ? apart_->smoke
                                           : apart_->movement;
   }
-  std::optional<PressureParts> parts() const override {
+  std::span<const NamedPressure> parts() const noexcept override {
     if (!apart_) return {};
-    return PressureParts{apart_->smoke, apart_->movement};
+    return parts_;
   }
-  void hear(const HandFrame& hands, const TargetFrame& target, double dt) noexcept override {
+  void observe_target(const HandFrame& hands, const TargetFrame& target,
+                      double dt) noexcept override {
     hands_ = hands;
     if (waits_for_hand_ && !hands.hands.empty()) {
       blow_at(place_under(palm_of(hands.hands.front())));
@@ -94,10 +108,16 @@ class Smoke final : public World {
     }
     changed_ = trim_.update(target, placed_.jets, dt) || changed_;
   }
-  void go_on_from(const World& other) override {
-    if (other.fluid() != nullptr) go_on_from(*other.fluid());
-    const auto* smoke = dynamic_cast<const Smoke*>(&other);
+  std::span<const WorldQuantity> quantities() const noexcept override { return kQuantities; }
+  SeenRow seen_row(int j, int k) const noexcept override {
+    const GridShape& g = fluid_.grid();
+    return {fluid_.smoke_row(j, k),
+            fluid_.fluid_cells().subspan(g.cell_index(0, j, k), static_cast<std::size_t>(g.nx))};
+  }
+  void continue_from(const World& other) override {
+    const auto* smoke = dynamic_cast<const SmokeWorld*>(&other);
     if (smoke == nullptr) return;
+    continue_from(smoke->fluid_);
     if (apart_ && smoke->apart_ && smoke->apart_->still_air.grid() == apart_->still_air.grid())
       apart_->still_air.copy_state(smoke->apart_->still_air);
     if (&smoke->scene_ != &scene_) return;
@@ -110,7 +130,6 @@ class Smoke final : public World {
     if (settings_.trim_rate > 0.0) trim_.set_gains(smoke->trim_.gains());
     changed_ = true;
   }
-  const Fluid* fluid() const override { return &fluid_; }
   std::optional<PlacedStimulus> stimulus() const override {
     if (scene_.stimulus.maxima == 0) return {};
     const double speed = fluid_.settings().jet_speed;
@@ -118,8 +137,8 @@ class Smoke final : public World {
   }
 
  private:
-  /// Takes over the air of the same grid, wherever it is.
-  void go_on_from(const Fluid& before) {
+  /// Copies the air of the same grid, wherever that is.
+  void continue_from(const Fluid& before) {
     GridShape there = fluid_.grid();
     there.p_DF = before.grid().p_DF;
     if (!(there == before.grid())) return;
@@ -157,14 +176,15 @@ class Smoke final : public World {
   JetTrim trim_;
   PressurePart part_;
   std::optional<PartsApart> apart_;
-  double time_ = 0.0;     // since the scene began [s]
-  bool changed_ = false;  // since the fluid was told
+  std::array<NamedPressure, 2> parts_ = {};  // of apart_
+  double time_ = 0.0;                        // since the scene began [s]
+  bool changed_ = false;                     // since the fluid was told
 };
 
 }  // namespace
 
-std::unique_ptr<World> make_smoke(const PipelineSettings& settings, WorkerPool& pool) {
-  return std::make_unique<Smoke>(settings, pool);
+std::unique_ptr<World> make_smoke_world(const PipelineSettings& settings, WorkerPool& pool) {
+  return std::make_unique<SmokeWorld>(settings, pool);
 }
 
 }  // namespace prostm
