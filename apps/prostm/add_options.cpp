@@ -5,6 +5,7 @@
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/figure/figures.hpp"
 #include "prostm/plan/preset.hpp"
+#include "prostm/pipeline/world_kinds.hpp"
 
 namespace prostm::app {
 
@@ -82,9 +83,8 @@ void add_hand(CLI::App& command, CommonOptions& common, std::string& hand,
 void add_pipeline(CLI::App& command, CommonOptions& common, std::optional<std::string>& scene,
                   std::string& hand, std::optional<double>& hand_size) {
   add_common(command, common);
-  add_name(command, "--scene", scene,
-           "one-plume (default), two-plumes, three-plumes, four-plumes, ring, pulsing, wind, or "
-           "still-air");
+  add_name(command, "--world", common.world, "what presses on the hands: " + world_choices());
+  add_name(command, "--scene", scene, scene_choices());
   add_hand(command, common, hand, hand_size);
   command.add_option("--grid", common.grid, "cells along each edge of the fluid's box");
   add_array(command, common);

@@ -110,6 +110,11 @@ PipelineSettings make_settings(const CommonOptions& options,
   std::vector<std::string> given;
   if (!options.settings_file.empty())
     given = read_settings(options.settings_file, settings_groups(settings));
+  if (options.world) settings.world = *options.world;
+  const WorldKind& world = world_named(settings.world);
+  if (settings.world != PipelineSettings().world &&
+      std::ranges::count(given, "pipeline.scene") == 0)
+    choose_world(world, settings);
   if (scene) settings.scene = *scene;
   if (options.device) settings.device = *options.device;
   if (options.array) settings.array = *options.array;

@@ -21,7 +21,7 @@ struct CommonOptions {
   std::string json;  ///< file, "-" for standard output, empty for none
   std::string figure;
   std::optional<int> seed;
-  std::optional<std::string> method, preset, array, tracker, device;
+  std::optional<std::string> method, preset, array, tracker, device, world;
   std::optional<int> paths;
   std::optional<double> budget_ms;
   std::optional<int> grid;

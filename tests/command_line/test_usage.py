@@ -67,6 +67,7 @@ from test_bad_input import changed, hand_lines
     (["run", "--grid", "30"], "--grid = 30 must be between 32 and 160"),
     (["run", "--grid", "176"], "--grid = 176 must be between 32 and 160"),
     (["run", "--scene", "one-plum"], 'did you mean "one-plume"?'),
+    (["run", "--world", "smok"], 'world "smok" is unknown: it must be smoke; did you mean "smoke"?'),
     (["run", "--array", "autd"], 'did you mean "autd3"?'),
     (["run", "--tracker", "center"], 'did you mean "centre"?'),
     (["run", "--hand", "scriptd"], 'scriptd cannot be read: there is no such file; did you mean "scripted"?'),

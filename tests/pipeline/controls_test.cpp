@@ -14,7 +14,6 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/pipeline.hpp"
-#include "prostm/pipeline/smoke/smoke_world.hpp"
 #include "prostm/pipeline/snapshot.hpp"
 
 namespace prostm {
@@ -313,7 +312,7 @@ TEST(VolumeView, IsTheMeanOfBlocks) {
     PipelineSettings settings;
     settings.scene = "four-plumes";
     settings.fluid.cells = cells;
-    const std::unique_ptr<World> world = make_smoke_world(settings, pool);
+    const std::unique_ptr<World> world = make_world(settings, pool);
     HandRasteriser hands(world->grid());
     hands.rasterise({}, pool);
     for (int i = 0; i < 10; ++i) {

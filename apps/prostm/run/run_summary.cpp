@@ -106,7 +106,7 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
              : stopped_by.empty() ? ", cut short"
                                   : ", cut short by " + stopped_by);
   print_row(
-      out, "smoke",
+      out, settings.world.c_str(),
       fmt::format("{} steps, {} skipped{}", s.world_steps, s.skipped_world_steps, world_words(s)));
   print_row(out, "plans",
             fmt::format("{}, and {} updates without pressure on a hand; {} targets skipped",
@@ -120,10 +120,11 @@ void print_counts(std::FILE* out, const RunSummary& s, const PipelineSettings& s
   if (!felt.empty()) print_row(out, "felt", felt);
   print_output(out, s);
   const ContactStats& c = s.contact_stats;
-  print_row(out, "hand",
-            fmt::format("{:.1f} % of its joints outside the {}'s box; {:.0f} % of its skin too "
-                        "steep to press on",
-                        percent(c.joints_outside, c.joints), "smoke", 100.0 * steep_share(c)));
+  print_row(
+      out, "hand",
+      fmt::format("{:.1f} % of its joints outside the {}'s box; {:.0f} % of its skin too "
+                  "steep to press on",
+                  percent(c.joints_outside, c.joints), settings.world, 100.0 * steep_share(c)));
   if (s.judged_updates > 0)
     print_row(out, "stimulus",
               fmt::format("as a study needs it in {:.0f} % of the updates (docs/guides/hands.md)",

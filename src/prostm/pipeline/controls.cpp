@@ -8,7 +8,8 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/text/names.hpp"
 #include "prostm/core/units.hpp"
-#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
+#include "prostm/pipeline/world_kinds.hpp"
 
 namespace prostm {
 namespace {
@@ -23,9 +24,11 @@ std::array<ControlChoice, N> choices_of(const std::array<std::string_view, N>& l
   return choices;
 }
 
-std::vector<ControlChoice> scene_choices() {
+/// Scenes of all worlds.
+std::vector<ControlChoice> all_scenes() {
   std::vector<ControlChoice> choices;
-  for (const Scene& scene : scenes()) choices.push_back({scene.name, scene.label});
+  for (const WorldKind& kind : world_kinds())
+    for (const WorldScene& scene : kind.scenes()) choices.push_back({scene.name, scene.label});
   return choices;
 }
 
@@ -35,7 +38,7 @@ std::vector<ControlChoice> preset_choices() {
   return choices;
 }
 
-const std::vector<ControlChoice> kScenes = scene_choices();
+const std::vector<ControlChoice> kScenes = all_scenes();
 const auto kJetPlaces = choices_of<JetPlace, 2>({"Over the array", "Under the hand"});
 const auto kParts = choices_of<PressurePart, 3>({"All", "Smoke alone", "Movement alone"});
 const auto kMethods = choices_of<Method, 2>({"PRO-STM", "AM"});
@@ -71,8 +74,20 @@ bool is_pro_stm(const LiveSettings& s) {
 bool is_fitted(const LiveSettings& s) {
   return is_pro_stm(s) && s.pipeline.plan.traits().is_fitted();
 }
+bool has_smoke(const LiveSettings& s) {
+  return is_smoke(s.pipeline);
+}
 bool has_jets(const LiveSettings& s) {
-  return s.pipeline.scene != "still-air";
+  return has_smoke(s) && s.pipeline.scene != "still-air";
+}
+/// Whether the scene in this place of kScenes is one of the world's.
+bool has_scene(const LiveSettings& s, std::size_t place) {
+  for (const WorldKind& kind : world_kinds()) {
+    const std::size_t scenes = kind.scenes().size();
+    if (place < scenes) return s.pipeline.world == kind.name;
+    place -= scenes;
+  }
+  return false;
 }
 bool has_source(const LiveSettings& s, std::size_t place) {
   return std::find(s.sources.begin(), s.sources.end(), kSources[place].value) != s.sources.end();
@@ -151,7 +166,8 @@ std::vector<RunControl> smoke_controls() {
   list.choice(
       "scene", "Scene", kScenes, [](const S& s) { return place(kScenes, s.pipeline.scene); },
       [](S& s, double v) { s.pipeline.scene = chosen(kScenes, v); }, always,
-      "The smoke that the hand is held into, with the pressure that counts as full output there.");
+      "The smoke that the hand is held into, with the pressure that counts as full output there.",
+      has_scene);
   list.number(
       "jet_speed", "Emitter", "×", 0, 2, 0.05,
       [](const S& s) { return s.pipeline.fluid.jet_speed; },
@@ -171,23 +187,24 @@ std::vector<RunControl> smoke_controls() {
   list.number(
       "buoyancy", "Buoyancy", "m/s²", 0, 5, 0.1,
       [](const S& s) { return s.pipeline.fluid.buoyancy; },
-      [](S& s, double v) { s.pipeline.fluid.buoyancy = v; }, always,
+      [](S& s, double v) { s.pipeline.fluid.buoyancy = v; }, has_smoke,
       "How strongly undiluted smoke rises.");
   list.choice(
       "pressure_of", "Pressure of", kParts,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid_pressure.part); },
-      [](S& s, double v) { s.pipeline.fluid_pressure.part = static_cast<PressurePart>(v); }, always,
+      [](S& s, double v) { s.pipeline.fluid_pressure.part = static_cast<PressurePart>(v); },
+      has_smoke,
       "All of the air's pressure, the smoke's share of it, or that of the hand's own movement in "
       "still air. A part takes twice the smoke's time.");
   list.toggle(
       "parts", "Both parts", [](const S& s) { return s.pipeline.fluid_pressure.parts ? 1.0 : 0.0; },
-      [](S& s, double v) { s.pipeline.fluid_pressure.parts = v != 0.0; }, always,
+      [](S& s, double v) { s.pipeline.fluid_pressure.parts = v != 0.0; }, has_smoke,
       "Shows the force of the smoke and that of the hand's own movement apart, whichever is felt, "
       "and records both. It takes twice the smoke's time.");
   list.number(
       "grid", "Grid", "cells", FluidSettings::kLeastCells, FluidSettings::kMostCells, 1,
       [](const S& s) { return static_cast<double>(s.pipeline.fluid.cells); },
-      [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, always,
+      [](S& s, double v) { s.pipeline.fluid.cells = static_cast<int>(v); }, has_smoke,
       "Cells along each edge of the smoke's box. Fewer are coarser, and cost less time. The smoke "
       "begins anew.");
   return list.take();

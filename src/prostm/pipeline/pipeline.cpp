@@ -11,7 +11,6 @@
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/emit/compensation.hpp"
 #include "prostm/pipeline/playable.hpp"
-#include "prostm/pipeline/smoke/smoke_world.hpp"
 
 namespace prostm {
 namespace {
@@ -38,13 +37,15 @@ void put_back(double time, HandFrame& frame) {
 /// Whether the world's stage is built from the same.
 bool same_world(const PipelineSettings& a, const PipelineSettings& b) {
   return a.track == b.track && a.fluid == b.fluid && a.box == b.box && a.jets == b.jets &&
-         a.fluid_pressure == b.fluid_pressure && a.contact == b.contact && a.scene == b.scene;
+         a.fluid_pressure == b.fluid_pressure && a.contact == b.contact && a.world == b.world &&
+         a.scene == b.scene;
 }
 
 /// Whether the planner's stage is.
 bool same_plans(const PipelineSettings& a, const PipelineSettings& b) {
-  return a.plan == b.plan && a.am == b.am && a.emit == b.emit && a.scene == b.scene &&
-         a.method == b.method && a.array_width == b.array_width && a.safety == b.safety;
+  return a.plan == b.plan && a.am == b.am && a.emit == b.emit && a.world == b.world &&
+         a.scene == b.scene && a.method == b.method && a.array_width == b.array_width &&
+         a.safety == b.safety;
 }
 
 /// The device that the settings name, or one of the caller's own.
@@ -80,12 +81,12 @@ std::variant<Planner, AmPlanner> make_planner(const PipelineSettings& settings,
 }  // namespace
 
 WorldStage::WorldStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
-                       std::unique_ptr<World> world)
+                       std::unique_ptr<World> world, std::span<const WorldKind> kinds)
     : hands_(std::move(hands)),
       filter_(checked(settings).track),
       X_DT_(settings.X_DT),
       pool_(settings.threads),
-      world_(world ? std::move(world) : make_smoke_world(settings, pool_)),
+      world_(world ? std::move(world) : make_world(settings, pool_, kinds)),
       rasteriser_(world_->grid()),
       contact_(settings.contact, world_->grid()),
       steps_per_plan_(settings.steps_per_plan()),
@@ -242,12 +243,14 @@ void play_until(Device& device, double time) {
 
 Pipeline::Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
                    std::shared_ptr<Mute> mute, std::unique_ptr<Device> device,
-                   std::unique_ptr<World> world)
+                   std::unique_ptr<World> world, std::span<const WorldKind> kinds)
     : settings_(settings),
       mute_(std::move(mute)),
       own_world_(world != nullptr),
+      kinds_(kinds),
       levels_(levels_of(settings)),
-      world_stage_(std::make_unique<WorldStage>(settings, std::move(hands), std::move(world))),
+      world_stage_(
+          std::make_unique<WorldStage>(settings, std::move(hands), std::move(world), kinds)),
       device_(device_of(settings, std::move(device))),
       sound_(mute_, device_->info().sample_rate),
       plans_(std::make_unique<PlanStage>(settings, world_stage_->max_cells(),
@@ -267,7 +270,7 @@ Pipeline::~Pipeline() {
 void Pipeline::reconfigure(const PipelineSettings& settings) {
   std::unique_ptr<WorldStage> stage;
   if (!own_world_ && !same_world(settings, settings_))
-    stage = std::make_unique<WorldStage>(settings, nullptr);
+    stage = std::make_unique<WorldStage>(settings, nullptr, nullptr, kinds_);
   const WorldStage& next = stage ? *stage : *world_stage_;
   std::unique_ptr<PlanStage> plans;
   std::shared_ptr<const SafetyLevels> levels = levels_;

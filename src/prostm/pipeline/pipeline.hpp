@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "prostm/hand/hand_raster.hpp"
 #include "prostm/pipeline/settings.hpp"
 #include "prostm/pipeline/world.hpp"
+#include "prostm/pipeline/world_kinds.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/stimulus/stimulus_gate.hpp"
 #include "prostm/track/hand_source.hpp"
@@ -50,10 +52,11 @@ struct WorldFrame {
 /// Hand, world and skin: the stages that run at the world's rate.
 class WorldStage {
  public:
-  /// @param world that the hands meet; null: the smoke of the settings.
+  /// @param world that the hands meet; null: the one that the settings name, of `kinds`.
   /// @throws std::invalid_argument with a sentence.
   WorldStage(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
-             std::unique_ptr<World> world = nullptr);
+             std::unique_ptr<World> world = nullptr,
+             std::span<const WorldKind> kinds = world_kinds());
 
   /// Step `step` (from 1) with the hands at run time `time` [s], dt after the last one; makes
   /// targets on every `steps_per_plan`th. Writes `due` = `taken` = time.
@@ -171,11 +174,13 @@ class Pipeline {
   /// @param mute what else silences the output; not null. In real time it is also on while a step
   /// finds no hand, so that the output does not wait for the next plan to fade.
   /// @param device that plays; null: the one that the settings name.
-  /// @param world that the hands meet; null: the smoke of the settings.
+  /// @param world that the hands meet; null: the one that the settings name, of `kinds`.
+  /// @param kinds table of worlds; it outlives the pipeline.
   /// @throws std::invalid_argument with a sentence.
   Pipeline(const PipelineSettings& settings, std::unique_ptr<HandSource> hands,
            std::shared_ptr<Mute> mute = std::make_shared<Mute>(),
-           std::unique_ptr<Device> device = nullptr, std::unique_ptr<World> world = nullptr);
+           std::unique_ptr<Device> device = nullptr, std::unique_ptr<World> world = nullptr,
+           std::span<const WorldKind> kinds = world_kinds());
 
   /// The device stops at once; silence() before is what spares the skin a click.
   ~Pipeline();
@@ -228,6 +233,7 @@ class Pipeline {
   PipelineSettings settings_;
   std::shared_ptr<Mute> mute_;
   const bool own_world_;  // the caller's
+  const std::span<const WorldKind> kinds_;
   std::shared_ptr<const SafetyLevels> levels_;
   std::unique_ptr<WorldStage> world_stage_;
   std::unique_ptr<Device> device_;

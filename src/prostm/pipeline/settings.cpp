@@ -12,7 +12,7 @@ namespace prostm {
 namespace {
 
 template <class Settings, class Visitor>
-void list(Settings& s, Visitor& v) {
+void list_all_but_world(Settings& s, Visitor& v) {
   v.field({.name = "scene", .help = "what the hand is held into"}, s.scene);
   v.field({.name = "method", .help = "how fields are rendered"}, s.method);
   v.field({.name = "device", .help = "what plays"}, s.device);
@@ -33,6 +33,12 @@ void list(Settings& s, Visitor& v) {
   v.field({.name = "side_view", .help = "whether plan updates keep a picture from the side"},
           s.side_view);
   v.field({"threads", "", 1, 256, "threads of the world"}, s.threads);
+}
+
+template <class Settings, class Visitor>
+void list(Settings& s, Visitor& v) {
+  v.field({.name = "world", .help = "what presses on the hands"}, s.world);
+  list_all_but_world(s, v);
 }
 
 }  // namespace
@@ -141,6 +147,12 @@ std::vector<SettingsGroup> settings_groups(PipelineSettings& settings) {
 }
 std::vector<SettingsGroup> settings_groups(const PipelineSettings& settings) {
   return groups_of(settings);
+}
+std::vector<SettingsGroup> study_settings_groups(const PipelineSettings& settings) {
+  std::vector<SettingsGroup> groups = groups_of(settings);
+  if (settings.world != PipelineSettings().world) return groups;
+  groups.front().read = [&settings](SettingsReader& v) { list_all_but_world(settings, v); };
+  return groups;
 }
 
 }  // namespace prostm

@@ -25,7 +25,8 @@ namespace prostm {
 inline constexpr double kLiveBudget = 2e-3;  ///< for a plan of preset best in real time [s]
 
 struct PipelineSettings {
-  std::string scene = "one-plume";  ///< see scenes()
+  std::string world = "smoke";      ///< what presses on the hands, see world_kinds()
+  std::string scene = "one-plume";  ///< of the world, by name
   Method method = Method::ProStm;
   std::string device = "sim";                      ///< what plays, see device_named()
   std::string array = array_kinds().front().name;  ///< what `transducers` are: a name or a file
@@ -104,5 +105,8 @@ EmitSettings emit_settings(const PipelineSettings& settings, double largest);
 std::vector<SettingsGroup> settings_groups(PipelineSettings& settings);
 /// The same to read alone.
 std::vector<SettingsGroup> settings_groups(const PipelineSettings& settings);
+/// The settings as studies compare them and make checksums of them: all, except `world` where it is
+/// the default, so that studies from before there was a choice are still the same.
+std::vector<SettingsGroup> study_settings_groups(const PipelineSettings& settings);
 
 }  // namespace prostm

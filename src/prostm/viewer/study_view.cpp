@@ -9,6 +9,7 @@
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/study/task/task.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
 #include "prostm/viewer/detail/state_json.hpp"
 
 namespace prostm {
@@ -24,9 +25,11 @@ bool is_of_hand(GateProblem problem) {
   return problem > GateProblem::None && problem < GateProblem::Maxima;
 }
 
-/// The picture of a scene: for each jet x, y and radius, in mm, on a flat hand above the array.
-Json jets_json(const std::string& scene) {
+/// The picture of a scene: for each jet of smoke x, y and radius, in mm, on a flat hand above the
+/// array.
+Json jets_json(const std::string& scene, const PipelineSettings& settings) {
   Json jets = Json::array();
+  if (!is_smoke(settings)) return jets;
   for (const SmokeJet& jet : scene_from_name(scene).smoke.jets)
     jets.push_back({1e3 * jet.centre.x(), 1e3 * jet.centre.y(), 1e3 * jet.radius});
   return jets;
@@ -313,8 +316,9 @@ Json StudyView::participant() const {
   if (phase == StudyPhase::Presenting) {
     const StudyScene& asked = p.scenes[static_cast<std::size_t>(session_.trial().question)];
     const bool pictured = p.trials.task->traits().pictured;
-    json["question"] = {{"text", asked.question},
-                        {"jets_mm", pictured ? jets_json(asked.name) : Json::array()}};
+    json["question"] = {
+        {"text", asked.question},
+        {"jets_mm", pictured ? jets_json(asked.name, p.methods.front().settings) : Json::array()}};
   }
   return json;
 }

@@ -4,6 +4,7 @@
 
 #include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/pipeline/smoke/scene_grids.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
 
 namespace prostm {
 namespace {
@@ -23,6 +24,7 @@ bool fits(int cells, const WorkTime& work, const PipelineSettings& settings) {
 
 /// The finest coarser grid that fits and, as far as is known, keeps the stimulus.
 Advice coarser_grid(const WorkTime& work, const PipelineSettings& settings) {
+  if (!is_smoke(settings)) return {AdviceKind::NoOption};
   for (const int cells : coarser_grids(settings.scene, settings.fluid.cells)) {
     if (!fits(cells, work, settings)) continue;
     const bool known = grid_effect(settings, cells) == GridEffect::Keeps;
@@ -40,11 +42,17 @@ Advice less_to_plan(const PipelineSettings& settings) {
 
 /// Whether parts of the pressure are computed that nobody feels.
 bool computes_parts(const PipelineSettings& settings) {
-  return settings.fluid_pressure.parts && settings.fluid_pressure.part == PressurePart::All;
+  return is_smoke(settings) && settings.fluid_pressure.parts &&
+         settings.fluid_pressure.part == PressurePart::All;
+}
+
+/// Whether a coarser grid may lose the scene's stimulus.
+bool has_stimulus(const PipelineSettings& settings) {
+  return is_smoke(settings) && scene_from_name(settings.scene).stimulus.maxima > 0;
 }
 
 std::string grid_sentence(const Advice& advice, const PipelineSettings& settings) {
-  const bool stimulus = scene_from_name(settings.scene).stimulus.maxima > 0;
+  const bool stimulus = has_stimulus(settings);
   const std::string use =
       fmt::format("--grid {}{}", advice.cells,
                   stimulus ? fmt::format(", which keeps the stimulus of {}", settings.scene) : "");
@@ -55,7 +63,7 @@ std::string grid_sentence(const Advice& advice, const PipelineSettings& settings
 
 std::string no_option_sentence(const Advice& advice, const PipelineSettings& settings) {
   if (advice.cause == Busy::Neither) return "Close other programs.";
-  const bool stimulus = scene_from_name(settings.scene).stimulus.maxima > 0;
+  const bool stimulus = has_stimulus(settings);
   if (advice.cause == Busy::Plan || !stimulus)
     return fmt::format("No option is fast enough: {}.", kOtherwise);
   return fmt::format("No option is fast enough and keeps the stimulus of {}: {}.", settings.scene,
@@ -106,9 +114,12 @@ std::string sentence(const Advice& advice, const PipelineSettings& settings) {
 
 Adviser::Key Adviser::key_of(const PipelineSettings& settings) {
   const bool of_paths = settings.method == Method::ProStm;
-  return {settings.scene,           settings.fluid,
-          computes_parts(settings), settings.method,
-          settings.plan.preset,     of_paths ? settings.plan.paths : settings.am.foci,
+  return {settings.world + '/' + settings.scene,
+          settings.fluid,
+          computes_parts(settings),
+          settings.method,
+          settings.plan.preset,
+          of_paths ? settings.plan.paths : settings.am.foci,
           settings.world_rate};
 }
 

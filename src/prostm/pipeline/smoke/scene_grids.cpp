@@ -4,6 +4,7 @@
 #include <array>
 
 #include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
 
 namespace prostm {
 namespace {
@@ -56,6 +57,7 @@ std::optional<double> stimulus_share(std::string_view scene, int cells) {
 }
 
 GridEffect grid_effect(const PipelineSettings& settings, int cells) {
+  if (!is_smoke(settings)) return GridEffect::Unknown;
   if (!has_stimulus(settings.scene)) return GridEffect::Keeps;
   const std::optional<double> share = stimulus_share(settings.scene, cells);
   if (!share || !is_as_measured(settings)) return GridEffect::Unknown;

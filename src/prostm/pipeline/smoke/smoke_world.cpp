@@ -183,6 +183,20 @@ class SmokeWorld final : public World {
 
 }  // namespace
 
+bool is_smoke(const PipelineSettings& settings) {
+  return settings.world == kSmokeWorld;
+}
+
+std::span<const WorldScene> smoke_world_scenes() {
+  static const std::vector<WorldScene> kScenes = [] {
+    std::vector<WorldScene> all;
+    for (const Scene& scene : scenes())
+      all.push_back({scene.name, scene.label, scene.full_scale_pressure});
+    return all;
+  }();
+  return kScenes;
+}
+
 std::unique_ptr<World> make_smoke_world(const PipelineSettings& settings, WorkerPool& pool) {
   return std::make_unique<SmokeWorld>(settings, pool);
 }

@@ -7,7 +7,7 @@
 #include "prostm/core/random.hpp"
 #include "prostm/core/units.hpp"
 #include "prostm/pipeline/pipeline.hpp"
-#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/pipeline/world_kinds.hpp"
 #include "prostm/plan/planner.hpp"
 #include "prostm/plan/quasi_static/quasi_static.hpp"
 #include "prostm/score/felt.hpp"
@@ -136,7 +136,7 @@ ScenePercepts feel_scene(PipelineSettings settings, const std::string& scene, co
   settings.scene = scene;
   settings.study_hand.size = hand.size;
   settings.jets.place = JetPlace::Hand;
-  const double full_scale = scene_from_name(scene).full_scale_pressure;
+  const double full_scale = scene_named(scene, world_named(settings.world)).full_scale_pressure;
   WorldStage world(settings, std::make_unique<TremblingHand>(settings.study_hand, hand));
   StimulusFeeler feeler(settings, full_scale);
   settings.emit.full_scale_pressure = emit_settings(settings, full_scale).full_scale_pressure;

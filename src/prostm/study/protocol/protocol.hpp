@@ -103,7 +103,7 @@ inline constexpr std::size_t kMostMarkedConditions = 239;
 
 /// A stimulus that is presented, and asked for: a [scene.NAME] of the protocol.
 struct StudyScene {
-  std::string name;      ///< of the pipeline's scenes
+  std::string name;      ///< of the world's scenes
   std::string question;  ///< in words, as it is read and shown
 
   void visit(SettingsReader& v) const;

@@ -9,7 +9,7 @@
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
-#include "prostm/pipeline/smoke/scene.hpp"
+#include "prostm/pipeline/world_kinds.hpp"
 #include "prostm/study/task/detail/settle_level.hpp"
 #include "prostm/study/task/task.hpp"
 
@@ -62,7 +62,7 @@ std::vector<std::string> names_in(std::string_view text, const std::string& file
 /// @throws InputError: a method gives what scenes give, or what cannot change during a run.
 void refuse_settings_of_the_run(const std::vector<std::string>& given, const std::string& file,
                                 const std::string& method) {
-  for (const char* fixed : {"pipeline.scene", "pipeline.device", "pipeline.array",
+  for (const char* fixed : {"pipeline.world", "pipeline.scene", "pipeline.device", "pipeline.array",
                             "pipeline.tracker", "pipeline.world_rate", "pipeline.threads"}) {
     if (std::find(given.begin(), given.end(), fixed) == given.end()) continue;
     throw InputError(fmt::format(
@@ -72,11 +72,11 @@ void refuse_settings_of_the_run(const std::vector<std::string>& given, const std
   }
 }
 
-StudyScene read_scene(std::string_view text, const std::string& file, const std::string& name) {
-  const auto known = scenes();
-  if (std::none_of(known.begin(), known.end(), [&](const Scene& s) { return s.name == name; })) {
+StudyScene read_scene(std::string_view text, const std::string& file, const std::string& name,
+                      std::span<const WorldScene> known) {
+  if (std::ranges::find(known, name, &WorldScene::name) == known.end()) {
     std::vector<std::string_view> names;
-    for (const Scene& scene : known) names.push_back(scene.name);
+    for (const WorldScene& scene : known) names.push_back(scene.name);
     throw InputError(fmt::format("{}: there is no scene for [scene.{}]; scenes are {}", file, name,
                                  fmt::join(names, ", ")));
   }
@@ -105,8 +105,9 @@ Protocol protocol_from_toml(std::string_view text, const std::string& file,
                           group_of("markers", protocol.markers), group_of("level", protocol.level)},
                          {}, {"method", "scene"});
   const Task& task = *protocol.trials.task;
+  const std::span<const WorldScene> known = world_named(base.world).scenes();
   for (const std::string& name : names_in(text, file, "scene", task.traits().least_scenes))
-    protocol.scenes.push_back(read_scene(text, file, name));
+    protocol.scenes.push_back(read_scene(text, file, name, known));
   for (const std::string& name : names_in(text, file, "method", 1)) {
     StudyMethod& method = protocol.methods.emplace_back(StudyMethod{name, base});
     const auto given =
@@ -139,11 +140,11 @@ nlohmann::ordered_json protocol_json(const Protocol& protocol) {
   for (const StudyScene& scene : protocol.scenes)
     json["scene"][scene.name] = {{"question", scene.question}};
   for (const StudyMethod& method : protocol.methods)
-    json["method"][method.name] = settings_to_json(settings_groups(method.settings));
+    json["method"][method.name] = settings_to_json(study_settings_groups(method.settings));
   if (!protocol.trials.task->traits().has_levels) return json;
   json["level"] = settings_to_json({group_of("level", protocol.level)})["level"];
   if (const auto& standard = protocol.standard)
-    json["method"][standard->name] = settings_to_json(settings_groups(standard->settings));
+    json["method"][standard->name] = settings_to_json(study_settings_groups(standard->settings));
   return json;
 }
 

@@ -37,7 +37,7 @@ std::string stimulus_hash(const Protocol& protocol, const Trial& trial) {
   PipelineSettings settings = protocol.methods[static_cast<std::size_t>(trial.method)].settings;
   if (trial.level) set_level(settings, protocol.level.setting, *trial.level);
   boost::crc_32_type sum;
-  const std::string text = settings_to_json(settings_groups(std::as_const(settings))).dump() +
+  const std::string text = settings_to_json(study_settings_groups(settings)).dump() +
                            protocol.scenes[static_cast<std::size_t>(trial.scene)].name;
   sum.process_bytes(text.data(), text.size());
   return fmt::format("{:08x}", sum.checksum());

@@ -8,8 +8,8 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
 #include "prostm/pipeline/playable.hpp"
-#include "prostm/pipeline/smoke/scene.hpp"
 #include "prostm/study/task/task.hpp"
+#include "prostm/pipeline/world_kinds.hpp"
 #include "prostm/study/task/track.hpp"
 
 namespace prostm::study {
@@ -144,8 +144,9 @@ class LevelChecks {
   void check_scale(const PipelineSettings& settings) const {
     const double full = settings.emit.full_scale_pressure, gain = settings.plan.gain;
     if (full == 0.0 || settings.method == Method::Am) return;
+    const WorldKind& world = world_named(settings.world);
     for (const StudyScene& scene : protocol_.scenes) {
-      const double pressure = gain * scene_from_name(scene.name).full_scale_pressure;
+      const double pressure = gain * scene_named(scene.name, world).full_scale_pressure;
       const double share = pressure / full;
       if (share > 1.0 + kRounding) {
         throw std::invalid_argument(fmt::format(

@@ -1,0 +1,81 @@
+#include "prostm/pipeline/world_kinds.hpp"
+
+#include <vector>
+
+#include "prostm/core/text/names.hpp"
+#include "prostm/pipeline/smoke/smoke_world.hpp"
+
+namespace prostm {
+namespace {
+
+constexpr WorldKind kKinds[] = {
+    {kSmokeWorld, "smoke that blows at the hands", smoke_world_scenes, make_smoke_world},
+};
+
+/// "a (default), b, c, or d".
+std::string choices_of(const std::vector<std::string_view>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) out += names.size() > 2 ? ", " : " ";
+    if (i > 0 && i + 1 == names.size()) out += "or ";
+    out += names[i];
+    if (i == 0) out += " (default)";
+  }
+  return out;
+}
+
+std::vector<std::string_view> scene_names(const WorldKind& kind) {
+  std::vector<std::string_view> names;
+  for (const WorldScene& scene : kind.scenes()) names.push_back(scene.name);
+  return names;
+}
+
+}  // namespace
+
+std::span<const WorldKind> world_kinds() {
+  return kKinds;
+}
+
+const WorldKind& world_named(std::string_view name, std::span<const WorldKind> kinds) {
+  std::vector<std::string_view> names;
+  for (const WorldKind& kind : kinds) {
+    if (kind.name == name) return kind;
+    names.emplace_back(kind.name);
+  }
+  refuse_name("world", name, names);
+}
+
+const WorldScene& scene_named(std::string_view name, const WorldKind& kind) {
+  for (const WorldScene& scene : kind.scenes())
+    if (scene.name == name) return scene;
+  refuse_name("scene", name, scene_names(kind));
+}
+
+void choose_world(const WorldKind& kind, PipelineSettings& settings) {
+  settings.world = kind.name;
+  settings.scene = kind.scenes().front().name;
+}
+
+std::unique_ptr<World> make_world(const PipelineSettings& settings, WorkerPool& pool,
+                                  std::span<const WorldKind> kinds) {
+  const WorldKind& kind = world_named(settings.world, kinds);
+  scene_named(settings.scene, kind);
+  return kind.make(settings, pool);
+}
+
+std::string world_choices(std::span<const WorldKind> kinds) {
+  std::vector<std::string_view> names;
+  for (const WorldKind& kind : kinds) names.emplace_back(kind.name);
+  return choices_of(names);
+}
+
+std::string scene_choices(std::span<const WorldKind> kinds) {
+  std::string out;
+  for (const WorldKind& kind : kinds) {
+    if (!out.empty()) out += "; with --world " + std::string(kind.name) + ": ";
+    out += choices_of(scene_names(kind));
+  }
+  return out;
+}
+
+}  // namespace prostm
