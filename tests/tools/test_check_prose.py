@@ -25,7 +25,7 @@ def test_vale_reads_documents_and_headers_with_our_rules(tmp_path):
     assert status == 0
     lines = told.splitlines()
     assert lines[:4] == ["--config", ".vale.ini", "--output", "line"]
-    assert {"README.md", "docs/build.md", "src/prostm/plan/planner.hpp"} <= set(lines)
+    assert {"README.md", "docs/guides/build.md", "src/prostm/plan/planner.hpp"} <= set(lines)
     assert not [line for line in lines if line.endswith(".cpp")]
 
 

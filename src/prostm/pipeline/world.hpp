@@ -1,5 +1,5 @@
 #pragma once
-/// Sources of the pressure on hands: smoke, or a world of your own (docs/cpp.md).
+/// Sources of the pressure on hands: smoke, or a world of your own (docs/guides/cpp.md).
 
 #include <array>
 #include <cstdint>
