@@ -4,8 +4,8 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/device/device_kinds.hpp"
 #include "prostm/figure/figures.hpp"
-#include "prostm/plan/preset.hpp"
 #include "prostm/pipeline/world_kinds.hpp"
+#include "prostm/plan/preset.hpp"
 
 namespace prostm::app {
 

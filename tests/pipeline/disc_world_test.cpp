@@ -120,8 +120,9 @@ TEST(WorldKinds, StudiesListAnotherWorldThanTheDefaultAlone) {
 }
 
 TEST(WorldKinds, AreListedForHelp) {
-  EXPECT_EQ(world_choices(), "smoke (default)");
-  EXPECT_EQ(world_choices(kKinds), "smoke (default) or disc");
+  EXPECT_EQ(world_choices(), "smoke (default; jets of smoke)");
+  EXPECT_EQ(world_choices(kKinds),
+            "smoke (default; jets of smoke) or disc (a disc that presses evenly)");
   const std::string smoke =
       "one-plume (default), two-plumes, three-plumes, four-plumes, ring, pulsing, wind, or "
       "still-air";

@@ -9,17 +9,16 @@ namespace prostm {
 namespace {
 
 constexpr WorldKind kKinds[] = {
-    {kSmokeWorld, "smoke that blows at the hands", smoke_world_scenes, make_smoke_world},
+    {kSmokeWorld, "jets of smoke", smoke_world_scenes, make_smoke_world},
 };
 
-/// "a (default), b, c, or d".
-std::string choices_of(const std::vector<std::string_view>& names) {
+/// "a, b, c, or d".
+std::string choices_of(const std::vector<std::string>& texts) {
   std::string out;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) out += names.size() > 2 ? ", " : " ";
-    if (i > 0 && i + 1 == names.size()) out += "or ";
-    out += names[i];
-    if (i == 0) out += " (default)";
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (i > 0) out += texts.size() > 2 ? ", " : " ";
+    if (i > 0 && i + 1 == texts.size()) out += "or ";
+    out += texts[i];
   }
   return out;
 }
@@ -64,16 +63,22 @@ std::unique_ptr<World> make_world(const PipelineSettings& settings, WorkerPool& 
 }
 
 std::string world_choices(std::span<const WorldKind> kinds) {
-  std::vector<std::string_view> names;
-  for (const WorldKind& kind : kinds) names.emplace_back(kind.name);
-  return choices_of(names);
+  std::vector<std::string> texts;
+  for (const WorldKind& kind : kinds) {
+    texts.push_back(std::string(kind.name) + (texts.empty() ? " (default; " : " (") + kind.help +
+                    ")");
+  }
+  return choices_of(texts);
 }
 
 std::string scene_choices(std::span<const WorldKind> kinds) {
   std::string out;
   for (const WorldKind& kind : kinds) {
     if (!out.empty()) out += "; with --world " + std::string(kind.name) + ": ";
-    out += choices_of(scene_names(kind));
+    std::vector<std::string> texts;
+    for (const WorldScene& scene : kind.scenes()) texts.emplace_back(scene.name);
+    texts.front() += " (default)";
+    out += choices_of(texts);
   }
   return out;
 }

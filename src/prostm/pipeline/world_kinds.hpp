@@ -21,7 +21,7 @@ struct WorldScene {
 
 struct WorldKind {
   const char* name;  ///< in --world and settings
-  const char* help;  ///< what presses on the hands
+  const char* help;  ///< what presses on the hands, a noun
   /// Returns its scenes in the order in which to show them, one at least; the first is the default.
   std::span<const WorldScene> (*scenes)();
   /// Makes the world of the settings' scene, which is one of scenes(). @param pool outlives it.
@@ -46,7 +46,7 @@ void choose_world(const WorldKind& kind, PipelineSettings& settings);
 std::unique_ptr<World> make_world(const PipelineSettings& settings, WorkerPool& pool,
                                   std::span<const WorldKind> kinds = world_kinds());
 
-/// How an option's help lists the worlds: "smoke (default)".
+/// How an option's help lists the worlds: "smoke (default; jets of smoke)".
 std::string world_choices(std::span<const WorldKind> kinds = world_kinds());
 /// The same for scenes: those of the default world, then those of each other, with its name.
 std::string scene_choices(std::span<const WorldKind> kinds = world_kinds());

@@ -8,8 +8,8 @@
 
 #include "prostm/core/stage_timer.hpp"
 #include "prostm/pipeline/smoke/scene.hpp"
-#include "prostm/study/task/task.hpp"
 #include "prostm/pipeline/smoke/smoke_world.hpp"
+#include "prostm/study/task/task.hpp"
 #include "prostm/viewer/detail/state_json.hpp"
 
 namespace prostm {

@@ -8,8 +8,8 @@
 #include "prostm/core/input_error.hpp"
 #include "prostm/io/settings_file.hpp"
 #include "prostm/pipeline/playable.hpp"
-#include "prostm/study/task/task.hpp"
 #include "prostm/pipeline/world_kinds.hpp"
+#include "prostm/study/task/task.hpp"
 #include "prostm/study/task/track.hpp"
 
 namespace prostm::study {
