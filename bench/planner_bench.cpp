@@ -1,4 +1,4 @@
-/// Quality and speed of every preset on the generated gallery of tests/fields or on captured
+/// Quality and speed of every preset on the generated gallery of src/prostm/fields or on captured
 /// fields, compared with a textbook planner and controls.
 
 #include <fmt/core.h>

@@ -17,7 +17,7 @@ struct Sequence {
   std::function<TargetField(int frame)> field;
 };
 
-/// Returns the nine generated sequences of tests/fields.
+/// Returns the nine generated sequences of src/prostm/fields.
 std::vector<Sequence> gallery();
 
 /// Reads the fields of a file: from a recording (.h5) the first patch with pressure of each frame,

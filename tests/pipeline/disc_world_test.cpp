@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "prostm/device/simulated/simulated_array.hpp"
 #include "prostm/pipeline/runner.hpp"
 
 namespace prostm {

@@ -3,8 +3,9 @@
 import re
 import subprocess
 
-# the lab and benchmarks, GoogleTest, and the folders of tests
-FOREIGN = re.compile(r"\bprostm::(?:bench|test|tests)::|\btesting::|\btest::|\bprint_and_write\(|\bcompare_ways\(")
+# the lab and benchmarks, GoogleTest, and the folders of tests; not the namespaces test inside other libraries
+FOREIGN = re.compile(r"\bprostm::(?:bench|test|tests)::|(?<![\w:])(?:testing|test)::"
+                     r"|\bprint_and_write\(|\bcompare_ways\(")
 
 
 def foreign(names):
