@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Measures the house: folder sizes, longest files, cyclic includes inside the stages.
+"""Measures how the sources are laid out: sizes of folders, files and functions, and cyclic includes inside the stages.
 
 usage: house.py [ROOT]     ROOT is a checkout of prostm (default: the folder above this file)
 
 Prints one line for each measure. A module is a header with the sources of its name. An arrow back is an #include between
-modules of one stage that closes a cycle.
+modules of one stage that closes a cycle. Exits 1 if a folder of src/, apps/, tests/ or docs/ has more than 25 files,
+pictures aside, or if device, plan or study has an arrow back.
 """
 
 import re
@@ -13,10 +14,13 @@ import sys
 from collections import Counter, defaultdict
 from pathlib import Path
 
+from check_lengths import functions
+
 TOPS = ("src", "apps", "tests", "docs")
 NOT_COUNTED = {".png", ".svg", ".pdf"}
 OF_CODE = {".cpp", ".hpp", ".h"}
 MOST_FILES = 25
+WITHOUT_ARROWS = ("device", "plan", "study")  # stages that must have none
 INCLUDE = re.compile(r'^\s*#\s*include\s*"(prostm/[^"]+)"', re.M)
 
 
@@ -70,22 +74,39 @@ def stages_of(files):
     return sorted({file.parts[2] for file in files if file.parts[:2] == ("src", "prostm") and len(file.parts) > 3})
 
 
+def longest(root, code):
+    """Returns the longest file and the longest function of the sources, as (lines, name)."""
+    sources = {file: (root / file).read_text(encoding="utf-8") for file in code}
+    file = max((source.count("\n"), path.as_posix()) for path, source in sources.items())
+    function = max((count, f"{path}: {name}") for path, source in sources.items() if path.parts[0] in ("src", "apps")
+                   for name, _, count in functions(source))
+    return file, function
+
+
+def measure(root):
+    """Returns the lines to print, and whether a bound is broken."""
+    files = tracked(root)
+    lines = [f"{folder}: {count} files, above {MOST_FILES}" for folder, count in files_in_folders(files).most_common()
+             if count > MOST_FILES]
+    broken = bool(lines)
+    code = [file for file in files if file.suffix in OF_CODE and file.parts[0] in TOPS]
+    for what, (count, name) in zip(("file", "function"), longest(root, code)):
+        lines.append(f"longest {what}: {name}, {count} lines")
+    for stage in stages_of(files):
+        arrows = arrows_back(modules_of(root, files, stage))
+        lines += [f"arrow back: {module} -> {other}" for module, other in arrows]
+        broken = broken or bool(arrows) and stage in WITHOUT_ARROWS
+    return lines, broken
+
+
 def main():
     if len(sys.argv) > 2 or sys.argv[1:] in (["-h"], ["--help"]):
         print(__doc__.strip())
         return 0 if len(sys.argv) == 2 else 2
     root = Path(sys.argv[1]) if len(sys.argv) == 2 else Path(__file__).resolve().parent.parent
-    files = tracked(root)
-    for folder, count in files_in_folders(files).most_common():
-        if count > MOST_FILES:
-            print(f"{folder}: {count} files, above {MOST_FILES}")
-    code = [file for file in files if file.suffix in OF_CODE and file.parts[0] in TOPS]
-    longest = max(code, key=lambda file: (root / file).read_text(encoding="utf-8").count("\n"))
-    print(f"longest file: {longest}, {(root / longest).read_text(encoding='utf-8').count(chr(10))} lines")
-    for stage in stages_of(files):
-        for module, other in arrows_back(modules_of(root, files, stage)):
-            print(f"arrow back: {module} -> {other}")
-    return 0
+    lines, broken = measure(root)
+    print("\n".join(lines))
+    return 1 if broken else 0
 
 
 if __name__ == "__main__":

@@ -153,12 +153,13 @@ def test_the_pipeline_is_a_component(prefix, tmp_path):
     source = project(tmp_path / "own", "find_package(prostm REQUIRED COMPONENTS pipeline)\n"
                      "add_executable(own own.cpp)\ntarget_link_libraries(own prostm::pipeline)")
     (source / "own.cpp").write_text("""#include <cstdio>
+#include <prostm/device/simulated/simulated_array.hpp>
 #include <prostm/pipeline/pipeline.hpp>
 
 int main() {
   prostm::PipelineSettings settings;
   settings.fluid.cells = 32;
-  settings.simulated_array.realtime = false;
+  settings.devices.of<prostm::SimulatedArraySettings>().realtime = false;
   prostm::Pipeline pipeline(settings, prostm::make_scripted_hand(settings.scripted_hand, settings.track));
   int plans = 0;
   for (int i = 0; i < 10; ++i) plans += pipeline.step(0.02) ? 1 : 0;
