@@ -74,7 +74,7 @@ describe("a session of a study", () => {
       expect(text).not.toMatch(/"(method|scene|condition|correct|gate|stimulus)"|pro-stm|\bam\b/);
       const message = JSON.parse(text) as Json;
       if (message.type !== "study") continue;
-      const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
+      const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "controls", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
       expect(Object.keys(message)).toEqual(keys);
       expect(message.feedback).toBe(null);
       // the jets are those of the question
@@ -184,7 +184,7 @@ ${methods}`);
 function expectNothingTold(traffic: Traffic, study: Study): void {
   const texts = traffic.texts.filter((text) => text.includes('"type":"study"'));
   expect(texts.length).toBeGreaterThan(5);
-  const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
+  const keys = ["type", "room", "title", "phase", "done", "trials", "open", "task", "controls", "interval", "takes_answer", "training_left_s", "explored", "scenes", "answers", "hand", "consent", "noise", "waits_for", "feedback", "question"];
   for (const text of texts) {
     expect(Object.keys(JSON.parse(text) as Json)).toEqual(keys);
     expect(text).not.toMatch(/level|reference|felt|correct|start|track|method|condition|\bstm\b|\bam\b/);
