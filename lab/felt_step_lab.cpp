@@ -6,7 +6,7 @@
 int main(int argc, char** argv) {
   using namespace prostm;
   CLI::App app("the numbers of the felt step, each halved and doubled");
-  int fields = 240, fields_with_points = 48;
+  int fields = 96, fields_with_points = 12;
   app.add_option("--fields", fields, "fields whose pressures are chosen")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();

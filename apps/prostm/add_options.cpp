@@ -19,8 +19,7 @@ void add_common(CLI::App& command, CommonOptions& o) {
             "settings of any stage, a TOML file (docs/reference/files.md)");
   add_json(command, o.files, o.json);
   command.add_option("--seed", o.seed, "of everything that is drawn at random");
-  add_name(command, "--preset", o.preset,
-           one_of(kNames<Preset>) + "; default: " + std::string(name_of(kDefaultPreset)));
+  add_name(command, "--preset", o.preset, preset_choices());
   command.add_option("--paths", o.paths, "focal points, 1 to 8");
   command.add_option("--budget-ms", o.budget_ms,
                      "time for a plan of preset best; 0: a fixed amount of work");

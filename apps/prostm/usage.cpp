@@ -26,12 +26,13 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// Whether a help text lists a word as a value: "usx (default), autd3, or an array file".
+/// Whether a help text lists a word as a value: "the array: usx (default), autd3, or a file".
 bool lists(const std::string& help, const std::string& word) {
   const std::size_t at = help.find(word);
   if (at == help.npos) return false;
   const std::string before = help.substr(0, at), after = help.substr(at + word.size());
-  return (before.empty() || before.ends_with(", ") || before.ends_with("or ")) &&
+  return (before.empty() || before.ends_with(", ") || before.ends_with("or ") ||
+          before.ends_with(": ")) &&
          (after.empty() || after.starts_with(",") || after.starts_with(" ("));
 }
 

@@ -37,6 +37,7 @@ std::vector<Knob> knobs() {
           {"from_fit, evaluations", false, evaluations(&FeltTuning::from_fit)},
           {"from_fit, first step", false, first_step(&FeltTuning::from_fit)},
           {"from_fit_again, evaluations", false, evaluations(&FeltTuning::from_fit_again)},
+          {"from_fit_again, first step", false, first_step(&FeltTuning::from_fit_again)},
           {"from_last_plan, evaluations", false, evaluations(&FeltTuning::from_last_plan)},
           {"from_last_plan, first step", false, first_step(&FeltTuning::from_last_plan)},
           {"unit", true, number(&FeltTuning::unit)},
@@ -118,12 +119,9 @@ void compare_tunings(int fields, bool points, std::vector<Row>& rows) {
     const Summary first = costs[v].lack_first.summary(), second = costs[v].lack_second.summary();
     fmt::print("  {:<34} {:>8.4f} {:>8.4f} {:>8.2f} {:>8.2f}\n", variants[v].name, first.mean,
                second.mean, costs[v].ms_first.summary().p50, costs[v].ms_second.summary().p50);
-    const std::string name =
-        fmt::format("felt step/{}/{}", points ? "points" : "pressures", variants[v].name);
-    rows.push_back(
-        {name + "/lack, first plan", "", first, "as used", costs[0].lack_first.summary().p50});
-    rows.push_back(
-        {name + "/lack, next plan", "", second, "as used", costs[0].lack_second.summary().p50});
+    const std::string name = (points ? "points, " : "") + variants[v].name;
+    rows.push_back({name + ", first", "1", first, "as used", costs[0].lack_first.summary().p50});
+    rows.push_back({name + ", next", "1", second, "as used", costs[0].lack_second.summary().p50});
   }
 }
 

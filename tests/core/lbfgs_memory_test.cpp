@@ -78,7 +78,7 @@ TEST(LbfgsMemory, GivesTheDirectionOfTheDenseUpdates) {
     Vector direction = -gradient;
     memory.find_direction(operations, direction);
     const Eigen::VectorXd expected = dense_direction(pairs, operations, gradient);
-    ASSERT_LE((direction.cast<double>() - expected).norm(), 2e-3 * (1.0 + expected.norm()));
+    ASSERT_LE((direction.cast<double>() - expected).norm(), 2e-6 * (1.0 + expected.norm()));
     ASSERT_LT(direction.dot(gradient), 0.0F);
   }
 }

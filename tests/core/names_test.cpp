@@ -32,6 +32,14 @@ TEST(Suggestion, NamesTheNearestOrAll) {
   EXPECT_EQ(suggestion("dance", {}), "no names are allowed here");
 }
 
+TEST(Listed, SeparatesThreeAndMoreByCommas) {
+  EXPECT_EQ(listed({}), "");
+  EXPECT_EQ(listed(std::vector<std::string>{"a"}), "a");
+  EXPECT_EQ(listed(std::vector<std::string>{"a", "b"}), "a or b");
+  EXPECT_EQ(listed(std::vector<std::string>{"a", "b (default)", "c"}, "and"),
+            "a, b (default), and c");
+}
+
 TEST(LowerCase, ChangesNothingButAToZ) {
   EXPECT_EQ(lower_case("Leap.JSON @[`{"), "leap.json @[`{");
   EXPECT_EQ(lower_case("Ä Ω"), "Ä Ω");

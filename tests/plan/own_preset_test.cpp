@@ -68,7 +68,8 @@ TEST(Presets, AreListedByWhatTheyTake) {
   EXPECT_EQ(presets_with([](const PresetTraits& t) { return t.is_fitted(); }),
             "presets best and fast");
   EXPECT_EQ(presets_with([](const PresetTraits&) { return true; }),
-            "presets paper, paper-valid, best and fast");
+            "presets paper, paper-valid, best, and fast");
+  EXPECT_EQ(preset_choices(), "paper, paper-valid, best (default), or fast");
 }
 
 }  // namespace

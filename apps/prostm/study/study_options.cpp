@@ -166,7 +166,9 @@ void add_simulate(CLI::App& study, Work& work) {
       ->capture_default_str();
   command->add_option("--hands", o->hands, "of different size and tremor to draw participants from")
       ->capture_default_str();
-  add_name(*command, "--preset", o->preset, "of pro-stm: " + one_of(kNames<Preset>))
+  add_name(*command, "--preset", o->preset,
+           "of pro-stm: " +
+               listed(std::vector<std::string>(kNames<Preset>.begin(), kNames<Preset>.end())))
       ->capture_default_str();
   command->add_option("--noise", o->noise, "factor of the observers' own noise")
       ->capture_default_str();

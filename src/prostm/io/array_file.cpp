@@ -5,10 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <vector>
 
 #include "prostm/core/file/file.hpp"
 #include "prostm/core/input_error.hpp"
 #include "prostm/core/text/json.hpp"
+#include "prostm/core/text/names.hpp"
 #include "prostm/core/text/nearest_name.hpp"
 
 namespace prostm {
@@ -131,10 +133,11 @@ TransducerArray array_from_name(const std::string& name, std::span<const ArrayKi
 }
 
 std::string array_choices(const std::string& of_default, std::span<const ArrayKind> kinds) {
-  std::string choices;
+  std::vector<std::string> entries;
   for (const ArrayKind& kind : kinds)
-    choices += kind.name + (choices.empty() ? of_default : "") + ", ";
-  return choices + "or an array file (.json)";
+    entries.push_back(kind.name + (entries.empty() ? of_default : ""));
+  entries.emplace_back("an array file (.json)");
+  return listed(entries);
 }
 
 TransducerArray read_array(const std::string& path) {

@@ -12,17 +12,6 @@ constexpr WorldKind kKinds[] = {
     {kSmokeWorld, "jets of smoke", smoke_world_scenes, make_smoke_world},
 };
 
-/// "a, b, c, or d".
-std::string choices_of(const std::vector<std::string>& texts) {
-  std::string out;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (i > 0) out += texts.size() > 2 ? ", " : " ";
-    if (i > 0 && i + 1 == texts.size()) out += "or ";
-    out += texts[i];
-  }
-  return out;
-}
-
 std::vector<std::string_view> scene_names(const WorldKind& kind) {
   std::vector<std::string_view> names;
   for (const WorldScene& scene : kind.scenes()) names.push_back(scene.name);
@@ -68,7 +57,7 @@ std::string world_choices(std::span<const WorldKind> kinds) {
     texts.push_back(std::string(kind.name) + (texts.empty() ? " (default; " : " (") + kind.help +
                     ")");
   }
-  return choices_of(texts);
+  return listed(texts);
 }
 
 std::string scene_choices(std::span<const WorldKind> kinds) {
@@ -78,7 +67,7 @@ std::string scene_choices(std::span<const WorldKind> kinds) {
     std::vector<std::string> texts;
     for (const WorldScene& scene : kind.scenes()) texts.emplace_back(scene.name);
     texts.front() += " (default)";
-    out += choices_of(texts);
+    out += listed(texts);
   }
   return out;
 }

@@ -62,7 +62,7 @@ struct PlanSettings {
   /// field in files.
   FocusWidths widths;
   /// A preset that is not among those with names, in place of `preset`; it outlives the planner.
-  /// Not a field in files.
+  /// Not a field in files, which name `preset` all the same.
   const PresetTraits* own_preset = nullptr;
 
   const PresetTraits& traits() const {

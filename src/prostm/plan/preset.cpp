@@ -5,16 +5,19 @@
 namespace prostm {
 
 std::string presets_with(bool (*has)(const PresetTraits& traits)) {
-  std::vector<std::string_view> names;
+  std::vector<std::string> names;
+  for (const PresetTraits& traits : kPresetTraits)
+    if (has(traits)) names.emplace_back(traits.name);
+  return (names.size() == 1 ? "preset " : "presets ") + listed(names, "and");
+}
+
+std::string preset_choices() {
+  std::vector<std::string> entries;
   for (const PresetTraits& traits : kPresetTraits) {
-    if (has(traits)) names.push_back(traits.name);
+    const bool is_default = traits.name == name_of(kDefaultPreset);
+    entries.push_back(std::string(traits.name) + (is_default ? " (default)" : ""));
   }
-  std::string out = names.size() == 1 ? "preset " : "presets ";
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) out += i + 1 < names.size() ? ", " : " and ";
-    out += names[i];
-  }
-  return out;
+  return listed(entries);
 }
 
 }  // namespace prostm

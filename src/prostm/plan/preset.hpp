@@ -66,5 +66,7 @@ inline constexpr auto kNames<Preset> = [] {
 
 /// Returns "preset best", "presets best and fast": those of which `has` holds.
 std::string presets_with(bool (*has)(const PresetTraits& traits));
+/// For the help of options: "paper, paper-valid, best (default), or fast".
+std::string preset_choices();
 
 }  // namespace prostm

@@ -15,6 +15,16 @@ std::string one_of(std::span<const std::string_view> names) {
   return text;
 }
 
+std::string listed(std::span<const std::string> entries, std::string_view conjunction) {
+  std::string text;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (i > 0) text += entries.size() > 2 ? ", " : " ";
+    if (i > 0 && i + 1 == entries.size()) text += std::string(conjunction) + " ";
+    text += entries[i];
+  }
+  return text;
+}
+
 std::string must_be(std::string_view name, std::span<const std::string_view> names) {
   return "must be " + one_of(names) + did_you_mean(name, {names.begin(), names.end()});
 }

@@ -23,6 +23,9 @@ constexpr std::string_view name_of(E value) {
 /// Returns "a, b or c".
 std::string one_of(std::span<const std::string_view> names);
 
+/// Returns "a, b, or c", "a or b", or "a", with the conjunction given. The entries of help texts.
+std::string listed(std::span<const std::string> entries, std::string_view conjunction = "or");
+
 /// Returns "must be a, b or c", and for a name that is nearly one of them "; did you mean "b"?".
 std::string must_be(std::string_view name, std::span<const std::string_view> names);
 

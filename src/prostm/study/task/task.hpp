@@ -1,5 +1,5 @@
 #pragma once
-/// The door of tasks: all that the rest of prostm knows about the work of a participant in a trial.
+/// The interface of study tasks: the work of a participant in a trial.
 ///
 /// A task is a class that derives from Task, and a line in a table (tasks.hpp). Protocols name it;
 /// sessions, files, pages, rehearsals and the analysis go by what it returns here.
@@ -42,13 +42,13 @@ struct TaskTraits {
   AnswerForm form = AnswerForm::YesNo;
   /// Buttons: of YesNo yes and no, of Interval one for each interval; none of Tuned.
   std::span<const std::string_view> words = {};
-  std::string_view spoken = {};  ///< tells participants how to answer aloud; one sentence
+  std::string_view spoken = {};  ///< instruction for answers aloud; one sentence
   bool has_levels = true;        ///< [level] is read, and trials belong to tracks
   bool compares = false;         ///< with a standard, which some intervals have
   int intervals = 1;             ///< of a trial; of Tuned they come in turn until it ends
   bool pictured = false;         ///< the participant's page draws the scene that is asked for
   std::size_t least_scenes = 1;  ///< of a protocol
-  /// Answers in a row at an end of the range from which on the experimenter is told.
+  /// Consecutive answers at an end of the range before the experimenter is notified.
   int answers_at_bound = 3;
 };
 

@@ -82,8 +82,12 @@ void FeltStep::take_fit(const NodeArray& pressure) {
     fitted_.push_back(std::max(std::sqrt(pressure[node]), kTiny));
 }
 
+float FeltStep::least_root() const {
+  return tuning_.least_root * *std::max_element(fitted_.begin(), fitted_.end());
+}
+
 void FeltStep::begin_at_fit() {
-  const float least = tuning_.least_root * *std::max_element(fitted_.begin(), fitted_.end());
+  const float least = least_root();
   root_.clear();
   for (const float root : fitted_) root_.push_back(std::max(root, least));
 }
@@ -92,7 +96,7 @@ void FeltStep::begin_at_fit() {
 /// kept point is near, at the fit's.
 void FeltStep::begin_at_kept() {
   begin_at_fit();
-  const float least = tuning_.least_root * *std::max_element(fitted_.begin(), fitted_.end());
+  const float least = least_root();
   const bool of_plan = kept_.from == Kept::From::LastPlan;
   const float reach = of_plan ? tuning_.near : tuning_.moved_near;
   for (std::size_t j = 0; j < node_.size(); ++j) {

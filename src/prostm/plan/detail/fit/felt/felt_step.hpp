@@ -73,6 +73,7 @@ class FeltStep {
   StepPoints take_points(const Loops& loops, const LapStarts& starts, const CommonLoop& loop,
                          int pieces);
   void take_fit(const NodeArray& pressure);
+  float least_root() const;
   void begin_at_fit();
   void begin_at_kept();
   int descend(const QuasiNewton::Cost& cost, float fit_cost);
