@@ -1,6 +1,6 @@
 #!/bin/bash
-# Checks that clang accepts every header of src/ on its own, which finds missing includes. (The fuzzers' build compiles
-# the sources with clang, with warnings as errors.) With ccache, headers that have not changed take no time.
+# Checks that clang accepts every header of src/ on its own, which finds missing includes. (The build asan compiles the
+# sources with clang, with warnings as errors.) With ccache, headers that have not changed take no time.
 # usage: tools/check_clang.sh [FOLDER…]     folders of src/prostm/, default all
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../src/prostm"
@@ -9,9 +9,9 @@ compiler=(clang++)
 command -v ccache >/dev/null && compiler=(ccache clang++)
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-# a stand-in takes the place of Ultraleap's SDK, which nobody may pass on
-# a file that a source includes once for each vector target (*-inl.hpp) does not stand alone
+# a stand-in replaces Ultraleap's SDK, which must not be redistributed
+# a file that a source includes once for each vector target (*-inl.hpp) is not checked on its own
 find "${@:-.}" -name '*.hpp' ! -name '*-inl.hpp' -print0 |
   xargs -0 -P "$(nproc)" -I{} sh -c 'o=$1/$(echo "$2" | tr / _).o; shift 2; exec "$@" -o "$o"' \
-    sh "$out" {} "${compiler[@]}" -xc++ -std=c++20 -c {} -Wall -Wextra -Wshadow -Werror \
+    sh "$out" {} "${compiler[@]}" -xc++ -std=c++20 -c {} -MD -Wall -Wextra -Wshadow -Werror \
     -Wno-pragma-once-outside-header -I.. "${libraries[@]/#-I/-isystem}" -isystem ../../tests/support/ultraleap_sdk/include

@@ -32,7 +32,7 @@ std::vector<float> field(double factor = 1.0) {
 }
 
 double at(const FluidPressure& pressure, const Vec3& p) {
-  double out = NAN;
+  double out = 0.0;
   pressure.sample({&p, 1}, kDown, {&out, 1});
   return out;
 }
@@ -54,7 +54,7 @@ TEST(FluidPressure, IsReadOutsideTheSkin) {
   }
 }
 
-TEST(FluidPressure, CellsInAHandDoNotCountAndFarFromAirThereIsNone) {
+TEST(FluidPressure, IgnoresCellsInAHandAndIsZeroFarFromAir) {
   std::vector<float> given = field();
   std::vector<std::uint8_t> free(kGrid.cell_count(), 1);
   for (int k = 8; k < kGrid.nz; ++k) {
@@ -69,7 +69,7 @@ TEST(FluidPressure, CellsInAHandDoNotCountAndFarFromAirThereIsNone) {
   settings.offset = kGrid.cell;
   FluidPressure pressure(settings, kGrid);
   pressure.take(given, free, 0.02);
-  // half way between the last layer of air and the first in the hand: the air's value alone
+  // half-way between the last layer of air and the first in the hand: only the air's value counts
   const Vec3 between(0.0, 0.0, kGrid.p_DF.z() + 8.0 * kGrid.cell);
   const Vec3 last(0.0, 0.0, kGrid.p_DF.z() + 7.5 * kGrid.cell);
   EXPECT_NEAR(at(pressure, between - kGrid.cell * kDown), linear(last), 1e-6);
@@ -87,7 +87,7 @@ TEST(FluidPressure, FollowsAStepInTimeAsAnExponential) {
   const Vec3 p(0.01, 0.02, 0.1);
   const double level = linear(p + kGrid.cell * kDown);
   pressure.take(before, free, 0.02);
-  EXPECT_NEAR(at(pressure, p), level, 1e-6) << "what has just become known has no history";
+  EXPECT_NEAR(at(pressure, p), level, 1e-6) << "a newly known value has no history";
   for (int n = 1; n <= 20; ++n) {
     const test::HeapGuard guard;
     pressure.take(after, free, 0.02);

@@ -11,7 +11,7 @@
 namespace prostm::fluid {
 namespace {
 
-/// The faces of an axis: how many there are along each.
+/// Number of faces of an axis along each dimension.
 struct Faces {
   Faces(const PaddedGrid& grid, int along) : axis(along) {
     for (int a = 0; a < 3; ++a) count[a] = grid.n + (a == along ? 1 : 0);
@@ -33,7 +33,7 @@ void diffuse_all(const PaddedGrid& grid, int axis, const Field& u, float share, 
   for (int k = 0; k < Faces(grid, axis).count[2]; ++k) diffuse(grid, axis, u, share, out, k);
 }
 
-/// The same, written plainly: a face outside repeats the one at the side.
+/// The same in plain code: a face outside repeats the one at the side.
 double reference(const PaddedGrid& grid, const Faces& faces, const Field& u, double share, int i,
                  int j, int k) {
   const auto at = [&](int a, int b, int c) {
@@ -47,7 +47,9 @@ double reference(const PaddedGrid& grid, const Faces& faces, const Field& u, dou
                         at(i, j, k - 1) + at(i, j, k + 1) - 6.0 * own);
 }
 
-TEST(Viscosity, IsWhatIsWrittenPlainlyOnEveryFace) {
+constexpr float kShare = 0.12F;
+
+TEST(Viscosity, MatchesPlainCodeOnEveryFace) {
   Random random(11);
   for (const int n : {32, 48}) {
     const PaddedGrid grid{n};
@@ -57,11 +59,11 @@ TEST(Viscosity, IsWhatIsWrittenPlainlyOnEveryFace) {
       for_faces(faces, [&](int i, int j, int k) {
         u[grid.index(i, j, k)] = static_cast<float>(random.uniform(-2.0, 2.0));
       });
-      diffuse_all(grid, axis, u, 0.12F, out);
+      diffuse_all(grid, axis, u, kShare, out);
       double worst = 0.0;
       for_faces(faces, [&](int i, int j, int k) {
-        worst = std::max(worst, std::abs(static_cast<double>(out[grid.index(i, j, k)]) -
-                                         reference(grid, faces, u, 0.12F, i, j, k)));
+        const double expected = reference(grid, faces, u, static_cast<double>(kShare), i, j, k);
+        worst = std::max(worst, std::abs(static_cast<double>(out[grid.index(i, j, k)]) - expected));
       });
       EXPECT_LT(worst, 2e-6) << n << " cells, axis " << axis;
     }
@@ -70,7 +72,7 @@ TEST(Viscosity, IsWhatIsWrittenPlainlyOnEveryFace) {
 
 // u = cos(m π (j + ½) / n) between walls that repeat the value: each pass multiplies it by
 // 1 − 2 share (1 − cos(m π / n))
-TEST(Viscosity, DampsAWaveByItsClosedForm) {
+TEST(Viscosity, DampsAWaveAsItsClosedForm) {
   const PaddedGrid grid{32};
   const auto wave = [&](int j, int m) { return std::cos(m * kPi * (j + 0.5) / grid.n); };
   for (const int m : {1, 3, 9}) {
@@ -91,7 +93,7 @@ TEST(Viscosity, DampsAWaveByItsClosedForm) {
   }
 }
 
-TEST(Viscosity, TakesAsManyPassesAsKeepItStable) {
+TEST(Viscosity, UsesAsManyPassesAsStabilityNeeds) {
   EXPECT_EQ(viscous_passes(0.0), 0);
   EXPECT_EQ(viscous_passes(0.1), 1);
   EXPECT_EQ(viscous_passes(0.15), 1);

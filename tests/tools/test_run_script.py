@@ -1,4 +1,4 @@
-"""The things that ./run says and finds out before it starts long things: its functions, taken in by a shell, with stand-ins for apt."""
+"""The reports and checks of ./run before long work: its functions, sourced by a shell, with stand-ins for apt."""
 
 import os
 import shutil
@@ -14,7 +14,7 @@ TOOLS = ["bash", "awk", "basename", "cat", "dirname", "env", "grep", "mkdir", "n
 
 
 class Shell:
-    """A checkout that holds `run` alone, and a PATH of a few tools and of stand-ins."""
+    """A checkout that contains only `run`, and a PATH with a few tools and stand-ins."""
 
     def __init__(self, folder):
         self.root = folder / "checkout"
@@ -53,7 +53,7 @@ Do you want to continue? [Y/n] N
 Abort."""
 
 
-def test_the_size_of_an_installation_is_told_in_aptitudes_own_numbers(shell):
+def test_the_size_of_an_installation_is_reported_in_aptitudes_own_numbers(shell):
     told = shell.call(f"size_of_install <<'END'\n{APT_ASKS}\nEND")
     assert told == "631 packages with all that they need, 12.5 MB to download, 1,994 MB on the disk"
     assert "420 MB to download" in shell.call("size_of_install <<<'Need to get 420 MB of archives.'")
@@ -61,14 +61,14 @@ def test_the_size_of_an_installation_is_told_in_aptitudes_own_numbers(shell):
 
 @pytest.fixture
 def with_apt(shell):
-    """A Debian on which `there` is installed; who calls is root."""
+    """A Debian on which `there` is installed; the caller is root."""
     shell.stand_in("dpkg-query", "echo installed there")
     shell.stand_in("id", "echo 0")
     shell.stand_in("apt-get", f'echo "$*" >>{shell.root}/apt.calls\n[[ $* != *assume-no* ]] || cat <<END\n{APT_ASKS}\nEND')
     return shell
 
 
-def test_each_missing_package_is_named_once_with_what_all_cost(with_apt):
+def test_each_missing_package_is_named_once_with_the_total_size(with_apt):
     told = with_apt.call("install there one two one")
     assert told.splitlines()[:2] == [
         "run: missing: one two",
@@ -76,12 +76,12 @@ def test_each_missing_package_is_named_once_with_what_all_cost(with_apt):
     assert (with_apt.root / "apt.calls").read_text().splitlines()[-1].endswith("install --no-install-recommends one two")
 
 
-def test_nothing_is_fetched_where_nothing_is_missing(with_apt):
+def test_nothing_is_fetched_if_nothing_is_missing(with_apt):
     assert with_apt.call("install there") == ""
     assert not (with_apt.root / "apt.calls").exists()
 
 
-def test_without_sudo_the_whole_command_is_told(with_apt):
+def test_without_sudo_the_whole_command_is_printed(with_apt):
     with_apt.stand_in("id", "echo 1000")
     told = with_apt.call("install there one two", status=2)
     assert told == ("run: packages are missing and there is no sudo; as root run: "
@@ -89,7 +89,7 @@ def test_without_sudo_the_whole_command_is_told(with_apt):
 
 
 @pytest.mark.parametrize("version, wanted", [("v18.20.4", ""), ("v16.20.2", "nodejs npm"), (None, "nodejs npm")])
-def test_node_is_installed_only_where_none_will_do(shell, version, wanted):
+def test_node_is_installed_only_if_no_suitable_version_exists(shell, version, wanted):
     shell.stand_in("npm", "")
     if version:
         shell.stand_in("node", f"echo {version}")
@@ -103,7 +103,7 @@ def test_the_program_and_its_page_need_one_round_of_packages(with_apt):
     assert {"cmake", "nodejs", "npm", "extra"} <= set(missing) and len(missing) == len(set(missing))
 
 
-def test_that_npm_fetches_packages_is_told_once(with_apt):
+def test_npm_downloads_are_announced_once(with_apt):
     (with_apt.root / "web/node_modules").mkdir(parents=True)
     lock, installed = with_apt.root / "web/package-lock.json", with_apt.root / "web/node_modules/.package-lock.json"
     lock.touch()
@@ -113,10 +113,10 @@ def test_that_npm_fetches_packages_is_told_once(with_apt):
     assert "npm registry" not in with_apt.call("install_for_program")
 
 
-def test_a_build_folder_from_elsewhere_is_told_with_what_to_do(shell):
+def test_a_build_folder_from_elsewhere_is_reported_with_the_remedy(shell):
     cache = shell.root / "build/release/CMakeCache.txt"
     cache.parent.mkdir(parents=True)
-    shell.call("check_place asan")  # nothing there yet
+    shell.call("check_place asan")  # does not exist yet
     cache.write_text(f"CMAKE_CACHEFILE_DIR:INTERNAL={cache.parent}\n")
     shell.call("check_place release")
     cache.write_text("CMAKE_CACHEFILE_DIR:INTERNAL=/elsewhere/build/release\n")
@@ -151,7 +151,7 @@ skipped: there is no Vale
 """
 
 
-# builds nothing: says what it would configure and build, and what ctest would run
+# builds nothing: prints what it would configure and build, and what ctest would run
 DRY = """
 install_for_program() { :; }
 configure() { echo "configure $1"; }
@@ -163,7 +163,7 @@ mkdir -p "$root/build"
 """
 
 
-def test_a_part_of_full_makes_its_own_build_alone(shell):
+def test_a_part_of_full_makes_only_its_own_build(shell):
     told = shell.call(f"{DRY}run_tests --full --only=asan").splitlines()
     assert told[:3] == ["configure release", "configure asan", "build asan all"]
     assert told[3].endswith("-R ^asan\\.") and len(told) == 4
@@ -174,7 +174,7 @@ def test_a_part_of_full_makes_its_own_build_alone(shell):
 def test_full_makes_all_builds(shell):
     told = shell.call(f"{DRY}run_tests --full -N").splitlines()
     assert [line for line in told if line.startswith("configure")] == [
-        "configure release", "configure asan", "configure tsan", "configure fuzz"]
+        "configure release", "configure asan", "configure tsan"]
     assert "build release all" in told
 
 
@@ -183,11 +183,11 @@ def test_full_makes_all_builds(shell):
     ("--only=asan", "test --changed and --only belong to --full"),
     ("--changed", "test --changed and --only belong to --full"),
 ])
-def test_a_part_that_is_unknown_or_alone_is_refused(shell, options, says):
+def test_an_unknown_or_lone_part_is_rejected(shell, options, says):
     assert says in shell.call(f"{DRY}run_tests {options}", status=2)
 
 
-def test_skipped_tests_are_told_with_their_reasons(tmp_path):
+def test_skipped_tests_are_listed_with_their_reasons(tmp_path):
     log = tmp_path / "LastTest.log"
     log.write_text(LOG)
     tool = [sys.executable, ROOT / "tools/skipped_tests.py"]

@@ -15,7 +15,7 @@
 namespace prostm {
 namespace {
 
-/// Two units side by side that are turned towards each other.
+/// Two units side by side, tilted towards each other.
 TransducerArray two_units() {
   const auto turned = [](double x, double angle) {
     Pose X = Pose::Identity();
@@ -39,7 +39,7 @@ double nearest(const TransducerArray& array, const Vec3& p) {
   return least;
 }
 
-TEST(FocusLevels, AreNeverBelowTheTruthAndHardlyAboveIt) {
+TEST(FocusLevels, AreNeverBelowTheExactValueAndHardlyAboveIt) {
   struct Case {
     TransducerArray array;
     int points;
@@ -68,7 +68,7 @@ TEST(FocusLevels, AreNeverBelowTheTruthAndHardlyAboveIt) {
   }
 }
 
-TEST(FocusLevels, HoldsOnlyPlacesThatItKnows) {
+TEST(FocusLevels, CoversOnlyPositionsInItsTable) {
   const FocusLevels levels(usx_array());
   EXPECT_TRUE(levels.holds({0.0F, 0.0F, 0.2F}));
   EXPECT_FALSE(levels.holds({0.0F, 0.0F, 0.01F}));
@@ -77,7 +77,7 @@ TEST(FocusLevels, HoldsOnlyPlacesThatItKnows) {
   EXPECT_FALSE(levels.holds({0.3F, 0.0F, 0.2F}));
 }
 
-TEST(FocusLevels, TakesTheLargestAmplitudeOfTheSources) {
+TEST(FocusLevels, UsesTheLargestAmplitudeOfTheSources) {
   TransducerArray array = usx_array();
   EXPECT_EQ(largest_amplitude(array), 8.02);
   EXPECT_EQ(smallest_amplitude(array), 2.5);
@@ -87,9 +87,9 @@ TEST(FocusLevels, TakesTheLargestAmplitudeOfTheSources) {
   EXPECT_EQ(largest_amplitude(array), 12.0);
 }
 
-/// The loudest that a whole array can be at a focal point is what the simulated one makes there,
-/// with the largest amplitude and without losses; and whatever it plays stays below the bound.
-TEST(FocusLevels, BoundWhatSolversMake) {
+/// The largest pressure of an array at a focal point is that of the simulated array with the
+/// largest amplitude and without losses. No output of a solver may exceed the bound.
+TEST(FocusLevels, BoundTheOutputOfSolvers) {
   TransducerArray array = usx_array();
   array.amplitude = array.amplitude_high = largest_amplitude(array);
   const Medium medium;
@@ -119,7 +119,7 @@ TEST(FocusLevels, BoundWhatSolversMake) {
         }
         output.reset();
         for (int k = 0; k < 20; ++k) output.step(foci);
-        const double bound = std::min(1.0F, sum * stretch) * most;
+        const auto bound = static_cast<double>(std::min(1.0F, sum * stretch) * most);
         for (const LiveFocus& focus : foci) {
           std::complex<double> p = 0.0;
           for (std::size_t i = 0; i < array.position.size(); ++i)
@@ -131,10 +131,10 @@ TEST(FocusLevels, BoundWhatSolversMake) {
     }
   }
   std::printf("the loudest was at %.2f of its bound\n", nearest_to_bound);
-  EXPECT_GT(nearest_to_bound, 0.9) << "the bound is not idle";
+  EXPECT_GT(nearest_to_bound, 0.9) << "the bound is tight";
 }
 
-TEST(HeadLevel, IsAnIntervalThatFallsWithDistance) {
+TEST(HeadLevel, IsAnIntervalThatDecreasesWithDistance) {
   for (const TransducerArray& array : {usx_array(), autd3_array()}) {
     double before = 1000.0;
     for (const double distance : kHeadDistances) {
@@ -145,14 +145,14 @@ TEST(HeadLevel, IsAnIntervalThatFallsWithDistance) {
       before = level.estimate;
     }
   }
-  // by hand: 256 sources of 8.02 Pa·m at 1 m, incoherent, are 136 dB; coherent and doubled 166 dB
+  // by hand: 256 sources of 8.02 Pa·m at 1 m are 136 dB if incoherent, 166 dB coherent and doubled
   const HeadLevel far = head_level(usx_array(), 1.0);
   EXPECT_NEAR(far.bound, 20.0 * std::log10(2.0 * 256.0 * 8.02 / 20e-6), 0.2);
   EXPECT_NEAR(far.low, 20.0 * std::log10(16.0 * 2.5 / 20e-6), 0.2);
   EXPECT_NEAR(far.estimate, 136.1 + 1.1, 0.4);
 }
 
-TEST(HeadLevel, LimitsAreSortedAndSayWhereTheyComeFrom) {
+TEST(HeadLevel, LimitsAreSortedAndNameTheirSources) {
   double before = 0.0;
   for (const ExposureLimit& limit : exposure_limits()) {
     EXPECT_GE(limit.level, before);
